@@ -7,7 +7,7 @@ Numeric libraries have one thread, as in `pinstress run`, where nothing else is 
 
 from pathlib import Path
 
-from pinstress.processes.threads import hold_threads
+from pinbase.processes.threads import hold_threads
 
 hold_threads()
 ROOT = Path(__file__).parent.parent

@@ -41,7 +41,7 @@ from benchmarks.pins import (
 from benchmarks.record import record
 from benchmarks.runs import designs_page, gear, least_weight, page, reliability, speed, sweep
 from benchmarks.solids import calculix, ngsolve_peer
-from pinstress.processes.pool import Died, Job, Tell, cores, side_by_side
+from pinbase.processes.pool import Died, Job, Tell, cores, side_by_side
 
 ACCURACY = {
     "coverage": coverage.contained,  # the longest first

@@ -37,7 +37,7 @@ LOADED = (np, scipy, skfem)
 FILES = {
     "fea/beam/stress_concentration.py": ("tests/fea/beam/test_notch.py",
                                          "tests/fea/beam/test_beam_stress.py"),
-    "fea/checks/hand_checks.py": ("tests/fea/checks/test_hand_checks.py",),
+    "assess/strength/hand_checks.py": ("tests/assess/strength/test_hand_checks.py",),
     "fea/beam/timoshenko.py": ("tests/fea/beam/test_stepped_beam.py",
                                 "tests/fea/beam/test_beam_stress.py"),
     "fea/solid/assembly.py": ("tests/fea/solid/test_elasticity.py",),
@@ -45,11 +45,13 @@ FILES = {
                                  "tests/fea/singular/test_corner_determinant.py"),
     "fea/core/tractions.py": ("tests/fea/core/test_bearing_pressure.py",
                                "tests/fea/harmonic/test_harmonic.py"),
-    "fea/checks/michell.py": ("tests/fea/checks/test_distributed_load.py",),
-    "loads/inverse_dynamics.py": ("tests/loads/test_energy.py", "tests/loads/test_four_bar.py",
-                        "tests/loads/test_slider_crank.py", "tests/loads/test_reactions.py"),
-    "loads/power_balance.py": ("tests/loads/test_energy.py", "tests/loads/test_slider_crank.py"),
-    "loads/impulse.py": ("tests/loads/test_reactions.py",),
+    "assess/opinion/michell.py": ("tests/assess/opinion/test_distributed_load.py",),
+    "loads/forces/inverse_dynamics.py": (
+        "tests/loads/forces/test_energy.py", "tests/loads/motion/test_four_bar.py",
+        "tests/loads/motion/test_slider_crank.py", "tests/loads/forces/test_reactions.py"),
+    "loads/forces/power_balance.py": (
+        "tests/loads/forces/test_energy.py", "tests/loads/motion/test_slider_crank.py"),
+    "loads/landing/impulse.py": ("tests/loads/forces/test_reactions.py",),
 }  # fmt: skip
 ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult,
               ast.Pow: ast.Mult, ast.MatMult: ast.Mult}  # fmt: skip

@@ -10,11 +10,11 @@ import numpy as np
 
 from benchmarks import ROOT
 from loads import LegDynamics, leg_dynamics
-from loads.spatial_leg import t1, t2
+from loads.forces.spatial_leg import t1, t2
 from pinstress import load_study, run
-from pinstress.analysis.gather import loads_only
-from pinstress.model.mechanism.spatial_leg import dynamics, instants
-from pinstress.schema.cases import LegCase
+from pinstress.analysis.gather.gather import loads_only
+from pinstress.study.model.mechanism.spatial_leg import dynamics, instants
+from pinstress.study.schema.cases import LegCase
 from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio

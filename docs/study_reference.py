@@ -150,7 +150,7 @@ def _written(section: Section, anchors: dict[str, str]) -> str:
 
 
 def _append(_: Sphinx, page: str, source: list[str]) -> None:
-    from pinstress.schema.tables import StudyTable
+    from pinstress.study.schema.tables import StudyTable
 
     if page == PAGE:
         source[0] += "\n" + reference(StudyTable.model_json_schema())

@@ -4,7 +4,6 @@ Lengths in m. This room imports nothing else of ours. `geometry.mesh.solid_mesh`
 scikit-fem and gmsh and is therefore not imported here.
 """
 
-from geometry.coded import ArgumentError, Coded
 from geometry.mesh.cut_pin import CutPin
 from geometry.shape.corners import Vertex, vertices
 from geometry.shape.drill import Bottom
@@ -16,6 +15,7 @@ from geometry.shape.pin import Band, GeometryError, Pin
 from geometry.shape.pin_like import PinLike
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
 from geometry.shape.segment import Segment
+from pinbase.errors import ArgumentError, Coded
 
 __all__ = [
     "Arc",

@@ -3,9 +3,24 @@
 Everything here is in SI units. This room imports nothing else of ours.
 """
 
-from loads.closed_form.lever import Lever
-from loads.coded import LoadsArgumentError, LoadsError
-from loads.drives import (
+from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
+from loads.forces.curve import ForceTable
+from loads.forces.inverse_dynamics import Dynamics, motion_reactions
+from loads.forces.measures import Clock, Distance, Measure, Position
+from loads.forces.over_time import (
+    Effort,
+    Extreme,
+    OverTime,
+    PeakForces,
+    over_time,
+    peak_forces,
+    require_possible,
+)
+from loads.forces.power_balance import Energy, Ledger, energy, ledger
+from loads.forces.reactions import Reactions, given_reactions, read_reactions
+from loads.forces.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
+from loads.landing.impulse import impulse_force
+from loads.linkage.drives import (
     ConstantDrive,
     CosineDrive,
     CycloidalDrive,
@@ -13,14 +28,9 @@ from loads.drives import (
     StateDrive,
     TableDrive,
 )
-from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
-from loads.forces.curve import ForceTable
-from loads.forces.measures import Clock, Distance, Measure, Position
-from loads.friction import JammingError
-from loads.gears import gear_pair, rack_and_pinion
-from loads.impulse import impulse_force
-from loads.inverse_dynamics import Dynamics, motion_reactions
-from loads.linkage import (
+from loads.linkage.friction import JammingError
+from loads.linkage.gears import gear_pair, rack_and_pinion
+from loads.linkage.linkage import (
     GROUND,
     Body,
     Connection,
@@ -35,33 +45,25 @@ from loads.linkage import (
     Teeth,
     Turn,
 )
-from loads.mobility.mobility import Mobility, mobility
-from loads.mobility.singular_positions import Impasse
-from loads.motion import Course, Motion, at_rest, move
-from loads.over_time import (
-    Effort,
-    Extreme,
-    OverTime,
-    PeakForces,
-    over_time,
-    peak_forces,
-    require_possible,
-)
-from loads.power_balance import Energy, Ledger, energy, ledger
-from loads.reactions import Reactions, given_reactions, read_reactions
-from loads.refine import Resolved, resolved
-from loads.spatial_leg import Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
+from loads.motion.lever import Lever
+from loads.motion.mobility import Mobility, mobility
+from loads.motion.motion import Course, Motion, at_rest, move
+from loads.motion.refine import Resolved, resolved
+from loads.motion.singular_positions import Impasse
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_table import Layout, table_cases
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 from loads.tables.sent_files import noted_files, on_disk, sent_files
+from pinbase.errors import ArgumentError, Coded
 
 __all__ = [
     "GROUND",
     "MB",
     "Applied",
+    "ArgumentError",
     "Body",
     "Clock",
+    "Coded",
     "Connection",
     "ConstantDrive",
     "Contact",
@@ -89,8 +91,6 @@ __all__ = [
     "Linkage",
     "LinkageError",
     "Load",
-    "LoadsArgumentError",
-    "LoadsError",
     "Measure",
     "Mobility",
     "Motion",

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pinstress.analysis.plan import prepare
     from pinstress.analysis.results import Found, run, solve
-    from pinstress.designs.sweep import sweep
-    from pinstress.study.errors import InputError
-    from pinstress.study.file import Study, load_study
-    from pinstress.study.in_python import changed_study, study_from
-    from pinstress.study.shipped import shipped_studies
+    from pinstress.explore.sweep.sweep import sweep
+    from pinstress.study.reading.errors import InputError
+    from pinstress.study.reading.file import Study, load_study
+    from pinstress.study.reading.in_python import changed_study, study_from
+    from pinstress.study.reading.shipped import shipped_studies
 
 __version__ = "0.1.0"
 __all__ = [
@@ -27,16 +27,16 @@ __all__ = [
 
 _HOME = {
     "Found": "pinstress.analysis.results",
-    "InputError": "pinstress.study.errors",
-    "Study": "pinstress.study.file",
-    "changed_study": "pinstress.study.in_python",
-    "load_study": "pinstress.study.file",
+    "InputError": "pinstress.study.reading.errors",
+    "Study": "pinstress.study.reading.file",
+    "changed_study": "pinstress.study.reading.in_python",
+    "load_study": "pinstress.study.reading.file",
     "prepare": "pinstress.analysis.plan",
     "run": "pinstress.analysis.results",
-    "shipped_studies": "pinstress.study.shipped",
+    "shipped_studies": "pinstress.study.reading.shipped",
     "solve": "pinstress.analysis.results",
-    "study_from": "pinstress.study.in_python",
-    "sweep": "pinstress.designs.sweep",
+    "study_from": "pinstress.study.reading.in_python",
+    "sweep": "pinstress.explore.sweep.sweep",
 }
 
 

@@ -11,10 +11,10 @@ NOT_WRITTEN = 2
 
 def main() -> None:
     """Run the command line; never returns."""
-    from pinstress.processes.current_folder import leave_out_current_folder
+    from pinbase.processes.current_folder import leave_out_current_folder
 
     leave_out_current_folder()  # before anything else is imported
-    from pinstress.processes import interrupts
+    from pinbase.processes import interrupts
 
     interrupts.listen()
     lost: Callable[[], str | None] = str  # nothing is, before there are streams

@@ -14,17 +14,17 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from pinstress.processes.threads import hold_threads
+from pinbase.processes.threads import hold_threads
 
 hold_threads()  # as the command does, whose numbers are compared
 
 from fea.core.material import Material
 from geometry import Pin, Segment
 from loads import Linkage
+from pinbase.processes.system import portable
 from pinstress import load_study
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.processes.system import portable
-from pinstress.study.file import Study
+from pinstress.study.model.mechanism.linkage import linkage
+from pinstress.study.reading.file import Study
 from tests.support.programs.process_group import children
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too

@@ -7,7 +7,7 @@ from collections import defaultdict
 
 from tests.conftest import ROOT
 
-PACKAGES = ("pinstress", "loads", "geometry", "fea", "reports")
+PACKAGES = ("pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports")
 
 
 def test_public_classes_have_their_own_names() -> None:

@@ -14,7 +14,7 @@ from pinstress.cli.commands import commands
 from tests.conftest import ROOT
 
 # Folders of code whose docstrings, comments and messages are checked.
-CODE = ("reports", "pinstress", "fea", "geometry", "loads", "examples")
+CODE = ("reports", "pinstress", "assess", "fea", "geometry", "loads", "pinbase", "examples")
 # Text that people read: pages, templates with scripts, comments of studies.
 TEMPLATES = ("reports/templates/*", "reports/templates/designs/*")
 PAGES = ("*.md", "docs/*.md", *TEMPLATES, "studies/**/*.toml")

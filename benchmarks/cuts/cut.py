@@ -9,17 +9,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from assess.opinion.calculix import installed
 from benchmarks.cuts.cut_calculix import Other, in_calculix_locally
 from benchmarks.cuts.cut_cost import FURTHER, SHAFT, D, cut_cost, four_point
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
-from fea.checks.calculix import installed
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
 from fea.cut.evaluate import CutAnswer, cut_result, cut_solution
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
-from fea.solve_pin import Asked, Model, Solution, singularities_of, solve_pin
+from fea.solve.solve_pin import Asked, Model, Solution, singularities_of, solve_pin
 from geometry import CutPin, Hole
 
 HOLE = 0.004

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from assess.opinion import calculix
+from assess.opinion.calculix_deck import write_deck
 from benchmarks.random_pins import STEEL
-from fea.checks import calculix
-from fea.checks.calculix_deck import write_deck
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.cut.local_fields import ELSEWHERE, RATIO
@@ -22,9 +22,9 @@ from fea.solid.evaluate import solid_solution
 from fea.solid.model import SolidModel, acting
 from fea.solid.nodal_loads import closed, nodal_loads
 from geometry import CutPin
-from geometry.arrays import Floats, Ints
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 from geometry.mesh.solid_mesh import MeshSize
+from pinbase.arrays import Floats, Ints
 
 
 @dataclass(frozen=True)

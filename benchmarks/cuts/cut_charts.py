@@ -12,8 +12,8 @@ from fea.cut.local_model import LocalModel, Read
 from fea.cut.region import pieces
 from fea.solid.superposition import squares
 from geometry import CutPin, Hole, Pin, Segment
-from geometry.arrays import Floats
 from geometry.mesh.cut_piece import piece_mesh
+from pinbase.arrays import Floats
 
 D = 0.02
 RATIOS = (0.05, 0.1, 0.15, 0.2, 0.3)

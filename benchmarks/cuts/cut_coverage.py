@@ -27,7 +27,7 @@ from fea.cut.evaluate import cut_result, cut_solution
 from fea.cut.local_fields import LocalFineness
 from fea.cut.region import BEYOND, loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
-from fea.solve_pin import Asked, singularities_of, solve_pin
+from fea.solve.solve_pin import Asked, singularities_of, solve_pin
 
 COUNT, KINDS, SEED = 30, 6, 7
 TOLERANCE = 0.02
@@ -123,7 +123,7 @@ def _told(found: list[Inside | None]) -> str:
 def _code() -> str:
     """A name for the present state of what is measured: what another one found does not count."""
     own = (Path(__file__), Path(__file__).with_name("random_cuts.py"))
-    every = sorted(p for part in ("fea", "geometry") for p in (ROOT / part).rglob("*.py"))
+    every = sorted(p for part in ("assess", "fea", "geometry") for p in (ROOT / part).rglob("*.py"))
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in (*own, *every)))
     return digest.hexdigest()[:12]
 

@@ -9,9 +9,9 @@ from fea.core.material import Material
 from pinstress import load_study
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import solve
-from pinstress.model.pins import material
-from pinstress.model.tasks import Task
-from pinstress.study.file import Study
+from pinstress.study.model.pins import material
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
 from reports.data.results import PinResult, Results
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import error_words

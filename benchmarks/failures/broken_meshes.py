@@ -11,8 +11,8 @@ from benchmarks.failures.asked import STUDIES
 from fea.core.pin_loads import Floats
 from fea.solid.assembly import Discretisation
 from geometry import Pin, Segment
-from geometry.arrays import Ints
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from pinbase.arrays import Ints
 
 MM = 1e-3
 SHAFT = Pin("P", (Segment(40 * MM, 20 * MM, connection="shaft"), Segment(20 * MM, 20 * MM)))

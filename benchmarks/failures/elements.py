@@ -21,7 +21,7 @@ from geometry.imported.named_bands import with_places
 from geometry.mesh.quality import distortion, folded
 from geometry.mesh.solid_mesh import MeshError, SolidMesh
 from geometry.mesh.tet10 import Quadratic, quadratic
-from pinstress.model.pins import material, pin
+from pinstress.study.model.pins import material, pin
 from reports.format.numbers import engineering
 
 FORCE = 1e4  # N

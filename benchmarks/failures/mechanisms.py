@@ -14,9 +14,9 @@ from benchmarks.failures.draw import GREY, INK, decades, line_style, note
 from benchmarks.failures.entry import Entry
 from fea.core.pin_loads import Floats
 from loads import Applied, JammingError, StateDrive, at_rest, motion_reactions, move
-from pinstress.model.cases import case_loads
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.study.errors import InputError
+from pinstress.study.model.cases import case_loads
+from pinstress.study.model.mechanism.linkage import linkage
+from pinstress.study.reading.errors import InputError
 from reports.format.numbers import engineering, ten_to
 
 COUPLE = 100.0  # N m on the rocker

@@ -14,13 +14,13 @@ from benchmarks.timing import table
 from fea.core.pin_loads import Floats
 from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicAnswer
-from fea.joint.pressure_loads import resultants
-from fea.joint.solve_joint import Cells, JointContact, JointModel
-from fea.joint.variations import compare
-from fea.section.answer import SectionAnswer
 from fea.section.place import FLEXIBILITIES
-from fea.solve_pin import Asked, solve_pin
-from fea.verdict import NOISE
+from fea.section.section_stress import SectionAnswer
+from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.verdict import NOISE
+from fea.support.contact.pressure_loads import resultants
+from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.variations import compare
 
 COUNT, SEED = 24, 3
 REFERENCE = Cells(16, 72, 16, 16.0)

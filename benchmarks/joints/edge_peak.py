@@ -15,9 +15,9 @@ from benchmarks.joints.rounded_edge import ShrinkFit, edge_stress
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.edge_peak import contact_edges
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.edge_peak import contact_edges
+from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 ALUMINIUM = Material("aluminium", 70e9, 0.33)

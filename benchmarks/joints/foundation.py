@@ -19,20 +19,20 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.joint.bending import shear_force
-from fea.joint.foundation.bounds import Bounded, bounded
-from fea.joint.foundation.foundation_model import (
+from fea.section.section_stress import SectionAnswer
+from fea.solve.solve_pin import singularities_of
+from fea.support.contact.bending import shear_force
+from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.variations import AtPlaces
+from fea.support.foundation.bounds import Bounded, bounded
+from fea.support.foundation.foundation_model import (
     FoundationModel,
     Stiffness,
     foundation_stiffness,
     moment_error,
 )
-from fea.joint.foundation.stress import FoundationStress
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_joint import Cells, JointContact, JointModel
-from fea.joint.variations import AtPlaces
-from fea.section.answer import SectionAnswer
-from fea.solve_pin import singularities_of
+from fea.support.foundation.stress import FoundationStress
+from fea.support.lugs.lug import Lug
 from geometry import Band, Pin, Segment
 
 PINS, SEED = 40, 3  # 1, 2 and 5 served to find the constants

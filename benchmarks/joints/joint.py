@@ -20,9 +20,9 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import Circumference
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_joint import Cells, JointContact, JointModel
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
+from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 S = TypeVar("S")

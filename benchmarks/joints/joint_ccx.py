@@ -11,18 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from assess.opinion.calculix import COMMAND, TO_GET, CalculixError, installed
+from assess.opinion.calculix_joint import JointOpinion, edges, joint_opinion
+from assess.opinion.calculix_joint_mesh import STIFFNESS, Fineness
 from benchmarks.timing import table
-from fea.checks.calculix import COMMAND, TO_GET, CalculixError, installed
-from fea.checks.calculix_joint import JointOpinion, edges, joint_opinion
-from fea.checks.calculix_joint_mesh import STIFFNESS, Fineness
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import Circumference
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import ROUGH_CELLS
-from fea.joint.solve_joint import Cells, JointModel
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
+from fea.support.contact.solve_in_lugs import ROUGH_CELLS
+from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 210e9, 0.3)

@@ -9,32 +9,32 @@ from typing import Any
 
 import numpy as np
 
+from assess.derivatives.in_lugs import Joint, JointParameter, joint_derivatives
+from assess.derivatives.records import SolvedCase
+from assess.derivatives.virtual_work import Interior
 from benchmarks.joints.random_joints import JointTrial, joint_trials
 from benchmarks.pins.derivatives import moved_maximum, richardson, timed
 from benchmarks.pins.derivatives import price as of_free_pins
 from benchmarks.timing import table
-from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
-from fea.derivatives.in_lugs import Joint, JointParameter, joint_derivatives
-from fea.derivatives.records import SolvedCase
-from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import Section
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
 from fea.harmonic.model import HarmonicBody
-from fea.joint.contact import Pressed, rotation
-from fea.joint.flexibility import RingBody, lug_rings
-from fea.joint.lugs.lug import Bushing, Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.joint.solve_joint import Cells, JointModel
-from fea.refine import singularities_of
-from fea.section.answer import SectionAnswer
+from fea.section.section_stress import SectionAnswer
+from fea.solve.refine import singularities_of
+from fea.solve.requirement import Asked
+from fea.support.contact.contact import Pressed, rotation
+from fea.support.contact.flexibility import RingBody, lug_rings
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.lugs.lug import Bushing, Lug
 from geometry import Pin
-from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import MeridianMesh
 from geometry.shape.dimensions import Dimension, dimensions
+from pinbase.arrays import Floats
 
 JOINTS = 4
 CHECKED = 2  # parameters of each, those that matter most, that are compared with differences

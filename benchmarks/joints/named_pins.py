@@ -14,9 +14,9 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
+from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 BORE = 0.55 * D

@@ -14,9 +14,9 @@ from benchmarks.joints.random_pins import Checked, check, pin_trials
 from benchmarks.timing import table
 from fea.core.peak import Peak
 from fea.core.pin_loads import PinLoads
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
-from fea.solve_pin import Asked
+from fea.solve.solve_pin import Asked
+from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 PSI = 6894.757

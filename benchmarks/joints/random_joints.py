@@ -9,7 +9,7 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.lugs.lug import Lug
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 FORCE = 1e4

@@ -14,9 +14,9 @@ from fea.core.over_time import Between
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import PressedCell
 from fea.harmonic.fields import MeridianFields
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.solve_pin import Asked
+from fea.solve.solve_pin import Asked
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 2.1e11, 0.3, 7850.0, 1e9)

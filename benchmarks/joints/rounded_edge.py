@@ -14,7 +14,7 @@ from skfem import Basis, BilinearForm, ElementQuad1, ElementVector, MeshQuad
 from skfem.helpers import ddot, sym_grad, trace
 
 from fea.core.material import Material
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 GROWTH = 1.1  # of each element over the one before, away from where contact ends
 FINE = 0.1  # of the edge's radius on both sides of where rounding begins: elements of one length

@@ -10,8 +10,8 @@ import numpy as np
 from benchmarks.joints.random_pins import STEEL, PinTrial
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs
+from fea.support.contact.solve_in_lugs import InLugs
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 

@@ -1,7 +1,7 @@
 """Contact in three dimensions, by CalculiX, of pins that are more than cylinders: a groove with
 flanks of 45 degrees and rounded corners in each gap of a clevis, a bore, interference.
 
-The mesh is that of fea.checks.calculix_joint for a plain pin with layers where the groove has
+The mesh is that of assess.opinion.calculix_joint for a plain pin with layers where the groove has
 nodes; nodes are moved inwards with an outline that is written here, and towards the surface.
 """
 
@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.checks.calculix_joint import JointOpinion, deck_opinion, joint_deck
-from fea.checks.calculix_joint_mesh import Fineness
+from assess.opinion.calculix_joint import JointOpinion, deck_opinion, joint_deck
+from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.lugs.lug import Lug
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 LAYERS = 3  # pairs of layers of elements along each rounded corner
 FLAT = 2  # such pairs along half of the floor
@@ -90,7 +90,7 @@ def turned_opinion(
     """pin: as if it had no grooves. grooves: with the z, m, of their starts. denser: at the
     surface; negative: at the bore.
 
-    Raises: as fea.checks.calculix_joint.joint_opinion.
+    Raises: as assess.opinion.calculix_joint.joint_opinion.
     """
     cuts = [z for z0, groove in grooves for z in z0 + groove.stations()]
     plain = _cut(pin, np.array(cuts))

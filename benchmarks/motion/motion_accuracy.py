@@ -11,11 +11,11 @@ from scipy.integrate import solve_ivp
 from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_forces
-from loads.loop_equations import Loops
-from loads.reactions import Reactions
+from loads.forces.reactions import Reactions
+from loads.motion.loop_equations import Loops
 from pinstress import load_study
-from pinstress.model.mechanism.drives import laws, span
-from pinstress.model.mechanism.linkage import linkage
+from pinstress.study.model.mechanism.drives import laws, span
+from pinstress.study.model.mechanism.linkage import linkage
 
 Floats = NDArray[np.float64]
 

@@ -21,11 +21,11 @@ from loads import (
     motion_reactions,
     move,
 )
-from loads.arrays import Floats
-from loads.linkage import Point
+from loads.linkage.linkage import Point
+from pinbase.arrays import Floats
 from pinstress import load_study
-from pinstress.model.mechanism.drives import laws, span
-from pinstress.model.mechanism.linkage import linkage
+from pinstress.study.model.mechanism.drives import laws, span
+from pinstress.study.model.mechanism.linkage import linkage
 
 STUDY = ROOT / "studies" / "grenier2008.toml"
 INCH, POUND = 0.0254, 0.45359237

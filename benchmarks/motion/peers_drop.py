@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from benchmarks.timing import table
-from loads.arrays import Floats
 from loads.landing import Drop, GasSpring, Oil, PowerTyre, Strut, land
+from pinbase.arrays import Floats
 
 MISSING = (
     "exudyn is not installed: .venv/bin/pip install --require-hashes -r requirements-bench.lock"

@@ -12,8 +12,8 @@ import numpy as np
 
 from benchmarks.motion.peers import Case, Code, Found
 from loads import GROUND, Body, Slider, Turn
-from loads.arrays import Floats
-from loads.linkage import Point
+from loads.linkage.linkage import Point
+from pinbase.arrays import Floats
 
 STEPS = (40, 80, 160)
 SPRING = 1e9  # N/m at the first of these, four times that with every halving of the step

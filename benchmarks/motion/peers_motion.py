@@ -17,7 +17,7 @@ from benchmarks.motion.peers import Case, Code, Found, four_bar, landing_gear, o
 from benchmarks.motion.scissor import HIGH, LOW, SPAN, lift
 from benchmarks.timing import seconds, table
 from loads import CycloidalDrive, mobility
-from loads.arrays import Floats
+from pinbase.arrays import Floats
 
 MISSING = (
     "exudyn and mujoco are not installed: "

@@ -14,8 +14,8 @@ from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.refine import STEP
-from fea.solve_pin import Asked, Solution, singularities_of, solve_pin
+from fea.solve.refine import STEP
+from fea.solve.solve_pin import Asked, Solution, singularities_of, solve_pin
 
 Row = dict[str, Any]
 

@@ -9,23 +9,23 @@ from typing import TypeVar
 
 import numpy as np
 
+from assess.derivatives.derivatives import derivatives
+from assess.derivatives.records import Derivatives, SolvedCase
+from assess.derivatives.virtual_work import Interior
 from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
-from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.derivatives.derivatives import derivatives
-from fea.derivatives.records import Derivatives, SolvedCase
-from fea.derivatives.virtual_work import Interior
 from fea.harmonic.assembly import Section
 from fea.harmonic.evaluate import HarmonicAnswer, _ends, _rims
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
-from fea.solve_pin import singularities_of, solve_pin
+from fea.solve.requirement import Asked
+from fea.solve.solve_pin import singularities_of, solve_pin
 from geometry import Pin
-from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.shape.dimensions import Dimension, dimensions
+from pinbase.arrays import Floats
 
 T = TypeVar("T")
 PINS = 10

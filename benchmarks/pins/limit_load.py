@@ -10,23 +10,23 @@ from pathlib import Path
 
 import numpy as np
 
+from assess.opinion.calculix import installed
+from assess.opinion.calculix_plastic import factor_reached
+from assess.plastic.body import Elements, FlowingBody, untied
+from assess.plastic.flow import FlowRule
+from assess.plastic.limit_load import OnMesh, limit_on_mesh
+from assess.plastic.mechanism import Finer
+from assess.plastic.pin_body import PinBody, acting_at, finer, pin_body
 from benchmarks.timing import table
-from fea.checks.calculix import installed
-from fea.checks.calculix_plastic import factor_reached
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.plastic.body import Elements, FlowingBody, untied
-from fea.plastic.flow import FlowRule
-from fea.plastic.limit_load import OnMesh, limit_on_mesh
-from fea.plastic.mechanism import Finer
-from fea.plastic.pin_body import PinBody, acting_at, finer, pin_body
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import clamped_nodes, surface
 from fea.solid.nodal_loads import nodal_loads
 from geometry import Pin, Segment
+from geometry.imported.meshing import solid_mesh
 from geometry.mesh.hexahedra import HexSize
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.meshing import solid_mesh
 
 YIELD, D = 250e6, 0.02
 RULE = FlowRule(Material("steel", 200e9, 0.3, None, YIELD))

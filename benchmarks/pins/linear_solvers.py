@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from benchmarks.timing import power, table
 from fea.core.linear_solver import Solve
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 from reports.format.numbers import engineering
 
 Ints = NDArray[np.int64]

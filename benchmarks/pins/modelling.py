@@ -15,14 +15,14 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.superposition import Circumference
-from fea.refine import STEP
-from fea.solve_pin import Asked, singularities_of, solve_pin
+from fea.solve.refine import STEP
+from fea.solve.solve_pin import Asked, singularities_of, solve_pin
 from geometry import Pin
 from pinstress import load_study
 from pinstress.analysis.plan import prepare
-from pinstress.model.cases import CaseLoads
-from pinstress.model.pins import material
-from pinstress.model.tasks import Task
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.pins import material
+from pinstress.study.model.tasks import Task
 
 STUDY = ROOT / "studies" / "landing_gear.toml"
 CASE = "retract"

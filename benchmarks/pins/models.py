@@ -7,11 +7,11 @@ from functools import partial
 
 from benchmarks import ROOT
 from benchmarks.timing import table
-from fea.single_mesh import Rung
+from fea.solve.single_mesh import Rung
 from pinstress import load_study
-from pinstress.chart.chart import NAMES, ChartPlan, chart, plan_chart
-from pinstress.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
-from pinstress.chart.mesh_sequences import FIRST
+from pinstress.explore.chart.chart import NAMES, ChartPlan, chart, plan_chart
+from pinstress.explore.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
+from pinstress.explore.chart.mesh_sequences import FIRST
 from reports.data.chart import Chart, ChartPoint
 from reports.format.numbers import engineering
 from reports.plots.chart import chart_plot

@@ -9,11 +9,11 @@ import time
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.fatigue.critical_plane import findley_k, worst_plane
+from assess.fatigue.flight import flight
+from assess.fatigue.many_planes import on_planes
+from assess.fatigue.sn_curve import SnCurve
 from benchmarks.timing import table
-from fea.fatigue.critical_plane import findley_k, worst_plane
-from fea.fatigue.flight import flight
-from fea.fatigue.many_planes import on_planes
-from fea.fatigue.sn_curve import SnCurve
 
 Floats = NDArray[np.float64]
 

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from assess.opinion.calculix import JOB, installed, seconds_of, stresses
+from assess.opinion.calculix import run as run_calculix
+from assess.opinion.calculix_deck import mesh_lines
 from benchmarks.pins.shoulders import CHARTS, FINEST, KINDS, D, Run, run, shoulder
 from benchmarks.random_pins import STEEL
 from benchmarks.solids.calculix import MISSING
 from benchmarks.timing import table
 from fea.beam.stress_concentration import shoulder_factor
-from fea.checks.calculix import JOB, installed, seconds_of, stresses
-from fea.checks.calculix import run as run_calculix
-from fea.checks.calculix_deck import mesh_lines
 from fea.core.voigt import von_mises
 from fea.harmonic.assembly import Section
 from geometry import Pin

@@ -14,8 +14,8 @@ import pyarrow as pa
 
 from benchmarks.runs.page import chromium
 from benchmarks.timing import table
-from reports.designs.columns import designs_of
-from reports.designs.page import write_designs_page
+from pinstress.explore.sweep.design_columns import designs_of
+from pinstress.explore.sweep.page import write_designs_page
 from reports.format.template import VENDOR
 from tests.support.results.made_up_designs import made_up_designs
 

@@ -12,17 +12,17 @@ from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.core.peak import Peak
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.refine import STEP
-from fea.solve_pin import singularities_of, solve_pin
+from fea.solve.refine import STEP
+from fea.solve.solve_pin import singularities_of, solve_pin
 from geometry import Pin
+from pinbase.processes.pool import Job, Tell, side_by_side
 from pinstress import load_study
+from pinstress.analysis.cache.serialise import pack
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.stored import question
-from pinstress.cache.serialise import pack
-from pinstress.model.pins import material
-from pinstress.model.tasks import Task
-from pinstress.processes.pool import Job, Tell, side_by_side
-from pinstress.study.file import Study
+from pinstress.study.model.pins import material
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
 
 STUDIES = ROOT / "studies"
 FLOATING = ("C", "E", "F", "G", "J")

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 
 from benchmarks.timing import table
-from pinstress.model.pins import pin as pin_of
-from pinstress.sizing.least_weight import lighten
-from pinstress.sizing.lightest_pin import Aim
-from pinstress.study.file import load_study
-from pinstress.study.shipped import shipped
+from pinstress.explore.size.least_weight import lighten
+from pinstress.explore.size.lightest_pin import Aim
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import load_study
+from pinstress.study.reading.shipped import shipped
 
 FACTORS = {"one_pin": 10.0, "engine": 3.0, "crane": 3.0, "grenier2008": 10.0}
 

@@ -17,12 +17,12 @@ from scipy.integrate import quad
 from scipy.special import ndtr
 from scipy.stats import binom, chi2, norm
 
-from pinstress.reliability.assess import first_order, starts_of, weighted_sample
-from pinstress.reliability.designs import Answers, SolvedDesigns
-from pinstress.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
-from pinstress.reliability.sampling import plain_draws
-from pinstress.reliability.space import Marginal, NormalSpace
-from pinstress.schema.vary import ReliabilityTable
+from pinstress.explore.reliability.assess import first_order, starts_of, weighted_sample
+from pinstress.explore.reliability.designs import Answers, SolvedDesigns
+from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
+from pinstress.explore.reliability.sampling import plain_draws
+from pinstress.explore.reliability.space import Marginal, NormalSpace
+from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import Risk
 
 Array = NDArray[np.float64]

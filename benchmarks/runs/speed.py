@@ -20,8 +20,8 @@ from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from loads import motion_reactions, move
 from pinstress import load_study
-from pinstress.model.mechanism.drives import laws, span
-from pinstress.model.mechanism.linkage import linkage
+from pinstress.study.model.mechanism.drives import laws, span
+from pinstress.study.model.mechanism.linkage import linkage
 
 STUDY = ROOT / "studies" / "grenier2008.toml"
 STEEL = Material("steel", 2.0e11, 0.3)

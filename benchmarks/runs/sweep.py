@@ -18,9 +18,9 @@ import numpy as np
 
 from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
-from pinstress.designs.batches import Batch, Batches, Done, aim_of
-from pinstress.designs.sweep import Kept, Sweep, planned, solved
-from pinstress.designs.workers import BatchQueue, failed_rows, solve_side_by_side
+from pinstress.explore.sweep.batches import Batch, Batches, Done, aim_of
+from pinstress.explore.sweep.sweep import Kept, Sweep, planned, solved
+from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_side_by_side
 
 COUNTS = 250, 500, 1_000  # designs of other shapes
 STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
@@ -254,7 +254,7 @@ def _simulated() -> str:
         f"other, and with batches that differ as the measured ones do, {WORKERS:,} simulated "
         f"processes with {EACH} batches each would have the efficiencies below: batches must have "
         f"{good} of work for {GOOD:.0%}. For so many a batch has {aim:g} s "
-        "(pinstress/designs/batches.py: aim_of):\n\n"
+        "(pinstress/explore/sweep/batches.py: aim_of):\n\n"
         + table(("s of work in a batch", "efficiency"), shown)
     )
 

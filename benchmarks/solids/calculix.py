@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from assess.opinion.calculix import COMMAND, JOB, TO_GET, CalculixSolution, installed, solved
+from assess.opinion.calculix_deck import write_deck
 from benchmarks.processes import Process, process
 from benchmarks.solids.calculix_ours import FILLET, STEEL, Floats, Ints, Loaded, Ours
 from benchmarks.solids.section_beside import beside
 from benchmarks.solids.solid_peers import FINER, bare_mesh, cost, ratios, solved_by_us
 from benchmarks.timing import table
-from fea.checks.calculix import COMMAND, JOB, TO_GET, CalculixSolution, installed, solved
-from fea.checks.calculix_deck import write_deck
 from fea.core.voigt import von_mises
 
 MISSING = f"CalculiX is not installed (no {COMMAND}); {TO_GET}"

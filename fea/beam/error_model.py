@@ -34,7 +34,7 @@ from fea.beam.timoshenko import InternalForces, Span
 from fea.core.pin_loads import PinLoads
 from fea.core.tractions import pressure_amplitude
 from geometry import Band, Pin
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 PLAIN = 0.05
 SHOULDER = 0.12

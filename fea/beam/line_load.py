@@ -16,7 +16,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import AnyLoads, UnitLoad, require_solved
 from fea.core.tractions import Traction, closing_tractions, tractions_of
 from geometry import ArgumentError, Pin
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 def loads_sections(load: UnitLoad) -> bool:

@@ -14,7 +14,7 @@ from fea.beam.line_load import shares
 from fea.beam.stress import BeamStress
 from fea.core.pin_loads import AnyLoads
 from fea.core.voigt import VON_MISES
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 ANGLES = 48
 _THETA = 2.0 * np.pi * np.arange(ANGLES) / ANGLES

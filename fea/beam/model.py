@@ -14,13 +14,12 @@ from fea.beam.maximum import harmonics, highest
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
 from fea.core.mesh_result import MeshResult
-from fea.core.peak import ErrorParts, Note, Peak, Refinement
+from fea.core.peak import ErrorParts, Note, Peak, Refinement, accuracy
 from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
 from fea.core.solution import Picture
 from fea.singular.singularities import Singularity, outside
-from fea.verdict import accuracy
 from geometry import Pin
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 class BeamAnswer:

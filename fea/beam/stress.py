@@ -20,7 +20,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.core.strain_energy import StrainEnergy
 from geometry import Pin
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
 PER_CELL = 33  # points in a cell, in addition to where a moment is largest

@@ -30,7 +30,7 @@ from fea.beam.round_section import Circle, weakest
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from geometry import Pin
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 SHEAR, MOMENT, AXIAL, TORQUE = range(4)
 SLICE = 0.01  # by which a cone's diameter or bore changes over a cell, of the wall

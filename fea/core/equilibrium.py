@@ -23,7 +23,7 @@ import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from geometry import CutPin, Pin, PinLike
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 SMALL = 0.01  # of the largest force or torque: less is round-off of numbers that were typed
 MOST = 0.1  # of it: more means that a load or a support is missing

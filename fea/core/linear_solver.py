@@ -12,9 +12,9 @@ import numpy as np
 import scipy.sparse as sp
 
 from geometry import Coded
-from geometry.arrays import Floats, Ints
 from geometry.mesh.gmsh_session import ONE_AT_A_TIME
-from geometry.system import offered
+from pinbase.arrays import Floats, Ints
+from pinbase.platform import offered
 
 Solve = Callable[[Floats], Floats]
 

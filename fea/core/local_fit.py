@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 NEIGHBOURS = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
 MANY = 4  # samples for each point: with more, a tree that is sooner built

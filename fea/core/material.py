@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from geometry import ArgumentError
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from fea.core.linear_solver import SolveError, has_cholmod, has_metis
-from geometry.system import bare
+from pinbase.platform import bare
 
 # Measured, including all unit loads of a pin (docs/benchmarks.md, benchmarks.pins.linear_solvers):
 # 61,000 unknowns 0.37 GB, 115,000 0.79, 128,000 0.96, 415,000 5.05.

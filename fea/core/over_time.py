@@ -16,8 +16,8 @@ import numpy as np
 
 from fea.core.pin_loads import Amounts, PinLoads, off_chord
 from fea.core.solution import Answer
-from geometry.arrays import Floats, Ints
-from geometry.chords import needed
+from geometry.shape.chords import needed
+from pinbase.arrays import Floats, Ints
 
 Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
 

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.core.dimensions import Energy, Length, Point, Stress
 from fea.core.mesh_result import Strength
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Places
+from pinbase.dimensions import Energy, Length, Point, Stress
 
 Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
@@ -210,3 +210,11 @@ def discretisation_error(
     if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
         return formal
     return 3.0 * change / math.expm1(least_order * math.log(ratio))
+
+
+def accuracy(relative: float, tolerance: float, known: bool) -> Note:
+    """The relative error, and whether it is within the tolerance."""
+    if known:
+        return Note(f"estimated error {relative:.1%}", ("within-tolerance",))
+    text = f"estimated error {relative:.1%}, above the tolerance of {tolerance:.1%}"
+    return Note(text, ("above-tolerance",))

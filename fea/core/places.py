@@ -18,7 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from fea.core.dimensions import Force, Length, Moment, Point, Stress
+from pinbase.dimensions import Force, Length, Moment, Point, Stress
 
 Place = Literal["surface", "section"]
 
@@ -42,7 +42,7 @@ class SurfacePlace:
 class SectionPlace:
     """The largest stress of a section, with its error, at z; what acts there, positive but for the
     axial force. plastic_utilisation: which part of what a fully plastic section carries, None
-    without a yield strength (fea.plastic.hinge).
+    without a yield strength (assess.plastic.hinge).
     """
 
     max_von_mises: Stress

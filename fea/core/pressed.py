@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 BINS = 360  # equal arcs about the axis, the first about x
 ANGLES = 2.0 * np.pi * np.arange(BINS) / BINS  # of their middles

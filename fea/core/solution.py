@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from fea.core.pin_loads import AnyLoads, PinLoads
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 
 class Pattern:

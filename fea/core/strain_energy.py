@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.core.pin_loads import AnyLoads, UnitLoad, require_solved
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 @dataclass(frozen=True)

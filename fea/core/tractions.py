@@ -17,7 +17,7 @@ import numpy as np
 
 from fea.core.pin_loads import UnitLoad
 from geometry import Band, PinLike
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 # von Mises squared is s . VON_MISES s
 VON_MISES = np.zeros((6, 6))

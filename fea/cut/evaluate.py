@@ -38,9 +38,9 @@ from fea.singular.singularities import VARIED, Singularity
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry import CutPin
-from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
+from pinbase.arrays import Floats
 
 FINE = 0.25  # element of the first section about a cut, of its radius
 GROWTH = 0.5  # of that with the distance

@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
-from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece
+from pinbase.arrays import Floats
 
 
 def in_pin(moved: Floats, piece: Piece) -> Floats:

@@ -16,7 +16,7 @@ from fea.core.places import BENEATH
 from fea.core.pressed import BINS, PressedArcs, Rings
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.harmonic.beneath import arcs_apart, arcs_within
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 ON = 1e-4  # of a radius: a point of the outline this near to a ring's cylinder is on it
 AT_ONCE = 64  # instants

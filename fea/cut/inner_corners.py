@@ -14,7 +14,7 @@ from fea.singular.singularities import Singularity
 from fea.singular.williams import antiplane_exponent, plane_exponent
 from fea.solid.boundary import SMOOTH
 from fea.solid.sharp_edges import turned_edges
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 TURN = math.radians(15.0)  # of an inner corner: less is the mesh of a curved wall
 ADVICE = {

@@ -24,8 +24,8 @@ from fea.harmonic.fields import MeridianFields
 from fea.singular.singularities import Singularity, outside
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
-from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
+from pinbase.arrays import Floats, Ints, Mask
 
 RATIO = 2.0**0.75  # from one mesh to the next, where stress is high
 ELSEWHERE = 0.4  # power of that elsewhere

@@ -31,9 +31,9 @@ from fea.cut.surface_reading import Face, FaceReading, read_face
 from fea.cut.two_level import FACTORED, TwoLevel
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import QUARTERS, area_vectors, quadrature, slopes_at, surface
-from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import SolidMesh
+from pinbase.arrays import Floats, Ints, Mask
 
 NO_CLASS = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
 LEAST = 1e-5  # of the tractions of a class: what less of them does is not solved

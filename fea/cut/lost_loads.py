@@ -16,8 +16,8 @@ import numpy as np
 
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, area_vectors, quadrature, slopes_at
-from geometry.arrays import Floats, Mask
 from geometry.mesh.cut_piece import Piece
+from pinbase.arrays import Floats, Mask
 
 RADIAL = 0.5  # least cosine between a band's normal and the radius
 ON_BAND = 1e-9  # of a band's length

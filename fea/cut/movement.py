@@ -12,7 +12,7 @@ import numpy as np
 from fea.core.local_fit import continuation
 from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 def rigid(motion: Floats, x: Floats) -> Floats:

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from fea.core.voigt import ENTRIES
-from geometry.arrays import Floats, Mask
+from pinbase.arrays import Floats, Mask
 
 AXES = "xyz"
 

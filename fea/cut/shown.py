@@ -14,7 +14,7 @@ from fea.cut.movement import axis_kept, rigid
 from fea.cut.supports import Support, reached
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.solid.nodal_loads import Unit
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 SECTORS = 72  # of the surface, away from the pieces
 NEAR = 40  # points of another piece to which its displacements are fitted

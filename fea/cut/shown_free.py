@@ -12,7 +12,7 @@ from fea.core.voigt import von_mises
 from fea.cut.free_points import BESIDE, ON, FreePoints
 from fea.cut.shown import ShownCut
 from fea.solid.superposition import squares
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 AT_ONCE = 64  # instants
 

@@ -18,7 +18,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Amounts, AnyLoads, PinLoads, UnitLoad
 from fea.cut.local_fields import LocalFields, coefficients_of
 from fea.solid.nodal_loads import Unit
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 LARGEST = 1e8  # condition of the gaps' equations
 

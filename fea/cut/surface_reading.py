@@ -21,7 +21,7 @@ from scipy.spatial import cKDTree
 from fea.cut.parity import Parities
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 NEIGHBOURS = 36  # nodes that a polynomial is fitted to; it has ten terms
 SAME_SIDE = 0.3  # least cosine between the normals of a node and such a neighbour

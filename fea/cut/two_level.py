@@ -17,7 +17,7 @@ import scipy.sparse as sp
 
 from fea.core.linear_solver import ConstrainedSystem
 from fea.solid.assembly import Discretisation
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 FACTORED = 8_000  # unknowns: as many or fewer are factored in less time
 CONVERGED = 1e-5  # energy of the residual over that of the largest forces, square root

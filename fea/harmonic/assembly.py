@@ -28,8 +28,8 @@ from skfem.refdom import RefTri
 
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
-from geometry.arrays import Floats, Ints
 from geometry.mesh.section_mesh import MeridianMesh, triangle_shapes
+from pinbase.arrays import Floats, Ints
 
 
 class Section:

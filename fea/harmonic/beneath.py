@@ -19,7 +19,7 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.singular.singularities import Singularity, outside
 from geometry import Pin
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 EVERY = 8  # arcs, of which one is looked at for the reach
 ROUND = 9  # points of a quarter circle about the edge of a lug

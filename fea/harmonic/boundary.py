@@ -8,7 +8,7 @@ import numpy as np
 
 from fea.core.tractions import Traction
 from fea.harmonic.assembly import Section, around
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 

@@ -25,10 +25,10 @@ from fea.harmonic.superposition import Circumference, Top
 from fea.singular.probes import rim
 from fea.singular.singularities import VARIED, Singularity, smooth_edges
 from geometry import Pin
-from geometry.arrays import Floats, Mask
 from geometry.mesh.moved.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
+from pinbase.arrays import Floats, Mask
 
 SIZE = SectionSize()  # of the first mesh
 EDGE = 0.04  # element at the edge of any band, of the diameter

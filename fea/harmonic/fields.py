@@ -13,8 +13,8 @@ import scipy.sparse as sp
 from fea.core.pin_loads import UnitLoad
 from fea.core.strain_energy import StrainEnergy
 from fea.singular.singularities import Singularity, outside
-from geometry.arrays import Floats, Ints, Mask
 from geometry.mesh.section_mesh import MeridianMesh
+from pinbase.arrays import Floats, Ints, Mask
 
 
 @dataclass(frozen=True)

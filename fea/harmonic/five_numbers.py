@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.harmonic.fields import MeridianFields
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
 COS, SIN = slice(0, EVEN), slice(EVEN, None)

@@ -23,7 +23,7 @@ from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import EVERY, Circumference
 from fea.harmonic.surface_stress import AT
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 Floats32 = NDArray[np.float32]
 FAR = 0.06  # of the diameter, to where a cusp is fitted

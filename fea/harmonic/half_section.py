@@ -14,7 +14,7 @@ from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.singular.singularities import Singularity, outside
-from geometry.arrays import Floats, Mask
+from pinbase.arrays import Floats, Mask
 
 LEVEL = 1e-9  # of the length: a smaller rise of the outline is round-off
 

@@ -9,7 +9,7 @@ from typing import Any
 from fea.core.pin_loads import UnitLoad
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 Key = tuple[object, ...]
 # Unit loads, points (P, 2) to read stress at, and ends of pressures, as of HarmonicModel.solve.

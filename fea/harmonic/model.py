@@ -22,8 +22,8 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.pressure_edge import unread
 from fea.harmonic.stress_recovery import NOWHERE, reading
 from geometry import Pin
-from geometry.arrays import Floats, Ints
 from geometry.mesh.section_mesh import MeridianMesh
+from pinbase.arrays import Floats, Ints
 
 
 class HarmonicBody:

@@ -16,7 +16,7 @@ from fea.harmonic.superposition import Circumference
 from fea.singular.fit_exponent import growth_exponent, strength
 from fea.singular.singularities import VARIED, Singularity
 from fea.singular.williams import notch_factor
-from geometry.arrays import Floats, Mask
+from pinbase.arrays import Floats, Mask
 
 CLOSE = (1e-2, 1e-3, 1e-4)  # element at a corner or clamp's edge, of its scale, mesh by mesh
 READ = (4.0, 0.01)  # exponents: from so many elements to so much of the scale

@@ -26,7 +26,7 @@ from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
 from fea.harmonic.surface_stress import in_axes
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 DIRECTIONS = 25  # from the surface on one side of the edge to that on the other
 TOUCHED = 1.5  # elements next to the edge whose stress is of no use

@@ -9,7 +9,7 @@ from fea.core.solution import Picture
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.shown_surface import ShownStress, shown_surface
 from fea.harmonic.superposition import Circumference
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 
 def revolve(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) -> Picture:

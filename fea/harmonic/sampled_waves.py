@@ -6,7 +6,7 @@ import numpy as np
 
 from fea.core.pressed import ANGLES
 from fea.harmonic.trigonometric_maximum import crest_of_samples, highest_crest, one_wave
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 SAMPLES_PER_WAVE = 5  # of von Mises squared
 CLOSER = 0.1 * float(ANGLES[1])  # rad, of samples about a crest, where those of arcs are 1e-4 off

@@ -21,7 +21,7 @@ from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import FreeSurface, surface_points
 from fea.harmonic.superposition import Circumference
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 SECTORS = 60
 FINER = 72, 90, 120, 180, 360  # numbers of sectors that begin where arcs do

@@ -15,7 +15,7 @@ from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes
 from fea.harmonic.pressure_edge import DIRECTIONS, Jump, jumps
 from fea.harmonic.surface_stress import AT, skin
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 NOWHERE = np.zeros((0, 2))
 AXIS = 1e-9  # r on it at most, of the largest

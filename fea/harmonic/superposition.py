@@ -30,7 +30,7 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import BACK, COS, EVEN, SIN, numbers
 from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled
 from fea.harmonic.trigonometric_maximum import at_most, closed
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
 

@@ -24,7 +24,7 @@ from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes, slopes
 from fea.solid.boundary import SMOOTH
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 AT = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # where on an edge
 _GAUSS = 1.0 / np.sqrt(3.0)

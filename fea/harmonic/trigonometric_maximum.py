@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 FINER = 4  # times as many angles as samples: D h = 0.3 where there are 5 samples for a degree
 STEPS = 40  # of Newton's method at most, or of bisection where that leaves the interval

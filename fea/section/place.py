@@ -10,7 +10,7 @@ from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
 from fea.core.places import SectionPlace
-from fea.section.answer import AtSection, SectionAnswer
+from fea.section.section_stress import AtSection, SectionAnswer
 
 # Of stress by the forces of a contact, by the meshes of the flexibilities of pin and lugs: elements
 # half as long change it by 0.0002 at most (benchmarks/joints/cells.py).

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 FEWEST = 8  # points in the range
 SPAN = 5.0  # the range must cover this ratio of distances

@@ -12,7 +12,7 @@ from skfem import Element, ElementTetP1, ElementTetP2
 
 from fea.singular.singularities import Singularity
 from geometry import Pin
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 RIM = 32  # points round a singularity in the section
 ROUND = 36  # points about the axis

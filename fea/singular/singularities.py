@@ -12,8 +12,8 @@ import numpy as np
 
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Arc, Pin, Vertex, meridian, vertices
-from geometry.arrays import Floats, Mask
 from geometry.shape.polygon import SMOOTH
+from pinbase.arrays import Floats, Mask
 
 Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 

@@ -16,7 +16,7 @@ from skfem import Basis, ElementTetP1, ElementTetP2, MeshTet1, MeshTet2
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
 from fea.core.voigt import ENTRIES
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 
 class Discretisation:

@@ -10,7 +10,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.solid.assembly import Discretisation
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 _PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
 SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body

@@ -19,11 +19,11 @@ from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
 from geometry import CutPin, Pin, PinLike
-from geometry.arrays import Floats, Mask
+from geometry.imported.meshing import solid_mesh
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.meshing import solid_mesh
 from geometry.shape.pin import FACES
+from pinbase.arrays import Floats, Mask
 
 # Tetrahedra are larger than a small step. What the harmonic model feels at its corner, a tenth of
 # the step away from it, is 1.6 to 2.1 times the stress of the shaft there.
@@ -68,7 +68,7 @@ def solid_solution(
     """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
 
     singularities: of a body of revolution; those of any other are found on its mesh, `distance` (of
-    the diameter) wide. memory: as in fea.solve_pin.Asked. Raises: MeshError, SolveError.
+    the diameter) wide. memory: as in fea.solve.solve_pin.Asked. Raises: MeshError, SolveError.
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))

@@ -24,8 +24,8 @@ from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
 from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import PinLike
-from geometry.arrays import Floats, Ints
 from geometry.mesh.solid_mesh import SolidMesh
+from pinbase.arrays import Floats, Ints
 
 _NOWHERE = np.zeros((0, 3))
 

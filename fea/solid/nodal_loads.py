@@ -13,7 +13,7 @@ from fea.core.tractions import Traction, closing_tractions, traction
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, SurfaceMesh, resultants
 from geometry import Band, GeometryError, PinLike
-from geometry.arrays import Floats, Mask
+from pinbase.arrays import Floats, Mask
 
 Unit = tuple[UnitLoad, int]  # a unit load and its phase
 

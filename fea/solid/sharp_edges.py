@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from fea.singular.singularities import INSTEAD_OF_CLAMP, Kind, Singularity
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
-from geometry.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints, Mask
 
 TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
 SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across

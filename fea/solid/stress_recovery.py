@@ -13,7 +13,7 @@ from fea.core.material import Material
 from fea.core.voigt import ENTRIES, TENSOR
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SMOOTH, SurfaceMesh
-from geometry.arrays import Floats, Mask
+from pinbase.arrays import Floats, Mask
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:

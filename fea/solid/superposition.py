@@ -21,7 +21,7 @@ from fea.core.mesh_result import Point
 from fea.core.pin_loads import AnyLoads
 from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
-from geometry.arrays import Floats, Mask
+from pinbase.arrays import Floats, Mask
 
 FEW = 12  # unit loads up to which their products in pairs are fewer than the stresses
 CHUNK = 16  # instants at once

@@ -12,12 +12,12 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 from skfem import MeshTet2
 
-from geometry.arrays import Ints
 from geometry.imported.body_file import BodyFile
 from geometry.mesh.quality import distortion, folded
 from geometry.mesh.solid_mesh import MeshError, SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
 from geometry.shape.pin import GeometryError
+from pinbase.arrays import Ints
 
 SURFACES = ("triangle", "triangle6")
 FARTHEST = 1000.0  # m; as pins with a profile

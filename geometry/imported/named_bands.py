@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import ElementTetP2, FacetBasis, MeshTet2
 
-from geometry.arrays import Floats, Ints, Mask
 from geometry.imported.body_file import BodyFile, Place
 from geometry.shape.pin import FACES, Band, GeometryError
+from pinbase.arrays import Floats, Ints, Mask
 
 OUTWARD = 0.5  # cosine to the radius above which a facet belongs to an outer surface
 DEPTH = 0.02  # of the local radius: how far below it corners of a band's facets may lie

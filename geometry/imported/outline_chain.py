@@ -9,10 +9,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats
 from geometry.imported.sampled_face import NEAR, SampledFace
 from geometry.shape.polygon import RZ, cross
 from geometry.shape.polyline import Bend
+from pinbase.arrays import Floats
 
 QUARTER = math.pi / 2.0 * (1.0 + 1e-9)
 

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
 from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
 from geometry.imported.outline_chain import MeridianSide, outlines
@@ -25,6 +24,7 @@ from geometry.mesh.gmsh_session import MeshError, gmsh_model
 from geometry.shape.features import Cut
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polyline import Bend, pin_of_polyline
+from pinbase.arrays import Floats
 
 SAME_VOLUME = 1e-5
 MOST_FACES = 400

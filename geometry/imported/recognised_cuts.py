@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from geometry.arrays import Floats
 from geometry.imported.sampled_face import NEAR, Axis, SampledFace
 from geometry.shape.drill import FLAT_TIP, Bottom
 from geometry.shape.features import Cut, outer_radius, radii
@@ -22,6 +21,7 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
+from pinbase.arrays import Floats
 
 Z = np.array([0.0, 0.0, 1.0])
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 NEAR = 1e-6  # of the body's size: two places; and of 1: two directions
 GRID = np.linspace(0.0, 1.0, 7)

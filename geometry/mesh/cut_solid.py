@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
 from geometry.mesh.gmsh_session import MeshError, formula_size
 from geometry.mesh.revolve import revolve
 from geometry.shape.drill import Placed
@@ -18,6 +17,7 @@ from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import FACES, GeometryError, Pin
 from geometry.shape.profile import Edge, kind_of, meridian, off_edge
+from pinbase.arrays import Floats
 
 Cuts = Mapping[str, Cut]  # by their names, "hole 1"
 Entity = tuple[int, int]

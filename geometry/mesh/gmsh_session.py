@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from geometry.coded import Coded
 from geometry.mesh.signals_kept import signals_kept
+from pinbase.errors import Coded
 
 # For gmsh, which has one state for all threads of a process, and for whatever else draws random
 # numbers from the C library, whose rand() has one state too: else meshes differ from run to run.

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from skfem import MeshTet1
 
-from geometry.arrays import Floats
 from geometry.mesh.elements import with_element
 from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.tet10 import find_facets, quadratic
+from pinbase.arrays import Floats
 
 SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
 MOST_REPAIRS = 8  # halvings of an edge's curvature

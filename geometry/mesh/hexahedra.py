@@ -14,8 +14,8 @@ from itertools import pairwise
 import numpy as np
 from skfem import ElementHexS2
 
-from geometry.arrays import Floats, Ints
 from geometry.shape.pin import Pin
+from pinbase.arrays import Floats, Ints
 
 BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
 SQUARE = 0.55  # its size over the radius of the disc

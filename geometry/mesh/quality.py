@@ -10,8 +10,8 @@ from math import factorial, prod
 import numpy as np
 from skfem import MeshTet2
 
-from geometry.arrays import Floats, Ints
 from geometry.mesh.tet10 import Quadratic
+from pinbase.arrays import Floats, Ints
 
 CUBIC = 3  # degree of det J of a quadratic tetrahedron
 DENSE = 12  # points along an edge where Bernstein's coefficients leave it open

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, set_size
 from geometry.mesh.revolve import draw
 from geometry.mesh.scale import unit_of
@@ -26,6 +25,7 @@ from geometry.mesh.sizing import (
 )
 from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ, Arc, Edge, meridian
+from pinbase.arrays import Floats, Ints
 
 if TYPE_CHECKING:
     from skfem import MeshTri2

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from geometry.system import bare
+from pinbase.platform import bare
 
 NAMES = "SIGFPE", "SIGHUP", "SIGINT", "SIGPIPE", "SIGSEGV", "SIGTERM"
 TAKEN = tuple(getattr(signal, name) for name in NAMES if hasattr(signal, name))

@@ -9,7 +9,6 @@ from typing import Any
 
 from skfem import MeshTet1
 
-from geometry.arrays import Floats
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.cut_solid import cut_solid, grade, name_faces
 from geometry.mesh.elements import Element
@@ -19,6 +18,7 @@ from geometry.mesh.revolve import revolve
 from geometry.mesh.scale import unit_of_solid
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge, meridian, sharp_corners
+from pinbase.arrays import Floats
 
 __all__ = ["MeshError", "MeshSize", "SolidMesh", "solid_mesh"]
 

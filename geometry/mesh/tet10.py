@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import ElementTetP2, MeshTet1, MeshTet2
 
-from geometry.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints
 
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of nodes 4 to 9: VTK's and scikit-fem's
 # the four corners, and the octahedron between them along its diagonal from edge 02 to edge 13

@@ -13,12 +13,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats
 from geometry.shape.features import Cut, outer_radius, radii
 from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
+from pinbase.arrays import Floats
 
 ROUND = np.linspace(0.0, 2.0 * np.pi, 73)
 UPRIGHT = 1e-3  # rad: how far off x a cut may be milled from that is seen from aside

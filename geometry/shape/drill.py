@@ -8,10 +8,10 @@ from typing import Self
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.coded import Place
 from geometry.shape.features import Cut, Off, SmoothPart, require
 from geometry.shape.profile import Arc, Edge, kind_of, off_edge
+from pinbase.arrays import Floats
+from pinbase.errors import Place
 
 FLAT_TIP = math.pi
 POINTED = math.pi / 6.0  # rad: the least angle of a tip

@@ -9,9 +9,9 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from geometry.arrays import Floats, Mask
-from geometry.coded import Place
 from geometry.shape.pin import GeometryError, Pin
+from pinbase.arrays import Floats, Mask
+from pinbase.errors import Place
 
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
 SAME_ANGLE = 1e-9

@@ -9,8 +9,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from geometry.arrays import Floats, Mask
-from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
     Bottom,
@@ -24,6 +22,8 @@ from geometry.shape.drill import (
 from geometry.shape.features import Off, SmoothPart, outer_radius, positive, radii, require
 from geometry.shape.pin import Pin
 from geometry.shape.profile import Edge
+from pinbase.arrays import Floats, Mask
+from pinbase.errors import Place
 
 SAME_SIDE = 0.9  # cosine of the angle between holes drilled from the same side
 THIN = 0.02  # of a diameter: walls that nobody makes, and of which meshes have no end

@@ -9,11 +9,11 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from geometry.arrays import Floats, Mask
-from geometry.coded import Place
 from geometry.shape.features import Cut, Off, SmoothPart, positive, radii, require
 from geometry.shape.pin import Pin
 from geometry.shape.tolerance import snapped
+from pinbase.arrays import Floats, Mask
+from pinbase.errors import Place
 
 MOST_ROUNDED = 0.45  # of the width of a slot: the radius of its bottom
 

@@ -9,8 +9,6 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats, Mask
-from geometry.coded import Place
 from geometry.shape.drill import (
     SQUARE,
     Bottom,
@@ -23,6 +21,8 @@ from geometry.shape.drill import (
 from geometry.shape.features import SmoothPart, positive, radii, require
 from geometry.shape.pin import FACES, Pin
 from geometry.shape.profile import Edge
+from pinbase.arrays import Floats, Mask
+from pinbase.errors import Place
 
 Mouth = Literal["start", "end", "both"]
 

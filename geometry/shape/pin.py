@@ -11,12 +11,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.coded import Coded
 from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
 from geometry.shape.profile import meridian, volume_within
 from geometry.shape.segment import Segment
 from geometry.shape.tolerance import ROUND_OFF, SAME, merged, snapped
+from pinbase.arrays import Floats
+from pinbase.errors import Coded
 
 FACES = ("start", "end")
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
 from geometry.shape.polygon import RZ, SMOOTH, Profile, corners, cross
+from pinbase.arrays import Floats
 
 __all__ = [
     "RZ",

@@ -9,12 +9,12 @@ from typing import Protocol
 
 import numpy as np
 
-from loads.arrays import Complex, Floats
 from loads.forces.curve import ForceTable
 from loads.forces.measures import Distance, Measure, Position
-from loads.linkage import LinkageError, Point, Slider, Turn
-from loads.loop_equations import cross, number
-from loads.motion import Motion
+from loads.linkage.linkage import LinkageError, Point, Slider, Turn
+from loads.motion.loop_equations import cross, number
+from loads.motion.motion import Motion
+from pinbase.arrays import Complex, Floats
 
 SAME = 1e-12  # relative: an instant this close to a switch is at it
 COINCIDE = 1e-12  # of the length scale: points this close have no line between them

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from loads.arrays import Floats
 from loads.forces.acting import Kinks, Load
-from loads.motion import Course
-from loads.refine import Resolved, resolved
+from loads.motion.motion import Course
+from loads.motion.refine import Resolved, resolved
+from pinbase.arrays import Floats
 
 STEPS = 60  # of bisection: to the last digit
 

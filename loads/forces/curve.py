@@ -12,8 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.linkage import LinkageError
+from loads.linkage.linkage import LinkageError
+from pinbase.arrays import Floats
 
 Interpolation = Literal["linear", "monotone"]
 Outside = Literal["error", "hold", "repeat"]

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.least_squares import Factors, elimination
-from loads.linkage import Linkage, LinkageError, Parallel, Slider, Turn
-from loads.mobility.as_drawn import RANK_TOLERANCE
-from loads.mobility.mobility import moving_bodies
-from loads.motion import Motion
+from loads.linkage.linkage import Linkage, LinkageError, Parallel, Slider, Turn
+from loads.motion.as_drawn import RANK_TOLERANCE
+from loads.motion.least_squares import Factors, elimination
+from loads.motion.mobility import moving_bodies
+from loads.motion.motion import Motion
+from pinbase.arrays import Floats
 
 OPENS = 1e-9  # of the largest force: a stop that carries this little of the wrong sign is free
 

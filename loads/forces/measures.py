@@ -7,10 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.linkage import Point, Slider, Turn
-from loads.loop_equations import number
-from loads.motion import Motion
+from loads.linkage.linkage import Point, Slider, Turn
+from loads.motion.loop_equations import number
+from loads.motion.motion import Motion
+from pinbase.arrays import Floats
 
 
 class Measure(Protocol):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loads.arrays import Complex, Floats
-from loads.linkage import Linkage, LinkageError
+from loads.linkage.linkage import Linkage, LinkageError
+from pinbase.arrays import Complex, Floats
 
 
 def shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:

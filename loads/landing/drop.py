@@ -16,12 +16,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.coded import LoadsError
 from loads.landing.strut import Strut
 from loads.landing.travel import TELESCOPIC, Levered, Telescopic
 from loads.landing.tyre import Tyre, damped
 from loads.landing.wheel import Wheel
+from pinbase.arrays import Floats
+from pinbase.errors import Coded
 
 RTOL = 1e-11
 ATOL = 1e-13  # of the scale of each variable
@@ -32,7 +32,7 @@ Method = Literal["DOP853", "Radau"]
 ROWS = Z, V, U, W, BEND, BENDS, SPIN, OIL, RUB, TYRE, SLIP, RUNWAY, STOP = range(13)
 
 
-class LandingError(LoadsError, ValueError):
+class LandingError(Coded, ValueError):
     """A drop that the leg does not survive, or that cannot be computed."""
 
 

@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.arrays import Floats
 from loads.landing.drop import (
     BEND,
     BENDS,
@@ -30,7 +29,8 @@ from loads.landing.drop import (
     fall,
     forces,
 )
-from loads.refine import resolved
+from loads.motion.refine import resolved
+from pinbase.arrays import Floats
 
 PEAKS = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "spring_back")
 

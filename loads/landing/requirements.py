@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from loads.coded import LoadsArgumentError
+from pinbase.errors import ArgumentError
 
 FOOT = 0.3048
 PSF = 4.4482216152605 / FOOT**2  # lbf/ft^2 in Pa
@@ -102,12 +102,12 @@ def descent_velocity(wing_loading: float) -> float:
 
 
 def required_velocity(rule: str, wing_loading: float | None) -> float:
-    """Of a rule in DROPS, m/s. Raises: LoadsArgumentError without the wing loading it needs."""
+    """Of a rule in DROPS, m/s. Raises: ArgumentError without the wing loading it needs."""
     fixed = DROPS[rule].velocity
     if fixed is not None:
         return fixed
     if wing_loading is None:
-        raise LoadsArgumentError(
+        raise ArgumentError(
             f"{DROPS[rule].clause}: give wing_loading or velocity", "no-wing-loading"
         )
     return descent_velocity(wing_loading)

@@ -11,8 +11,8 @@ from typing import Protocol
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.coded import LoadsArgumentError
+from pinbase.arrays import Floats
+from pinbase.errors import ArgumentError
 
 ALMOST_NO_GAS = 0.98  # of the volume: the most that a full stroke may displace
 
@@ -87,7 +87,7 @@ class Oil:
 
     def __post_init__(self) -> None:
         if max(self.orifice, self.rebound or 0.0) >= self.area:
-            raise LoadsArgumentError(
+            raise ArgumentError(
                 f"an orifice of {max(self.orifice, self.rebound or 0.0):g} m^2 is not smaller than "
                 f"the hydraulic area of {self.area:g} m^2",
                 "orifice-too-large",
@@ -118,7 +118,7 @@ class Strut:
     def __post_init__(self) -> None:
         gas = self.spring
         if isinstance(gas, GasSpring) and gas.area * self.stroke > ALMOST_NO_GAS * gas.volume:
-            raise LoadsArgumentError(
+            raise ArgumentError(
                 f"a stroke of {self.stroke:g} m displaces {gas.area * self.stroke:.4g} m^3 of gas, "
                 f"but the extended strut has {gas.volume:.4g} m^3, of which at most "
                 f"{ALMOST_NO_GAS:.0%} can be displaced: shorten the stroke to at most "

@@ -11,16 +11,16 @@ from functools import partial
 
 import numpy as np
 
-from loads.arrays import Complex, Floats
-from loads.coded import LoadsArgumentError
-from loads.drives import ConstantDrive, Law, StateDrive, Values
 from loads.forces.acting import Applied
+from loads.forces.power_balance import energy
 from loads.landing.landing import Landing
 from loads.landing.travel import Levered
-from loads.linkage import Linkage, Point
-from loads.loop_equations import number
-from loads.motion import Course, Motion
-from loads.power_balance import energy
+from loads.linkage.drives import ConstantDrive, Law, StateDrive, Values
+from loads.linkage.linkage import Linkage, Point
+from loads.motion.loop_equations import number
+from loads.motion.motion import Course, Motion
+from pinbase.arrays import Complex, Floats
+from pinbase.errors import ArgumentError
 
 POINTS = 65  # strokes at which the rise of the axle is computed
 UNIT = 1.0  # s, of a drive through these strokes
@@ -42,12 +42,12 @@ class Touchdown:
 
 
 def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
-    """Up, against gravity, and aft; forward: "left" or "right" of up. Raises: LoadsArgumentError
+    """Up, against gravity, and aft; forward: "left" or "right" of up. Raises: ArgumentError
     without gravity.
     """
     size = float(np.hypot(*linkage.gravity))
     if size == 0.0:
-        raise LoadsArgumentError(
+        raise ArgumentError(
             "a drop needs gravity, which says where up is: give mechanism.gravity", "no-gravity"
         )
     up = (-linkage.gravity[0] / size, -linkage.gravity[1] / size)
@@ -56,7 +56,7 @@ def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
 
 
 def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
-    """The strokes of a strut by the rise of its axle. Raises: LinkageError, LoadsArgumentError."""
+    """The strokes of a strut by the rise of its axle. Raises: LinkageError, ArgumentError."""
     strokes, motion = _closing(linkage, place, stroke)
     at, _, _ = motion.joint(place.joint)
     rises = (at - at[0]) @ np.array(place.up)

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.coded import LoadsArgumentError
+from pinbase.arrays import Floats
+from pinbase.errors import ArgumentError
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Levered:
     """Any leg: rises (N,) m at strokes (N,) m, both from zero on, joined by the spline of degree
     five. The force at the wheel is that of the strut times the derivative (virtual work).
 
-    Raises: LoadsArgumentError where the axle does not rise.
+    Raises: ArgumentError where the axle does not rise.
     """
 
     rises: tuple[float, ...]
@@ -41,7 +41,7 @@ class Levered:
 
     def __post_init__(self) -> None:
         if np.any(np.diff(self.rises) <= 0.0):
-            raise LoadsArgumentError(
+            raise ArgumentError(
                 "the axle does not rise all along the stroke of the strut: check which way the "
                 "strut's drive shortens, its extended position and the direction of gravity",
                 "axle-does-not-rise",

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from loads.arrays import Floats
-from loads.coded import LoadsArgumentError
+from pinbase.arrays import Floats
+from pinbase.errors import ArgumentError
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class TableTyre:
     """A table from (0, 0) on, rising, with a monotone piecewise cubic between its rows (Fritsch &
     Carlson, 1980). deflections (N,) m, forces (N,) N. damping: as a PowerTyre's.
 
-    Raises: LoadsArgumentError.
+    Raises: ArgumentError.
     """
 
     deflections: tuple[float, ...]
@@ -48,13 +48,13 @@ class TableTyre:
     def __post_init__(self) -> None:
         table = np.array([self.deflections, self.forces])
         if table.shape[1] < 3 or table[:, 0].any():
-            raise LoadsArgumentError(
+            raise ArgumentError(
                 "a tyre's table needs at least three rows, the first of them 0, 0", "tyre-table"
             )
         for name, values in zip(("deflection", "force"), table, strict=True):
             if (wrong := np.flatnonzero(np.diff(values) <= 0.0)).size:
                 row = int(wrong[0]) + 2
-                raise LoadsArgumentError(
+                raise ArgumentError(
                     f"a tyre's {name} must increase from row to row, but does not in row {row}",
                     "not-increasing",
                 )

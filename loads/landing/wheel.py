@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loads.arrays import Floats
+from pinbase.arrays import Floats
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from itertools import chain
 from pathlib import Path
 from typing import TextIO
 
-from loads.coded import LoadsError
 from loads.tables.regular_file import MB, FileError, read_regular
+from pinbase.errors import Coded
 
 LARGEST_TABLE = 64 * MB
 MOST_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
@@ -28,7 +28,7 @@ LONGEST_SHOWN = 40  # characters of a cell
 LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
 
 
-class TableError(LoadsError, ValueError):
+class TableError(Coded, ValueError):
     """An unusable table; the message names the file, the line and what would be right."""
 
 

@@ -8,8 +8,8 @@ import os
 import stat
 from pathlib import Path
 
-from loads.coded import LoadsError
 from loads.tables.sent_files import content_sent
+from pinbase.errors import Coded
 
 MB = 2**20
 # So that nothing waits, and no byte is changed, where the system knows of such a thing.
@@ -17,7 +17,7 @@ FLAGS = "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY", "O_NOINHERIT"
 READ = os.O_RDONLY | sum(getattr(os, name, 0) for name in FLAGS)
 
 
-class FileError(LoadsError, ValueError):
+class FileError(Coded, ValueError):
     """A file that must not be read; the message says why, without its name."""
 
 

@@ -1,1 +1,1 @@
-"""Who is solved when: plan, solve, results."""
+"""One analysis, from a study to its results."""

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fea.checks.calculix_compare import second_opinions
-from fea.checks.calculix_in_lugs import Seated, opinion_in_lugs
-from fea.checks.calculix_plastic import limit_opinion
-from fea.checks.opinions import LimitOpinion, Opinion
+from assess.opinion.calculix_compare import second_opinions
+from assess.opinion.calculix_in_lugs import Seated, opinion_in_lugs
+from assess.opinion.calculix_plastic import limit_opinion
+from assess.opinion.opinions import LimitOpinion, Opinion
 from fea.core.peak import Peak
-from fea.joint.solve_joint import JointModel
+from fea.support.contact.solve_joint import JointModel
 from geometry import Pin
+from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Solved
-from pinstress.model.tasks import Task
-from pinstress.processes.pool import Tell
+from pinstress.study.model.tasks import Task
 
 
 def ask_calculix(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Opinion, ...]:

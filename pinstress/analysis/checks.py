@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.checks.cantilever import beam_check as compare_with_beam
-from fea.checks.records import BeamCheck
+from assess.opinion.cantilever import beam_check as compare_with_beam
+from assess.strength.records import BeamCheck
 from geometry import Pin
 from loads import GROUND, Lever, Linkage, Slider
-from pinstress.model.cases import CaseLoads, at_time
-from pinstress.model.tasks import Task
-from pinstress.schema.tables import MotionCheckTable
-from pinstress.study.file import Study
-from pinstress.study.published_tables import Published
+from pinstress.study.model.cases import CaseLoads, at_time
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.published_tables import Published
+from pinstress.study.schema.tables import MotionCheckTable
 from reports.data import results as plain
 
 

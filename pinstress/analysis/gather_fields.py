@@ -13,10 +13,10 @@ from fea.core.solution import Answer
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.revolve import revolve_solid
-from fea.joint.cell_pressure import CellPressure
-from fea.solve_pin import Solution
-from pinstress.model.cases import CaseLoads
-from pinstress.model.tasks import Task
+from fea.solve.solve_pin import Solution
+from fea.support.contact.cell_pressure import CellPressure
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.tasks import Task
 from reports.data import results as plain
 
 Also = Literal["motion", "solid"] | None

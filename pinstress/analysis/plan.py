@@ -7,20 +7,25 @@ from dataclasses import dataclass
 from functools import partial
 
 from fea.core.memory import allowed_memory
-from fea.solve_pin import Asked, Model
+from fea.solve.solve_pin import Asked, Model
 from pinstress.analysis import checks
 from pinstress.analysis.gather_fields import Also
 from pinstress.analysis.published_quantities import published_values
-from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.mechanism.linkage import determined, linkage
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.sequence import chosen_cases, require_times
-from pinstress.model.tasks import Task, tasks
-from pinstress.schema.shown import shown
-from pinstress.study.choices import require_model, require_positive, require_tolerance, select
-from pinstress.study.errors import Errors, InputError
-from pinstress.study.file import Study
-from pinstress.study.published_tables import Published, read_published
+from pinstress.study.model.cases import CaseLoads, case_loads
+from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.sequence import chosen_cases, require_times
+from pinstress.study.model.tasks import Task, tasks
+from pinstress.study.reading.choices import (
+    require_model,
+    require_positive,
+    require_tolerance,
+    select,
+)
+from pinstress.study.reading.errors import Errors, InputError
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.shown import shown
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:

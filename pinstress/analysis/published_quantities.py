@@ -7,11 +7,11 @@ import math
 import numpy as np
 
 from loads import Dynamics, Slider
-from loads.arrays import Floats
-from pinstress.model.cases import CaseLoads, at_time
-from pinstress.study.errors import InputError
-from pinstress.study.file import Study
-from pinstress.study.published_tables import Published, PublishedRow
+from pinbase.arrays import Floats
+from pinstress.study.model.cases import CaseLoads, at_time
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.published_tables import Published, PublishedRow
 from reports.data import results as plain
 
 # quantity: what it is of, and its dimension

@@ -7,14 +7,14 @@ from collections.abc import Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from fea.solve_pin import Model
-from pinstress.analysis.gather import results_of
+from fea.solve.solve_pin import Model
+from pinbase.processes.pool import processes
+from pinbase.processes.threads import one_thread
+from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import keep_none, solve_tasks
-from pinstress.processes.pool import processes
-from pinstress.processes.threads import one_thread
-from pinstress.study.extras import require_fatigue
-from pinstress.study.file import Study
+from pinstress.study.reading.extras import require_fatigue
+from pinstress.study.reading.file import Study
 from reports.data.results import Field, Results
 from reports.format.words import headline
 from reports.tables.all import load_tables, stress_tables

@@ -7,32 +7,33 @@ from dataclasses import replace
 from functools import partial
 from math import inf
 
-from fea.checks.opinions import Opinion
+from assess.fatigue.critical_points import stress_histories
+from assess.fatigue.records import PointHistory
+from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Peak
-from fea.fatigue.critical_points import stress_histories
-from fea.fatigue.records import PointHistory
 from fea.harmonic.kept_fields import FirstMesh
-from fea.joint.foundation.solve_on_foundations import solve_joints
-from fea.joint.foundation.variations import prescribed_ranges
-from fea.joint.records import JointResult
-from fea.joint.solve_in_lugs import InLugs, LugSolution
-from fea.refine import MOST_UNKNOWNS
-from fea.solve_pin import Asked, Solution, solve_pin
+from fea.solve.refine import MOST_UNKNOWNS
+from fea.solve.solve_pin import Asked, Solution, solve_pin
+from fea.support.contact.records import JointResult
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution
+from fea.support.foundation.solve_on_foundations import solve_joints
+from fea.support.foundation.variations import prescribed_ranges
 from geometry import CutPin, Pin
-from pinstress.analysis import checks, gather, gather_fields
-from pinstress.analysis.gather_surface import surfaces_of
-from pinstress.analysis.limits import limit_loads, limit_seconds
+from pinbase.processes.pool import Died, Job, Progress, Tell, side_by_side
+from pinstress.analysis import checks, gather_fields
+from pinstress.analysis.assessed.checked import checked
+from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
+from pinstress.analysis.cache.store import Cache
+from pinstress.analysis.gather import gather
+from pinstress.analysis.gather.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
+from pinstress.analysis.remedies.changes import change
+from pinstress.analysis.remedies.sensitivities import sensitivities
 from pinstress.analysis.stored import Entry, Solved, lasting, question
-from pinstress.cache.store import Cache
-from pinstress.model.pins import shape_notes
-from pinstress.model.tasks import Task
-from pinstress.processes.pool import Died, Job, Progress, Tell, side_by_side
-from pinstress.remedies.changes import change
-from pinstress.remedies.sensitivities import sensitivities
-from pinstress.strength.checked import checked
-from pinstress.study.file import Study
+from pinstress.study.model.pins import shape_notes
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
 from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
 
@@ -60,7 +61,7 @@ def solve_tasks(
     cache: Cache | None = None,
 ) -> list[Solved]:
     """What is found of every task of a plan, in their order, `jobs` of them at a time, each in its
-    own process (pinstress.processes.pool); with 1, in this one. The answers are the same to the
+    own process (pinbase.processes.pool); with 1, in this one. The answers are the same to the
     last bit.
 
     keep: called with every field, in the study's units, as soon as it is there. ask: for a second

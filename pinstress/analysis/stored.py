@@ -6,21 +6,21 @@ import hashlib
 from dataclasses import dataclass, replace
 from math import inf
 
-from fea.checks.opinions import Opinion
-from fea.checks.records import BeamCheck
+from assess.fatigue.records import PointHistory
+from assess.opinion.opinions import Opinion
+from assess.plastic.records import LimitLoad
+from assess.strength.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Peak
-from fea.fatigue.records import PointHistory
-from fea.joint.records import JointResult
-from fea.plastic.records import LimitLoad
-from fea.refine import MESHES, MOST_UNKNOWNS
-from fea.solve_pin import count_loads, unknowns_after
+from fea.solve.refine import MESHES, MOST_UNKNOWNS
+from fea.solve.solve_pin import count_loads, unknowns_after
+from fea.support.contact.records import JointResult
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
-from pinstress.analysis.limits import rung_of
+from pinstress.analysis.assessed.checked import Checked
+from pinstress.analysis.assessed.limits import rung_of
 from pinstress.analysis.plan import Plan
-from pinstress.model.tasks import Task
-from pinstress.strength.checked import Checked
+from pinstress.study.model.tasks import Task
 from reports.data.changes import Change
 from reports.data.results import Field, LandingRange
 from reports.data.sensitivities import PinSensitivities
@@ -71,8 +71,8 @@ class Entry:
 
 def question(plan: Plan, task: Task, seconds: float | None = None) -> object:
     """All that the answer to a task depends on, but for versions and memory, as what
-    pinstress.cache.serialise takes. seconds: of an answer without some limit load, which would have
-    taken longer.
+    pinstress.analysis.cache.serialise takes. seconds: of an answer without some limit load, which
+    would have taken longer.
     """
     study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
     check = study.table.beam_check if task is plan.checked else None
@@ -100,12 +100,14 @@ def question(plan: Plan, task: Task, seconds: float | None = None) -> object:
 
 
 def shape_of(pin: PinLike) -> object:
-    """A pin's shape as what pinstress.cache.serialise takes, with the content of its file."""
+    """A pin's shape as what pinstress.analysis.cache.serialise takes, with the content of its
+    file.
+    """
     if isinstance(pin, Pin | CutPin):
         return pin
     from geometry.imported.imported_pin import SolidBody
     from geometry.mesh.solid_mesh import MeshSize
-    from pinstress.model.imported_pin import LARGEST_BODY
+    from pinstress.study.model.imported_pin import LARGEST_BODY
 
     assert isinstance(pin, SolidBody)
     file = pin.file
@@ -118,7 +120,7 @@ def shape_of(pin: PinLike) -> object:
 
 
 def lasting(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> bool:
-    """Whether more memory would not have given another answer (fea.solve_pin stops there)."""
+    """Whether more memory would not have given another answer (fea.solve.solve_pin stops there)."""
     open_ = [
         p
         for p in peaks

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from fea.core.pin_loads import Floats
-from fea.surface_fields import UnitSurface
-from geometry.chords import needed
+from fea.solve.surface_fields import UnitSurface
+from geometry.shape.chords import needed
 from reports.data.surface import Mask, SurfaceCase
 
 STRESS = 8e-3  # of the stress at a point, or of LEAST of the largest one at the instant

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import click
 
-from pinstress.chart.chart import ChartPlan, chart, plan_chart
-from pinstress.chart.measured_process import MeasureLimits, measure
+from pinbase.processes.system import portable
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.run import console, progress_bar
 from pinstress.cli.streams import unneeded
-from pinstress.processes.system import portable
-from pinstress.study.choices import require_positive
-from pinstress.study.errors import InputError
-from pinstress.study.file import Study
+from pinstress.explore.chart.chart import ChartPlan, chart, plan_chart
+from pinstress.explore.chart.measured_process import MeasureLimits, measure
+from pinstress.study.reading.choices import require_positive
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
 from reports.data.chart import NAME, Chart
 from reports.format.file_names import plot_name
 from reports.plots.chart import chart_plot

@@ -8,25 +8,25 @@ from functools import partial
 
 from geometry import PinLike
 from loads import Linkage
-from loads.closed_form.four_bar import four_bar
-from pinstress.designs.correlations import correlations_of
-from pinstress.designs.parameters import parameters_of, require_laws
-from pinstress.model.balance import other_warnings, unheld
-from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.lugs import lugs
-from pinstress.model.mechanism.drives import span
-from pinstress.model.mechanism.linkage import determined, linkage
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.pins import shape_notes, weight
-from pinstress.model.sequence import require_times
-from pinstress.model.tasks import tasks
-from pinstress.schema.cases import GivenCase, LegCase, MotionCase
-from pinstress.schema.landing import DropCase, GroundCase
-from pinstress.schema.pins import PinTable
-from pinstress.schema.vary import VaryTable
-from pinstress.study.errors import Errors
-from pinstress.study.file import Study
-from pinstress.study.published_tables import read_published
+from loads.motion.four_bar import four_bar
+from pinstress.explore.sweep.correlations import correlations_of
+from pinstress.explore.sweep.parameters import parameters_of, require_laws
+from pinstress.study.model.balance import other_warnings, unheld
+from pinstress.study.model.cases import CaseLoads, case_loads
+from pinstress.study.model.lugs import lugs
+from pinstress.study.model.mechanism.drives import span
+from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.pins import shape_notes, weight
+from pinstress.study.model.sequence import require_times
+from pinstress.study.model.tasks import tasks
+from pinstress.study.reading.errors import Errors
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.published_tables import read_published
+from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
+from pinstress.study.schema.landing import DropCase, GroundCase
+from pinstress.study.schema.pins import PinTable
+from pinstress.study.schema.vary import VaryTable
 
 
 def describe(study: Study) -> tuple[str, list[str], list[str]]:

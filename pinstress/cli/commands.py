@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from pinbase.processes import interrupts
+from pinbase.processes.environment import settle_surroundings
+from pinbase.processes.interrupts import INTERRUPTED, Unfinished
 from pinstress.cli.designs.commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
@@ -23,14 +26,11 @@ from pinstress.cli.more_commands import (
     view,
 )
 from pinstress.cli.shared import ONLY_CASES, Commands, choices, example, read_study
-from pinstress.processes import interrupts
-from pinstress.processes.environment import settle_surroundings
-from pinstress.processes.interrupts import INTERRUPTED, Unfinished
-from pinstress.study.choices import ChoiceError
-from pinstress.study.errors import InputError, clipped
+from pinstress.study.reading.choices import ChoiceError
+from pinstress.study.reading.errors import InputError, clipped
 
 if TYPE_CHECKING:
-    from fea.solve_pin import Model
+    from fea.solve.solve_pin import Model
 
 PLOTS = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
 REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED = 0, 1, 2, 3
@@ -209,7 +209,7 @@ def run(
 
 
 def _require_calculix() -> None:
-    from fea.checks.calculix import installed
+    from assess.opinion.calculix import installed
 
     if not installed():
         raise InputError(
@@ -317,8 +317,8 @@ def chart(
     if second_opinion is not None:
         _require_calculix()
     loaded = read_study(study)
-    from pinstress.chart.measured_process import MeasureLimits
     from pinstress.cli.chart import chart_and_write
+    from pinstress.explore.chart.measured_process import MeasureLimits
 
     limits = MeasureLimits(time_limit, memory_limit)
     calculix = second_opinion is not None

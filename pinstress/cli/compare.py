@@ -8,15 +8,15 @@ from pathlib import Path
 
 import click
 
+from pinbase.processes.apart import Failed, apart
+from pinbase.processes.pool import preload
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS, draw_pin
 from pinstress.cli.run import console
 from pinstress.cli.streams import unneeded
 from pinstress.cli.view import opened_results
-from pinstress.processes.apart import Failed, apart
-from pinstress.processes.pool import preload
-from pinstress.schema.units import SYSTEMS, UnitSystem
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
+from pinstress.study.schema.units import SYSTEMS, UnitSystem
 from reports.data.comparison import DECISION, UNCHANGED, RowPair, RunComparison, compared
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot

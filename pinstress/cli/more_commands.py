@@ -9,7 +9,7 @@ import click
 
 from pinstress.cli.shared import JOBS, ONLY_PINS, QUIET, example, names, read_study
 from pinstress.cli.streams import unneeded
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 
 
 @click.command(
@@ -21,7 +21,7 @@ from pinstress.study.errors import InputError
 @click.option("--open", "opens", is_flag=True, help="Run it immediately and open the report.")
 def init(directory: Path, opens: bool) -> int:
     from pinstress.cli.new_file import write_new
-    from pinstress.study.shipped import shipped
+    from pinstress.study.reading.shipped import shipped
 
     target = directory / "one_pin.toml"
     try:
@@ -38,7 +38,7 @@ def init(directory: Path, opens: bool) -> int:
         click.echo(f"Next: pinstress run {target}  (writes {out / 'report.html'})", err=True)
         return 0
     from pinstress.cli.run import Wanted, run_and_write
-    from pinstress.study.file import load_study
+    from pinstress.study.reading.file import load_study
 
     return run_and_write(load_study(target), out, Wanted(opens=True))
 
@@ -71,7 +71,7 @@ def init(directory: Path, opens: bool) -> int:
 )
 def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | None) -> None:
     from pinstress.cli.new_file import write_new
-    from pinstress.model.pin_text import imported_text
+    from pinstress.study.model.pin_text import imported_text
 
     text = imported_text(file, pin, unit, material)
     if out is None:
@@ -89,7 +89,7 @@ def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | N
 def schema() -> None:
     import json
 
-    from pinstress.schema.tables import StudyTable
+    from pinstress.study.schema.tables import StudyTable
 
     made = StudyTable.model_json_schema()
     made["$schema"] = "https://json-schema.org/draft/2020-12/schema"
@@ -253,7 +253,7 @@ def size(
     least_weight: bool,
     **wishes: Any,
 ) -> int:
-    from pinstress.schema.units import to_si
+    from pinstress.study.schema.units import to_si
 
     loaded = read_study(study)
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 
 
 def require_new(path: Path, remedy: str) -> None:

@@ -15,10 +15,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from pinbase.processes.exchange import exchange
+from pinbase.processes.folder_lock import Release, lock
 from pinstress.cli import manifest
-from pinstress.processes.exchange import exchange
-from pinstress.processes.folder_lock import Release, lock
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 
 MARK = "results.json"  # what a run and the loads alone write
 

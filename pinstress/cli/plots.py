@@ -14,15 +14,15 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from pinbase.errors import Damaged
+from pinbase.processes import interrupts
+from pinbase.processes.apart import NO_MEMORY, Failed, apart
+from pinbase.processes.interrupts import Unfinished
+from pinbase.processes.pool import preload
 from pinstress.cli import manifest
-from pinstress.processes import interrupts
-from pinstress.processes.apart import NO_MEMORY, Failed, apart
-from pinstress.processes.interrupts import Unfinished
-from pinstress.processes.pool import preload
-from pinstress.study.errors import InputError
-from pinstress.study.extras import require_package
-from pinstress.study.file_names import field_name
-from reports.folder.damaged import Damaged
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.extras import require_package
+from pinstress.study.reading.file_names import field_name
 from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
 from reports.folder.results_json import LARGEST
 from reports.page.scripts import PAGE, document_of, plots_of

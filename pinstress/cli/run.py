@@ -13,10 +13,12 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
-from pinstress.analysis.gather import loads_only, results_of
+from pinbase.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
+from pinbase.processes.system import portable
+from pinstress.analysis.cache.store import user_cache
+from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
-from pinstress.cache.store import user_cache
 from pinstress.cli.closing import (
     NUMERICS_FAILED,
     report_disagreements,
@@ -31,13 +33,11 @@ from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.model.balance import other_warnings
-from pinstress.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
-from pinstress.processes.system import portable
-from pinstress.study.choices import Chosen
-from pinstress.study.extras import require_fatigue, require_package
-from pinstress.study.file import Study
-from pinstress.study.file_names import field_name
+from pinstress.study.model.balance import other_warnings
+from pinstress.study.reading.choices import Chosen
+from pinstress.study.reading.extras import require_fatigue, require_package
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.file_names import field_name
 from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
 from reports.page.scripts import PAGE

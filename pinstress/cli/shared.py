@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from pinstress.study.file import Study
+    from pinstress.study.reading.file import Study
 
 Command = TypeVar("Command", bound=Callable[..., object])
 
@@ -50,10 +50,10 @@ def choices(command: Command) -> Command:
 
 def read_study(path: Path) -> Study:
     """Load a study; warn of implausible or contradictory numbers. Raises: InputError."""
-    from pinstress.model.balance import given_warnings
-    from pinstress.model.landing import unsprung_warnings
-    from pinstress.model.weights import weight_warnings
-    from pinstress.study.file import load_study
+    from pinstress.study.model.balance import given_warnings
+    from pinstress.study.model.landing import unsprung_warnings
+    from pinstress.study.model.weights import weight_warnings
+    from pinstress.study.reading.file import load_study
 
     study = load_study(path)
     found = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO, TypeGuard
 
-from pinstress.processes.system import portable
+from pinbase.processes.system import portable
 
 PLAIN = {
     "–": "-",

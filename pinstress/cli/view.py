@@ -10,11 +10,11 @@ from tempfile import TemporaryDirectory
 
 import click
 
+from pinbase.processes.apart import apart
+from pinbase.processes.pool import preload
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS
-from pinstress.processes.apart import apart
-from pinstress.processes.pool import preload
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 from reports.vtk.read_back import Opened, open_results
 from reports.vtk.render import render_pin, show_pin
 from reports.vtk.renderer import renderer_problem

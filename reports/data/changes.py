@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from shlex import quote
 
-from fea.core.dimensions import Stress, Time
+from pinbase.dimensions import Stress, Time
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from fea.core.dimensions import Energies, Force, Forces, Lengths, Time, Times, Velocities, Velocity
+from pinbase.dimensions import Energies, Force, Forces, Lengths, Time, Times, Velocities, Velocity
 
 PEAKS = {  # what is reported of a drop, and its dimension
     "vertical": ("vertical force of the ground", "force"),

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.dimensions import (
+from pinbase.dimensions import (
     Floats,
     Floats32,
     Forces,

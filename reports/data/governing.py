@@ -4,8 +4,8 @@ with the least margin of safety.
 
 from __future__ import annotations
 
-from fea.strength.margin import PinMargin
-from fea.strength.model_stress import YIELD
+from assess.strength.margin import PinMargin
+from assess.strength.model_stress import YIELD
 from reports.data.results import Results
 
 

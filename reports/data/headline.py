@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from fea.strength.margin import PinMargin
-from fea.strength.model_stress import RUPTURE, YIELD
+from assess.strength.margin import PinMargin
+from assess.strength.model_stress import RUPTURE, YIELD
 from reports.data.decision import (
     DEPENDS,
     FAILS,

@@ -20,7 +20,7 @@ def in_units(value: T, unit: Unit) -> T:
     """A dataclass of results with its numbers, and those of all it holds, in other units.
 
     unit: SI value of the unit of a dimension. Fields are annotated with theirs
-    (fea.core.dimensions): a name, or several with exponents, "stress length^0.5". What differs from
+    (pinbase.dimensions): a name, or several with exponents, "stress length^0.5". What differs from
     one object to the next a class says by a property `instead`, from the dimension of the
     annotation to that of the object; it holds for all that the object holds.
     """

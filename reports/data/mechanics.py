@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from fea.core.dimensions import (
+from pinbase.dimensions import (
     Acceleration,
     Accelerations,
     Energies,

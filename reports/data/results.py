@@ -8,9 +8,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal, Self
 
-from fea.checks.opinions import Opinion
-from fea.checks.records import BeamCheck, HandCheck
-from fea.core.dimensions import (
+from assess.fatigue.records import PointFatigue, PointHistory
+from assess.opinion.opinions import Opinion
+from assess.plastic.records import LimitLoad
+from assess.strength.bending_arms import BendingArms
+from assess.strength.margin import PinMargin
+from assess.strength.records import BeamCheck, HandCheck
+from fea.core.peak import Refinement, SingularZone
+from fea.core.places import Places
+from fea.support.contact.records import JointResult
+from pinbase.dimensions import (
     Floats,
     Force,
     Forces,
@@ -24,13 +31,6 @@ from fea.core.dimensions import (
     Velocities,
     Velocity,
 )
-from fea.core.peak import Refinement, SingularZone
-from fea.core.places import Places
-from fea.fatigue.records import PointFatigue, PointHistory
-from fea.joint.records import JointResult
-from fea.plastic.records import LimitLoad
-from fea.strength.bending_arms import BendingArms
-from fea.strength.margin import PinMargin
 from reports.data.changes import Change
 from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from fea.core.dimensions import Length, Stress, Time
+from pinbase.dimensions import Length, Stress, Time
 
 
 @dataclass(frozen=True)

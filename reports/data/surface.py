@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.dimensions import Floats, Forces, Length, Lengths, Point, Stress, Stresses, Times
+from pinbase.dimensions import Floats, Forces, Length, Lengths, Point, Stress, Stresses, Times
 
 SECTORS = 72  # into which a body of revolution is divided where it is drawn
 Ints = NDArray[np.int64]
@@ -80,7 +80,7 @@ class SurfaceCase:
 class Surface:
     """The surface of a pin and its fields, of which any instant of its `cases` is a superposition.
 
-    Arrays are those of fea.surface_fields.UnitSurface. yield_strength: None where there is none.
+    Arrays are those of `UnitSurface`. yield_strength: None where there is none.
     """
 
     pin: str

@@ -11,6 +11,7 @@ from typing import Any, NoReturn, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from loads import MB
+from pinbase.errors import Damaged
 
 Model = TypeVar("Model", bound=BaseModel)
 HALF = re.compile(r"\\u[dD][89a-fA-F]")  # of a character beyond the first 65,536
@@ -26,10 +27,6 @@ WORDS = {  # of pydantic's errors, which speak of Python
     "bool_type": "is neither true nor false",
     "finite_number": "is no finite number",
 }
-
-
-class Damaged(ValueError):
-    """A file whose content cannot be what pinstress wrote; the message names the file."""
 
 
 class JsonPart(BaseModel):

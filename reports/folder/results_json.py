@@ -10,7 +10,8 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, Field
 
 from loads import MB
-from reports.folder.damaged import Damaged, JsonPart, strict_json, validated
+from pinbase.errors import Damaged
+from reports.folder.damaged import JsonPart, strict_json, validated
 from reports.folder.inside import read_inside
 from reports.tables.json_results import SCHEMA
 

@@ -11,7 +11,8 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, RootModel
 
 from loads import MB
-from reports.folder.damaged import Damaged, JsonPart, inflated, strict_json, validated
+from pinbase.errors import Damaged
+from reports.folder.damaged import JsonPart, inflated, strict_json, validated
 from reports.format.packed import deflated
 from reports.format.script_json import script_json
 from reports.format.template import VENDOR

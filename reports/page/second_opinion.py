@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from operator import mul
 
-from fea.checks.opinions import BandOpinion, Opinion
+from assess.opinion.opinions import BandOpinion, Opinion
 from reports.data.results import Units
 from reports.format.grid import Grid
 from reports.format.numbers import engineering

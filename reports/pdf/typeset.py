@@ -10,7 +10,7 @@ from functools import cache
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from reports.folder.damaged import Damaged
+from pinbase.errors import Damaged
 from reports.format.template import TEMPLATES
 from reports.plots.draw import svg
 from reports.plots.spec import Plot, Spec

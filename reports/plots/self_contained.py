@@ -10,7 +10,7 @@ import re
 from typing import Any
 from xml.parsers import expat
 
-from reports.folder.damaged import Damaged
+from pinbase.errors import Damaged
 
 ADDRESSES = {"url", "href"}  # keys of Vega-Lite: of data, of pictures, of links
 PICTURE = "image"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from fea.checks.opinions import (
+from assess.opinion.opinions import (
     SAME_DISPLACEMENT,
     SAME_LIMIT,
     SAME_LOAD,

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.plastic.records import FlowField
+from assess.plastic.records import FlowField
 from reports.data.results import BandLoad, Field, Units, Volume
 from reports.vtk.render import render_pin
 from reports.vtk.renderer import renderer_problem

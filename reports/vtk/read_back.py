@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from loads import MB
+from pinbase.errors import Damaged
 from reports.data.results import Field, Floats, Units
-from reports.folder.damaged import Damaged
 from reports.folder.inside import read_inside
 from reports.folder.results_json import read_results
 from reports.format.numbers import engineering

@@ -15,8 +15,8 @@ from xml.parsers import expat
 import numpy as np
 from numpy.typing import NDArray
 
+from pinbase.errors import Damaged
 from reports.data.results import Floats
-from reports.folder.damaged import Damaged
 from reports.vtk.writer import TYPES
 
 NODES = {

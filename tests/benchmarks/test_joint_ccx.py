@@ -7,10 +7,10 @@ import shutil
 import numpy as np
 import pytest
 
+from assess.opinion.calculix import CalculixError
 from benchmarks.joints import joint_ccx
 from benchmarks.joints.joint_ccx import COUNT, SEED, drawn, ours
-from fea.checks.calculix import CalculixError
-from fea.joint.solve_joint import Cells
+from fea.support.contact.solve_joint import Cells
 
 
 def test_what_is_drawn() -> None:

@@ -75,21 +75,21 @@ def test_files_are_tried_one_by_one_and_rows_kept(
         "| `fea/beam/stress_concentration.py` | 9 | 9 | 8 | 1 | |\n"
         "| … line 3: `a → b` | | | | | so |\n"
     )
-    changes = [m.change for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))]
-    passing = {ast.unparse(ast.parse((ROOT / "loads/impulse.py").read_text("utf-8")))}
+    changes = [m.change for m in mutants((ROOT / "loads/landing/impulse.py").read_text("utf-8"))]
+    passing = {ast.unparse(ast.parse((ROOT / "loads/landing/impulse.py").read_text("utf-8")))}
     monkeypatch.setattr(module, "survives", lambda path, tree, *_: ast.unparse(tree) in passing)
-    assert module.main(["--record", "loads/impulse.py"]) == 0
+    assert module.main(["--record", "loads/landing/impulse.py"]) == 0
     text = (tmp_path / "mutants.md").read_text("utf-8")
     n = len(changes)
-    assert f"| `loads/impulse.py` | {n} | {n} | {n} | 0 | |" in text
+    assert f"| `loads/landing/impulse.py` | {n} | {n} | {n} | 0 | |" in text
     assert (
         "| `fea/beam/stress_concentration.py` | 9 | 9 | 8 | 1 | |\n"
         "| … line 3: `a → b` | | | | | so |\n" in text
     )
     passing |= {
-        ast.unparse(m.tree) for m in mutants((ROOT / "loads/impulse.py").read_text("utf-8"))
+        ast.unparse(m.tree) for m in mutants((ROOT / "loads/landing/impulse.py").read_text("utf-8"))
     }
-    assert module.main(["--record", "--most=1", "loads/impulse.py"]) == 1
+    assert module.main(["--record", "--most=1", "loads/landing/impulse.py"]) == 1
     text = (tmp_path / "mutants.md").read_text("utf-8")
-    assert f"| `loads/impulse.py` | {n} | 1 | 0 | 1 | |" in text
+    assert f"| `loads/landing/impulse.py` | {n} | 1 | 0 | 1 | |" in text
     assert text.count("**not explained**") == 1

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from reports.designs.page import write_designs_page
+from pinstress.explore.sweep.page import write_designs_page
 from reports.format.numbers import short
 from tests.browser.test_page import AXE, FAULTS
 from tests.support.results.browser_page import PIXELS, errors, wait

@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from docs.study_reference import reference, sections, takes
-from pinstress.schema.cases import ImpulseTable, MotionCase
-from pinstress.schema.pins import PinTable, SegmentTable
-from pinstress.schema.tables import StudyTable
-from pinstress.schema.types import StrictTable, described
+from pinstress.study.schema.cases import ImpulseTable, MotionCase
+from pinstress.study.schema.pins import PinTable, SegmentTable
+from pinstress.study.schema.tables import StudyTable
+from pinstress.study.schema.types import StrictTable, described
 
 SCHEMA = StudyTable.model_json_schema()
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pinstress
-from pinstress.analysis.gather import loads_only
+from pinstress.analysis.gather.gather import loads_only
 from tests.fuzz import draw_mechanism
 from tests.fuzz.quantity import Quantity, Tree, angle, write
 

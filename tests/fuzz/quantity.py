@@ -12,7 +12,7 @@ from typing import Any
 
 import tomlkit
 
-from pinstress.schema.units import SYSTEMS, UNIT_NEEDED
+from pinstress.study.schema.units import SYSTEMS, UNIT_NEEDED
 
 Tree = dict[str, Any]
 INCH, POUND = 0.0254, 0.45359237

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pinstress.schema.units import DIMENSIONS, SYSTEMS, UNIT_NEEDED, to_si
+from pinstress.study.schema.units import DIMENSIONS, SYSTEMS, UNIT_NEEDED, to_si
 from tests.fuzz.kills import kill, whole_run
 
 ROOT = Path(__file__).parents[2]

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from geometry import Bottom, Cut, CutPin, Flat, GeometryError, Hole, Passage, Pin, Segment, Slot
-from geometry.arrays import Floats
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from pinbase.arrays import Floats
 from tests.support.errors import raises
 
 R, L = 0.01, 0.06

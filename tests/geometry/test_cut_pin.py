@@ -11,8 +11,8 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, surface
 from fea.solid.sharp_edges import sharp_edges
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, Segment
+from geometry.imported.meshing import solid_mesh
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.meshing import solid_mesh
 from tests.support.errors import raises
 
 BAR = Pin("bar", (Segment(0.06, 0.02, connection="B"),))

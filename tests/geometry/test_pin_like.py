@@ -7,7 +7,7 @@ import math
 import pytest
 
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
-from pinstress.model.pins import weight
+from pinstress.study.model.pins import weight
 from tests.support.errors import raises
 
 TURNED = Pin(

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from geometry import CutPin, Flat, Hole, Pin, Segment
+from geometry.imported.meshing import solid_mesh
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
 from geometry.mesh.section_mesh import SectionSize, Spot, meridian_mesh
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.meshing import solid_mesh
 from tests.support.errors import raises
 
 PIN = Pin(

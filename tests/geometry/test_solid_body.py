@@ -16,11 +16,11 @@ from geometry import CutPin, GeometryError, Hole, Pin, Segment
 from geometry.imported import cad_mesh as cad
 from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
+from geometry.imported.meshing import solid_mesh as any_mesh
 from geometry.mesh.elements import with_element
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
 from geometry.mesh.tet10 import refined
-from geometry.meshing import solid_mesh as any_mesh
 from tests.support.errors import raises
 from tests.support.pins.pin_files import MM, write_mesh, write_step
 

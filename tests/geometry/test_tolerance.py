@@ -17,9 +17,9 @@ from geometry import (
     sharp_corners,
     vertices,
 )
+from geometry.imported.meshing import solid_mesh
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.meshing import solid_mesh
 from tests.support.errors import raises
 
 INCH, MM = 0.7 * 0.0254, 17.78 * 1e-3  # the same, but for the last place

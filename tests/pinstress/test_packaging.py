@@ -122,7 +122,7 @@ def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_pat
         tmp_path,
         bin_ / "python",
         "-c",
-        f"import {', '.join(PACKAGES)}; from pinstress.study.shipped import shipped\n"
+        f"import {', '.join(PACKAGES)}; from pinstress.study.reading.shipped import shipped\n"
         f"print(*(m.__file__ for m in ({', '.join(PACKAGES)})))\n"
         "print(shipped('grenier2008.toml'))",
     ).split()

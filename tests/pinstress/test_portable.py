@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from geometry.system import bare, offered
-from pinstress.processes.system import portable
+from pinbase.platform import bare, offered
+from pinbase.processes.system import portable
 from tests.conftest import ROOT
 from tests.pinstress.cli.test_output import ROOM, SLOW, names
 from tests.support.programs.process_group import alive, started
@@ -27,8 +27,8 @@ TWIN = {"PINSTRESS_PORTABLE": "1"}
 # whose psutil is another one on each system, and on Linux needs what is taken away here.
 ALL = """
 import pkgutil, importlib
-CLUSTER = "pinstress.designs.cluster", "pinstress.designs.scheduler"
-for room in ("loads", "geometry", "fea", "reports", "pinstress"):
+CLUSTER = "pinstress.explore.sweep.cluster", "pinstress.explore.sweep.scheduler"
+for room in ("pinbase", "loads", "geometry", "fea", "assess", "reports", "pinstress"):
     top = importlib.import_module(room)
     for found in pkgutil.walk_packages(top.__path__, room + "."):
         if not found.name.endswith("__main__") and found.name not in CLUSTER:

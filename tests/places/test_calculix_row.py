@@ -8,15 +8,15 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fea.checks.calculix_joint import JointOpinion, joint_opinion
-from fea.checks.calculix_joint_mesh import Fineness
-from fea.checks.calculix_row import free, pressed, section_of
+from assess.opinion.calculix_joint import JointOpinion, joint_opinion
+from assess.opinion.calculix_joint_mesh import Fineness
+from assess.opinion.calculix_row import free, pressed, section_of
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.joint.lugs.lug import Lug
-from fea.single_joint import JointProblem, JointRung, joint_result_on
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
+from pinstress.explore.chart.single_joint import JointProblem, JointRung, joint_result_on
 
 D, F = 0.02, 50e3
 STEEL = Material("steel", 2.1e11, 0.3)

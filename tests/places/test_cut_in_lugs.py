@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs, Rings
 from fea.cut.evaluate import CutAnswer
 from fea.cut.free_points import FreePoints, relieved
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.requirement import Asked
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.support.lugs.lug import Lug
 from geometry import CutPin, Hole, Pin, Segment
 
 D, F = 0.02, 30e3

@@ -13,6 +13,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from assess.derivatives.derivatives import Adjoint
+from assess.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
+from assess.derivatives.in_section import section_derivatives
+from assess.derivatives.reading_point import Continued, OnSkin, Relieved
+from assess.derivatives.records import SolvedCase
 from benchmarks.joints.joint_derivatives import (
     WholeJoint,
     parameters,
@@ -20,25 +25,20 @@ from benchmarks.joints.joint_derivatives import (
     whole_joint,
 )
 from benchmarks.pins.derivatives import moved_maximum, richardson
-from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
-from fea.derivatives.derivatives import Adjoint
-from fea.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
-from fea.derivatives.in_section import section_derivatives
-from fea.derivatives.reading_point import Continued, OnSkin, Relieved
-from fea.derivatives.records import SolvedCase
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.free_surface import surface_points
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.joint.solve_joint import Cells
-from fea.solve_pin import solve_pin
+from fea.solve.requirement import Asked
+from fea.solve.solve_pin import solve_pin
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.support.contact.solve_joint import Cells
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
-from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import PLACES
 from geometry.shape.dimensions import dimensions
+from pinbase.arrays import Floats
 
 STEEL = Material("steel", 210e9, 0.3, 7850.0, yield_strength=700e6)
 ALUMINIUM = Material("aluminium", 70e9, 0.33)

@@ -13,9 +13,9 @@ from benchmarks.joints.edge_peak import ALIKE, ALUMINIUM, shrink_fit, shrunk
 from benchmarks.joints.joint import STEEL, D
 from benchmarks.joints.rounded_edge import edge_stress
 from fea.core.material import Material
-from fea.joint.edge_peak import BELOW, POISSON, WITHIN, contact_edges, strength_at_edge
-from fea.joint.solve_joint import Cells
 from fea.singular.lug_edge import edge_exponent, lug_edge_exponent, next_power
+from fea.support.contact.edge_peak import BELOW, POISSON, WITHIN, contact_edges, strength_at_edge
+from fea.support.contact.solve_joint import Cells
 
 RIGID = Material("rigid", 210e15, 0.3)
 

@@ -7,18 +7,18 @@ from functools import cache
 import numpy as np
 import pytest
 
-from fea.asked import Asked
+from assess.fatigue.critical_points import stress_histories
+from assess.fatigue.stress_points import StressPoints, stress_points
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.fatigue.critical_points import stress_histories
-from fea.fatigue.stress_points import StressPoints, stress_points
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.superposition import Circumference
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.requirement import Asked
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.support.lugs.lug import Lug
 from geometry import CutPin, Hole, Pin, Segment
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 D, F, RHO = 0.02, 30e3, 0.001
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=9e8)

@@ -10,9 +10,9 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_joint import Cells, JointModel
-from fea.solve_pin import singularities_of
+from fea.solve.solve_pin import singularities_of
+from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 D, F, RHO = 0.02, 30e3, 0.001

@@ -10,13 +10,13 @@ import pytest
 
 from benchmarks.joints.foundation import bounds_of, contact_places, played
 from benchmarks.joints.random_joints import JointTrial, filleted_trials, joint_trials
-from fea.asked import Asked
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.foundation.solve_on_foundations import solve_joints
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution
+from fea.solve.requirement import Asked
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution
+from fea.support.foundation.solve_on_foundations import solve_joints
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 D, F = 0.02, 50e3

@@ -16,11 +16,11 @@ from fea.harmonic.beneath import EVERY, _distance, depths
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.superposition import Circumference
-from fea.joint.lugs.lug import Lug
-from fea.joint.pressure_loads import stacked
-from fea.joint.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.pressure_loads import stacked
+from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
-from geometry.arrays import Mask
+from pinbase.arrays import Mask
 
 STEEL = Material("steel", 210e9, 0.3)
 D = 0.02

@@ -9,6 +9,9 @@ import math
 import numpy as np
 import pytest
 
+from assess.opinion.calculix_joint import JointOpinion, joint_opinion
+from assess.opinion.calculix_joint_mesh import Fineness
+from assess.opinion.calculix_row import free, section_of
 from benchmarks.joints.joint import STEEL, D
 from benchmarks.joints.named_pins import (
     BORE,
@@ -22,11 +25,8 @@ from benchmarks.joints.named_pins import (
     row_of_named,
 )
 from benchmarks.joints.turned_ccx import DENSER, turned_opinion
-from fea.checks.calculix_joint import JointOpinion, joint_opinion
-from fea.checks.calculix_joint_mesh import Fineness
-from fea.checks.calculix_row import free, section_of
 from fea.core.voigt import von_mises
-from fea.joint.solve_in_lugs import InLugs
+from fea.support.contact.solve_in_lugs import InLugs
 from geometry import Segment
 
 # Of the nearer end: lugs with shanks of their own differ from rings by 4 % (docs/benchmarks.md).

@@ -20,7 +20,7 @@ from fea.core.places import (
 from fea.harmonic.beneath import stairs
 from pinstress import load_study, run
 from pinstress.cli.closing import REQUIREMENT_MISSED, report_violations
-from pinstress.schema.units import SYSTEMS
+from pinstress.study.schema.units import SYSTEMS
 from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units

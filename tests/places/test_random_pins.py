@@ -13,7 +13,7 @@ import pytest
 from benchmarks.joints.random_pins import Checked, check, pin_trials, read_surface
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.fields import MeridianFields
-from fea.solve_pin import Asked
+from fea.solve.solve_pin import Asked
 
 TRIALS = pin_trials(20, 7)
 

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.peak import ErrorParts, Peak
+from fea.core.peak import ErrorParts, Peak, accuracy
 from fea.core.pin_loads import PinLoads
-from fea.row import row_of
-from fea.section.answer import SectionAnswer
 from fea.section.place import FoundSection, found_section
-from fea.verdict import accuracy
+from fea.section.row import row_of
+from fea.section.section_stress import SectionAnswer
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from assess.plastic.hinge import beam_bounds
 from fea.core.material import Material
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import Floats, PinLoads
-from fea.plastic.hinge import beam_bounds
-from fea.section.answer import AtSection, SectionAnswer
 from fea.section.place import FLEXIBILITIES, found_section
+from fea.section.section_stress import AtSection, SectionAnswer
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)

@@ -7,7 +7,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs
@@ -18,8 +17,9 @@ from fea.harmonic.free_surface import FreeSurface
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import _first, sectors_of
 from fea.harmonic.superposition import Circumference
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.requirement import Asked
+from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 D, F = 0.02, 30e3

@@ -11,19 +11,19 @@ import pytest
 
 from fea.core.peak import Peak
 from fea.core.places import ContactPlace, Places, SectionPlace, SurfacePlace
-from fea.joint.solve_in_lugs import LugSolution
+from fea.support.contact.solve_in_lugs import LugSolution
 from pinstress.analysis.plan import prepare
+from pinstress.analysis.remedies.changes import change
 from pinstress.analysis.results import run
 from pinstress.analysis.solve import solutions
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.tasks import tasks
-from pinstress.remedies.changes import change
-from pinstress.sizing.counted import beneath, low_factor, surface_and_section
-from pinstress.sizing.lightest_pin import Aim, problem_of
-from pinstress.sizing.pin_stress import PinStress
-from pinstress.sizing.scaled_study import resized_study
-from pinstress.sizing.size_pin import Wish, counts, size_pin
-from pinstress.study.file import Study, parse_study
+from pinstress.explore.size.counted import beneath, low_factor, surface_and_section
+from pinstress.explore.size.lightest_pin import Aim, problem_of
+from pinstress.explore.size.pin_stress import PinStress
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.size_pin import Wish, counts, size_pin
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.tasks import tasks
+from pinstress.study.reading.file import Study, parse_study
 from reports.tables.strength.changes import change_notes
 from tests.conftest import ROOT
 
@@ -99,7 +99,7 @@ def test_a_pin_is_sized_by_what_lies_beneath() -> None:
 @pytest.mark.slow
 def test_a_search_has_what_lies_beneath_as_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
     """With its value from the run and, once two designs are known, the slope between them."""
-    monkeypatch.setattr("pinstress.sizing.pin_stress.UNKNOWN", 1.0)
+    monkeypatch.setattr("pinstress.explore.size.pin_stress.UNKNOWN", 1.0)
     study = touching(2.6)
     problem = problem_of(study, prepare(study), "P", Aim(2.6))
     assert not isinstance(problem, str)

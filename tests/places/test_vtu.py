@@ -14,10 +14,10 @@ import pytest
 import pyvista
 from numpy.typing import NDArray
 
-from pinstress.analysis.gather import results_of
+from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
-from pinstress.study.file import load_study
+from pinstress.study.reading.file import load_study
 from reports.data.results import Field, PinResult, Results
 from reports.vtk.fields import write_pin
 from tests.conftest import ROOT

@@ -12,20 +12,20 @@ import skfem
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from assess.derivatives.derivatives import Adjoint
+from assess.derivatives.records import SolvedCase
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.derivatives.derivatives import Adjoint
-from fea.derivatives.records import SolvedCase
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.singular.singularities import VARIED, find_singularities, free_of_arcs
 from fea.solid.sharp_edges import SharpEdges
-from fea.solve_pin import Asked, Solution, singularities_of, solve_pin
+from fea.solve.solve_pin import Asked, Solution, singularities_of, solve_pin
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
-from geometry.arrays import Floats
 from geometry.mesh.moved.outline_motion import PLACES
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
 from geometry.shape.dimensions import dimensions
+from pinbase.arrays import Floats
 
 D, FORCE, NU, E = 0.02, 1e5, 0.3, 205e9
 WITHIN = 0.03  # of what is read in the fillet: the requirement; found: 0.5 %

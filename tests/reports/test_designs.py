@@ -11,8 +11,14 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from reports.designs.columns import designs_of
-from reports.designs.page import column_grid, page_data, reason_grid, summary, write_designs_page
+from pinstress.explore.sweep.design_columns import designs_of
+from pinstress.explore.sweep.page import (
+    column_grid,
+    page_data,
+    reason_grid,
+    summary,
+    write_designs_page,
+)
 from reports.format.packed import packed
 from tests.support.programs.packed import unpacked
 from tests.support.results.html_page import EVIL, parse

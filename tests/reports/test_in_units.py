@@ -11,7 +11,7 @@ import pytest
 
 from fea.core.mesh_result import Strength
 from fea.core.peak import SingularZone
-from pinstress.schema.units import SYSTEMS
+from pinstress.study.schema.units import SYSTEMS
 from reports.data import results as data
 from reports.data.in_units import in_units
 from reports.data.results import (

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from fea.joint.records import JointRange, JointResult, Variation
-from pinstress.schema.units import SYSTEMS
+from fea.support.contact.records import JointRange, JointResult, Variation
+from pinstress.study.schema.units import SYSTEMS
 from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import pyvista
 
-from fea.plastic.records import FlowField, LimitLoad, LoadCurve, PlasticMesh
+from assess.plastic.records import FlowField, LimitLoad, LoadCurve, PlasticMesh
 from geometry import Pin, Segment
 from geometry.mesh.hexahedra import HexSize, hexahedra, twenty
-from pinstress.cache.serialise import pack, unpack
+from pinstress.analysis.cache.serialise import pack, unpack
 from reports.data.results import Results
 from reports.plots.strength.limit_load import limit_plot
 from reports.tables.json_results import to_json

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 import reports.plots.draw as drawing
-from reports.folder.damaged import Damaged
+from pinbase.errors import Damaged
 from reports.plots.draw import svg
 from reports.plots.self_contained import require_no_address, require_self_contained
 from tests.support.programs.command_line import run_here

@@ -19,16 +19,16 @@ import numpy as np
 import pytest
 
 import pinstress
-from fea.asked import Asked
 from fea.core.equilibrium import closing, out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve_pin import solve_pin
+from fea.solve.requirement import Asked
+from fea.solve.solve_pin import solve_pin
 from geometry import Pin, Segment
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
-from pinstress.model.balance import given_warnings
-from pinstress.model.pins import pin as pin_of
+from pinstress.study.model.balance import given_warnings
+from pinstress.study.model.pins import pin as pin_of
 from tests.conftest import ROOT
 
 CLEVIS = Pin(

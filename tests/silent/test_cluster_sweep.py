@@ -22,8 +22,8 @@ from pathlib import Path
 
 import pytest
 
-from pinstress.designs.cluster import connected
-from pinstress.study.errors import InputError
+from pinstress.explore.sweep.cluster import connected
+from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
 from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
 from tests.support.programs.dask_cluster import DaskCluster, dask_cluster, wait_for
@@ -144,7 +144,7 @@ def test_tables_are_sent_and_not_read_on_workers(tmp_path: Path) -> None:
 
 def _other_source(folder: Path) -> Path:
     """Another pinstress of the same version, whose factors are all 1."""
-    for room in ("pinstress", "loads", "geometry", "fea", "reports"):
+    for room in ("pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports"):
         shutil.copytree(ROOT / room, folder / room, ignore=shutil.ignore_patterns("__pycache__"))
     path = folder / "pinstress" / "designs" / "evaluate.py"
     text, right = path.read_text("utf-8"), "peak.safety_factor(material.yield_strength),"

@@ -16,17 +16,18 @@ import re
 import shutil
 import subprocess
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import pinbase.processes.apart as apart_module
 import pinstress.cli.compare as compare_command
 import pinstress.cli.plots as plots_command
 import pinstress.cli.view as view_command
-import pinstress.processes.apart as apart_module
 import reports.vtk.render as render
-from pinstress.processes.apart import Failed
+from pinbase.processes.apart import Failed
 from tests.support.programs.command_line import pinstress, run_here
 from tests.support.results.mutants import (
     DEEP,
@@ -78,7 +79,9 @@ def engineless(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fields are read, and nothing is drawn, which takes a second each time."""
 
     def here(work: Any, seconds: int) -> list[Any]:
-        found = [apart_module._guarded(one, seconds, lambda _: None) for _, one in work]
+        found = [
+            apart_module._guarded(partial(apart_module._untold, one), print) for _, one in work
+        ]
         return [one if isinstance(one, Failed) else one.value for one in found]
 
     def drawn(_: object, path: Path, *__: object) -> None:

@@ -22,10 +22,10 @@ from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
 from fea.cut.evaluate import CutAnswer
 from fea.cut.region import zone
-from fea.solve_pin import Asked, solve_pin
-from fea.surface_fields import amounts, unit_surface
+from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.surface_fields import amounts, unit_surface
 from geometry import Cut, CutPin, Flat, Hole, Pin, PinLike, Segment
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 E, NU = 2.1e11, 0.3
 G = E / 2.0 / (1.0 + NU)

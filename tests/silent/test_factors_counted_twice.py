@@ -14,7 +14,7 @@ import pytest
 
 from pinstress import load_study, run
 from pinstress.cli.commands import run_command_line
-from pinstress.study.file import parse_study
+from pinstress.study.reading.file import parse_study
 from tests.conftest import ROOT
 
 STUDY = """title = "One pin"

@@ -16,18 +16,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
+from assess.fatigue.critical_plane import _counted, findley_k, worst_plane
+from assess.fatigue.fkm import FkmMaterial, p_ram_life
+from assess.fatigue.flight import Flight, flight
+from assess.fatigue.many_planes import on_planes
+from assess.fatigue.proportional import BY_SIDE
+from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
+from assess.fatigue.signed_stress import signed_von_mises
+from assess.fatigue.sn_curve import SnCurve
 from fea.core.voigt import TENSOR
-from fea.fatigue.assess import FatigueMaterial, Spectrum, assess
-from fea.fatigue.critical_plane import _counted, findley_k, worst_plane
-from fea.fatigue.fkm import FkmMaterial, p_ram_life
-from fea.fatigue.flight import Flight, flight
-from fea.fatigue.many_planes import on_planes
-from fea.fatigue.proportional import BY_SIDE
-from fea.fatigue.records import CaseHistory, PointFatigue, PointHistory
-from fea.fatigue.signed_stress import signed_von_mises
-from fea.fatigue.sn_curve import SnCurve
-from geometry.arrays import Floats
-from geometry.coded import ArgumentError
+from pinbase.arrays import Floats
+from pinbase.errors import ArgumentError
 
 CURVE = SnCurve((200e6, 1e6), 5.0, scatter=3.0, rule="fkm", parameter=0.25)
 STEEL = FatigueMaterial(CURVE, 0.25, FkmMaterial("Steel", 1000e6, 6.3e-6, 1.7))

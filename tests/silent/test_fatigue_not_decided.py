@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 import pinstress
-from fea.fatigue.fkm import FkmMaterial, p_ram_life
+from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from pinstress.analysis.results import Found
 from reports.tables.json_results import to_json
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
@@ -139,7 +139,7 @@ def _broken(*_: object) -> None:
 @pytest.mark.parametrize(
     ("what", "reason"),
     [
-        ("pinstress.analysis.gather_fatigue.assess", "at point 1, signed-von-mises failed"),
+        ("pinstress.analysis.gather.gather_fatigue.assess", "at point 1, signed-von-mises failed"),
         ("pinstress.analysis.solve.stress_histories", "no history of stress in cases work, jam"),
     ],
 )

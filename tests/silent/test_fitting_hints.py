@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from pinstress.cli.commands import run_command_line
-from pinstress.schema.shown import nearest
+from pinstress.study.schema.shown import nearest
 from reports.plots.draw import svg
 from tests.support.programs.command_line import QUICK
 

@@ -14,11 +14,11 @@ import pytest
 
 import pinstress
 from pinstress.cli.commands import run_command_line
-from pinstress.model.pins import pin as pin_of
-from pinstress.sizing import least_weight
-from pinstress.sizing.least_weight import LightStudy, lighten
-from pinstress.sizing.lightest_pin import Aim, Lightest
-from pinstress.study.file import Study
+from pinstress.explore.size import least_weight
+from pinstress.explore.size.least_weight import LightStudy, lighten
+from pinstress.explore.size.lightest_pin import Aim, Lightest
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import Study
 from reports.data.decision import SAFE, outcome
 
 HEAD = """

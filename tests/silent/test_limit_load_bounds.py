@@ -17,14 +17,14 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog, minimize_scalar
 
+from assess.plastic.hinge import beam_bounds
+from assess.plastic.limit_load import bracket
+from assess.plastic.solve import SIZES, limit_load
+from assess.strength.collapse import collapse_margin
+from assess.strength.situation import LoadFactors
+from fea.beam.plastic_interaction import bent_and_pulled
 from fea.beam.round_section import Circle
 from fea.core.pin_loads import PinLoads
-from fea.plastic.hinge import beam_bounds
-from fea.plastic.interaction import bent_and_pulled
-from fea.plastic.limit_load import bracket
-from fea.plastic.solve import SIZES, limit_load
-from fea.strength.collapse import collapse_margin
-from fea.strength.situation import LoadFactors
 from geometry import Pin, Segment
 from tests.support.exact.plastic import STEEL, YIELD, D, bar, limit
 

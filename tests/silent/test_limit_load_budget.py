@@ -15,16 +15,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from assess.plastic import solve
+from assess.plastic.body import FlowingBody
+from assess.plastic.budget import Budget, OutOfTimeError
+from assess.plastic.limit_load import limit_on_mesh
+from assess.plastic.solve import limit_load
 from fea.core.pin_loads import PinLoads
-from fea.plastic import solve
-from fea.plastic.body import FlowingBody
-from fea.plastic.budget import Budget, OutOfTimeError
-from fea.plastic.limit_load import limit_on_mesh
-from fea.plastic.solve import limit_load
 from geometry import Pin, Segment
 from pinstress import load_study, prepare
-from pinstress.analysis import limits
-from pinstress.analysis.limits import UNASKED, limit_seconds, rung_of
+from pinstress.analysis.assessed import limits
+from pinstress.analysis.assessed.limits import UNASKED, limit_seconds, rung_of
 from pinstress.cli.commands import run_command_line
 from tests.support.exact.plastic import STEEL, D
 

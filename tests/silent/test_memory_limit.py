@@ -21,11 +21,11 @@ from pathlib import Path
 
 import pytest
 
+import pinbase.processes.apart as apart_module
 import pinstress.cli.plots as plots_command
-import pinstress.processes.apart as apart_module
+from pinbase.processes.apart import Failed, apart
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable
-from pinstress.processes.apart import Failed, apart
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.results.small_folder import small_folder
 

@@ -21,11 +21,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from assess.strength.pin_checks import pin_checks
+from assess.strength.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.joint.records import JointForces
-from fea.strength.pin_checks import pin_checks
-from fea.strength.situation import Situation
+from fea.support.contact.records import JointForces
 from geometry import Pin, Segment
 from pinstress import run, study_from
 from pinstress.cli.commands import run_command_line

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.joint.records import JointRange, JointResult, Variation
-from fea.strength.margin import Margin, PinMargin
+from assess.strength.margin import Margin, PinMargin
+from fea.support.contact.records import JointRange, JointResult, Variation
 from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
 from reports.data.decision import outcome
@@ -267,7 +267,7 @@ def test_a_sweep_says_what_a_run_says(clevis: Results) -> None:
     """In contact a design's outcome is that of its run; with prescribed loads, whose range a sweep
     leaves to a run, it is never plainly safe.
     """
-    from pinstress.designs.evaluate import Evaluator
+    from pinstress.explore.sweep.evaluate import Evaluator
 
     prescribed = changed_study(load_study(CLEVIS), {"analysis.joints": "prescribed"})
     (found,) = Evaluator(prescribed, ()).rows(())
@@ -285,8 +285,8 @@ def test_designs_of_equal_forces_are_judged_each_by_its_own_impulse() -> None:
     """Twice the velocity in twice the time is the same force, and not the same place in the range:
     a row does not depend on which designs the process has solved before.
     """
-    from pinstress.designs.evaluate import Evaluator
-    from pinstress.designs.number import number_at
+    from pinstress.explore.sweep.evaluate import Evaluator
+    from pinstress.explore.sweep.number import number_at
 
     gear = load_study(ROOT / "studies" / "landing_gear.toml")
     weak = changed_study(gear, {"material.AISI 4340.yield_strength": "37.5 ksi"})

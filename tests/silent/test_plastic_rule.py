@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from assess.strength.plastic_bending import PLASTIC, plastic_margin
+from assess.strength.section_forces import section_forces
+from assess.strength.section_stress import CONCENTRATED, OF_JOINT
+from assess.strength.situation import Situation
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.strength.plastic_bending import PLASTIC, plastic_margin
-from fea.strength.section_forces import section_forces
-from fea.strength.section_stress import CONCENTRATED, OF_JOINT
-from fea.strength.situation import Situation
 from tests.support.pins.plain_pins import double_shear
 
 DIAMETER, YIELD = 0.016, 235e6

@@ -27,10 +27,11 @@ import numpy as np
 import pytest
 
 import pinstress.cli.plots as plots_command
+from pinbase.errors import Damaged
 from pinstress.cli import manifest
-from pinstress.designs.parts import Identity, Parts
-from pinstress.designs.table import write_table
-from reports.folder.damaged import Damaged, inflated
+from pinstress.explore.sweep.parts import Identity, Parts
+from pinstress.explore.sweep.table import write_table
+from reports.folder.damaged import inflated
 from reports.folder.inside import read_inside, write_inside
 from reports.vtk.vtu import read_vtu
 from tests.support.programs.command_line import pinstress, run_here

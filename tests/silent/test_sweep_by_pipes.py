@@ -18,9 +18,9 @@ from pathlib import Path
 
 import pytest
 
-from pinstress.designs.batches import DesignProblem, evaluator_of
-from pinstress.designs.number import number_at
-from pinstress.study.file import Study
+from pinstress.explore.sweep.batches import DesignProblem, evaluator_of
+from pinstress.explore.sweep.number import number_at
+from pinstress.study.reading.file import Study
 from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
 from tests.support.programs.process_group import started
 from tests.support.programs.swept import DEADLY, DIAMETER, FORCE, STRENGTH, swept, varied
@@ -122,7 +122,7 @@ print({{"distributed", "dask"}} & set(sys.modules))
 DEADLY_DESIGN = f"""
 import os, signal
 from functools import partial
-import pinstress.designs.workers as module
+import pinstress.explore.sweep.workers as module
 solve = module.solve_batch
 def deadly(problem, batch):
     if {DEADLY} in batch.designs:

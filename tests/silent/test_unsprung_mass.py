@@ -24,7 +24,7 @@ from scipy.integrate import solve_ivp
 from pinstress import InputError, Study, load_study, study_from
 from pinstress.analysis.plan import all_loads
 from pinstress.cli.commands import run_command_line
-from pinstress.study.file import raw_study
+from pinstress.study.reading.file import raw_study
 from tests.conftest import ROOT
 from tests.support.errors import raises
 

@@ -23,11 +23,11 @@ import numpy as np
 import pytest
 
 from loads import Dynamics, ledger, mobility
-from loads.closed_form.four_bar import four_bar
+from loads.motion.four_bar import four_bar
 from pinstress import load_study
-from pinstress.model import cases as build
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.study.file import Study
+from pinstress.study.model import cases as build
+from pinstress.study.model.mechanism.linkage import linkage
+from pinstress.study.reading.file import Study
 from tests.conftest import INCH, LBF
 
 STUDIES = Path(__file__).parents[2] / "studies"
@@ -74,7 +74,7 @@ def test_mobility_and_class(study: Study) -> None:
 
 
 def test_the_bars_weigh_what_table_9_says() -> None:
-    from loads.mass_properties import round_bar
+    from loads.linkage.mass_properties import round_bar
 
     pound = 0.45359237
     for length, mass in ((12, 42.8), (30, 107.1), (26, 92.8)):
@@ -95,7 +95,7 @@ def test_angles_and_rates_of_the_snapshot(snapshot: Dynamics) -> None:
 
 def test_the_snapshot_is_on_the_drives_way(study: Study) -> None:
     """The printed rates are those of the cycloid where it passes 315 degrees."""
-    from pinstress.model.mechanism.drives import laws
+    from pinstress.study.model.mechanism.drives import laws
 
     (law,) = laws(study)
     times = np.linspace(0.0, 5.0, 500001)

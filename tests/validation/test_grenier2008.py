@@ -26,14 +26,14 @@ import numpy as np
 import pytest
 
 from loads import CosineDrive, Dynamics, Linkage, Sharing, energy, ledger, move
-from loads.inverse_dynamics import motion_reactions
+from loads.forces.inverse_dynamics import motion_reactions
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.results import solve
-from pinstress.model import cases as build
-from pinstress.model.pins import material
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.pins import weight as weight_of
-from pinstress.study.file import Study
+from pinstress.study.model import cases as build
+from pinstress.study.model.pins import material
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.pins import weight as weight_of
+from pinstress.study.reading.file import Study
 from reports.data.results import BeamCheck
 from tests.conftest import INCH, LBF
 

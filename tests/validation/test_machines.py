@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from pinstress.model.cases import CaseLoads
-from pinstress.study.file import load_study
-from pinstress.study.in_python import changed_study
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.reading.file import load_study
+from pinstress.study.reading.in_python import changed_study
 from tests.support.mechanism.machines import STUDIES, G, cross, drive, force, machine, slope, solved
 from tests.support.mechanism.mechanisms import circles
 

@@ -20,9 +20,9 @@ import pytest
 
 from loads import Dynamics, Linkage, ledger
 from pinstress import load_study
-from pinstress.model import cases as build
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.study.file import Study
+from pinstress.study.model import cases as build
+from pinstress.study.model.mechanism.linkage import linkage
+from pinstress.study.reading.file import Study
 
 ROOT = Path(__file__).parents[2]
 PRINTED = {
@@ -90,7 +90,7 @@ def test_from_motion_alone_the_forces_agree_as_far_as_the_accelerations_do(
 
 
 def test_bars_have_the_printed_masses() -> None:
-    from loads.mass_properties import flat_bar
+    from loads.linkage.mass_properties import flat_bar
 
     for length, mass, inertia in ((8, 0.248, 1.405), (12, 0.372, 4.588), (11, 0.341, 3.552)):
         m, j = flat_bar(0.01 * length, 0.02, 0.02, 7750.0)

@@ -11,7 +11,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.singular.singularities import find_singularities
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 
 D, TAPER = 0.02, 0.05  # thin end, m; diameter per length

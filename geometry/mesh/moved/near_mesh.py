@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
 from geometry.mesh.gmsh_session import ONE_AT_A_TIME
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import (
@@ -34,6 +33,7 @@ from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polygon import Leg
 from geometry.shape.profile import RZ, Arc, Edge, meridian
 from geometry.shape.segment import Segment
+from pinbase.arrays import Floats, Ints
 
 if TYPE_CHECKING:
     import scipy.sparse as sp

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, Ints
 from geometry.mesh.section_mesh import MeridianMesh
 from geometry.shape.dimensions import Dimension
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.profile import RZ, Arc, Edge, meridian
+from pinbase.arrays import Floats, Ints
 
 STEPS = 1e-4, 1e-6  # of a dimension: the next one where the first gives another shape
 LEAST_CUT, MOST_CUT = 0.001, 0.999  # of an edge, as gmsh is given them

@@ -1,1 +1,1 @@
-"""Results of mechanisms: forces, drives, motion, drops; cases one after the other."""
+"""Results of the mechanics of a case, gathered for reports."""

@@ -7,11 +7,11 @@ from dataclasses import fields
 import numpy as np
 
 from loads import impulse_force
-from loads.arrays import Floats
 from loads.landing import Landing, spin_up_drag
-from pinstress.model.cases import CaseLoads
-from pinstress.schema.landing import DropCase
-from pinstress.study.file import Study
+from pinbase.arrays import Floats
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.landing import DropCase
 from reports.data.drop import PEAKS, DropPeak, DropRecord
 
 STROKES = 101  # at which force over stroke is drawn

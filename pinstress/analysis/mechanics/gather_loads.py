@@ -7,20 +7,20 @@ from typing import Any
 import numpy as np
 
 from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
-from loads.arrays import Floats
-from loads.loop_equations import pairs
-from loads.mobility.mobility import is_particle
-from loads.transmission_angles import transmission_angles
+from loads.motion.loop_equations import pairs
+from loads.motion.mobility import is_particle
+from loads.motion.transmission_angles import transmission_angles
+from pinbase.arrays import Floats
 from pinstress.analysis.checks import motion_check
 from pinstress.analysis.mechanics.gather_drops import drop_record
 from pinstress.analysis.mechanics.gather_sequences import sequence_tables
 from pinstress.analysis.mechanics.gather_teeth import pitch_curves
 from pinstress.analysis.published_quantities import published_values
-from pinstress.model.cases import CaseLoads
-from pinstress.model.mechanism.drives import offsets
-from pinstress.model.mechanism.linkage import ground_joint
-from pinstress.study.file import Study
-from pinstress.study.published_tables import Published
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.mechanism.drives import offsets
+from pinstress.study.model.mechanism.linkage import ground_joint
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.published_tables import Published
 from reports.data import results as plain
 
 LEG_VECTORS = {  # of loads.LegDynamics, and what they are

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fea.fatigue.records import CaseHistory, PointHistory
-from loads.arrays import Floats
-from pinstress.model.cases import CaseLoads
-from pinstress.model.sequence import Occurrence, complete, steps
-from pinstress.study.file import Study
+from assess.fatigue.records import CaseHistory, PointHistory
+from pinbase.arrays import Floats
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.sequence import Occurrence, complete, steps
+from pinstress.study.reading.file import Study
 from reports.data import results as plain
 from reports.format.numbers import engineering
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from loads import Gear, Motion, Rack, Teeth
-from loads.linkage import Point
+from loads.linkage.linkage import Point
 from reports.data.mechanics import PitchCurve
 
 

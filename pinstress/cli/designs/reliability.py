@@ -6,14 +6,14 @@ from pathlib import Path
 
 import click
 
+from pinbase.processes.pool import preload, processes
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.run import SOLVERS, console, progress_bar
 from pinstress.cli.streams import unneeded
-from pinstress.processes.pool import preload, processes
-from pinstress.reliability.assess import assess
-from pinstress.reliability.designs import for_values, random_numbers
-from pinstress.study.file import Study
+from pinstress.explore.reliability.assess import assess
+from pinstress.explore.reliability.designs import for_values, random_numbers
+from pinstress.study.reading.file import Study
 from reports.data.decision import DEPENDS, NOT_DECIDED
 from reports.data.reliability import Reliability
 from reports.page.reliability import write_reliability_page

@@ -12,23 +12,23 @@ from typing import TYPE_CHECKING
 import click
 from rich.console import Console
 
+from pinbase.processes import interrupts
+from pinbase.processes.folder_lock import Release, lock
+from pinbase.processes.interrupts import Unfinished
+from pinbase.processes.pool import cores
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable
 from pinstress.cli.run import console
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.designs.parts import FOLDER, STATED, TABLE, Parts, identity, is_ours
-from pinstress.designs.summary import summary
-from pinstress.designs.sweep import Report, planned, solved
-from pinstress.designs.table import read_table, table_of, write_table
-from pinstress.processes import interrupts
-from pinstress.processes.folder_lock import Release, lock
-from pinstress.processes.interrupts import Unfinished
-from pinstress.processes.pool import cores
-from pinstress.study.errors import InputError
-from pinstress.study.file import Study
-from reports.designs.columns import designs_of
-from reports.designs.page import render_designs
+from pinstress.explore.sweep.design_columns import designs_of
+from pinstress.explore.sweep.page import render_designs
+from pinstress.explore.sweep.parts import FOLDER, STATED, TABLE, Parts, identity, is_ours
+from pinstress.explore.sweep.summary import summary
+from pinstress.explore.sweep.sweep import Report, planned, solved
+from pinstress.explore.sweep.table import read_table, table_of, write_table
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
 from reports.folder.inside import write_inside
 
 if TYPE_CHECKING:

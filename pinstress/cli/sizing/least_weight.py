@@ -9,21 +9,21 @@ from pathlib import Path
 
 import click
 
+from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
 from pinstress.cli.sizing.size import ANOTHER, close, target_of, why_missed
 from pinstress.cli.streams import unneeded
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.pins import weight
-from pinstress.processes.pool import processes
-from pinstress.sizing.at_probability import lighten_at
-from pinstress.sizing.counted import low_factor
-from pinstress.sizing.least_weight import LightStudy, lighten
-from pinstress.sizing.lightest_pin import Aim, Lightest
-from pinstress.sizing.pin_shape import KINDS, Proportions
-from pinstress.sizing.scaled_study import moved
-from pinstress.study.errors import InputError
-from pinstress.study.file import Study
+from pinstress.explore.size.at_probability import lighten_at
+from pinstress.explore.size.counted import low_factor
+from pinstress.explore.size.least_weight import LightStudy, lighten
+from pinstress.explore.size.lightest_pin import Aim, Lightest
+from pinstress.explore.size.pin_shape import KINDS, Proportions
+from pinstress.explore.size.scaled_study import moved
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.pins import weight
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
 from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
 from reports.text.least_weight import ChangedDimension, LightRow, print_light
@@ -170,7 +170,7 @@ def _amount(study: Study, name: str, volume: float, heavy: bool) -> float:
 
 def _dimensions(study: Study, new: Study, each: Lightest) -> list[ChangedDimension]:
     """Those that changed."""
-    from pinstress.remedies.dimensions import dimensions_of
+    from pinstress.analysis.remedies.dimensions import dimensions_of
 
     unit = study.system.factor("length")
     old = {d.key: d.value for d in dimensions_of(study, pin_of(study, each.pin))}

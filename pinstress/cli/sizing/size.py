@@ -9,21 +9,21 @@ from pathlib import Path
 
 import click
 
+from pinbase.processes.pool import Died, Job, Progress, preload, processes, side_by_side
 from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.remedies.secant import CLOSE
 from pinstress.analysis.results import run
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.run import SOLVERS, console, progress_bar
 from pinstress.cli.streams import unneeded
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.pins import slenderness, weight
-from pinstress.processes.pool import Died, Job, Progress, preload, processes, side_by_side
-from pinstress.remedies.secant import CLOSE
-from pinstress.sizing.counted import beneath_factor
-from pinstress.sizing.scaled_study import moved, resized_study
-from pinstress.sizing.size_pin import Sized, Wish, size_pin
-from pinstress.study.choices import require_positive
-from pinstress.study.errors import InputError
-from pinstress.study.file import Study
+from pinstress.explore.size.counted import beneath_factor
+from pinstress.explore.size.scaled_study import moved, resized_study
+from pinstress.explore.size.size_pin import Sized, Wish, size_pin
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.pins import slenderness, weight
+from pinstress.study.reading.choices import require_positive
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, factor_ends, outcome
 from reports.data.dependence import BENEATH
 from reports.data.headline import worst_checks

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.fatigue.records import CaseHistory, PointFatigue, PointHistory
+from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Floats, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import FORMAT, Abscissa, Panel, Plot, clipped, curves, headed, rows

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import inf
 from typing import Any
 
-from fea.fatigue.records import PointFatigue
+from assess.fatigue.records import PointFatigue
 from reports.data.results import Fatigue, Results
 from reports.format.files.csv import Cell
 from reports.format.grid import Grid

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from fea.plastic.records import LimitLoad
+from assess.plastic.records import LimitLoad
 from reports.data.results import PinResult, Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite

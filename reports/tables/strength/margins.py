@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from fea.strength.margin import RATIO, PinMargin
+from assess.strength.margin import RATIO, PinMargin
 from reports.data.governing import governing, not_made
 from reports.data.results import Results
 from reports.format.grid import Grid

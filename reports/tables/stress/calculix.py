@@ -7,7 +7,7 @@ from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
-from fea.checks.opinions import Opinion
+from assess.opinion.opinions import Opinion
 from reports.data.results import Results
 from reports.format.files.csv import Cell
 from reports.format.numbers import finite

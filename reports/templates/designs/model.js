@@ -1,5 +1,5 @@
 // The designs: values of all columns for one pin and case, scales, selection, Pareto front.
-// reports/designs/page.py packs the arrays.
+// pinstress/explore/sweep/page.py packs the arrays.
 
 const FAILED = "failed"; // of designs without result or verdict, next to the verdicts
 const HIGHER = new Set(["safety_factor"]); // the others are better when lower

@@ -13,7 +13,7 @@ from fea.beam.stress import BeamStress, beam_stress
 from fea.beam.stress_concentration import BENDING, TENSION, TORSION, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
 

@@ -11,7 +11,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.over_time import knots, rise_between
 from fea.core.pin_loads import Distribution, Floats, PinLoads, off_chord
-from fea.solve_pin import Asked, Model, solve_pin
+from fea.solve.solve_pin import Asked, Model, solve_pin
 from geometry import Pin, Segment
 
 # Double shear of a plain bar of 20 mm.

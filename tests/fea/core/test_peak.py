@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fea.core.peak import Peak, Refinement, discretisation_error
-from fea.verdict import FEWEST
+from fea.solve.verdict import FEWEST
 
 
 def sequence(*values: float) -> tuple[Refinement, ...]:
@@ -38,7 +38,8 @@ def test_a_singular_sequence_is_not_taken_for_a_converging_one(p: float, r: floa
 
 def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
     """Values of a real fillet (MPa): the first two agree to 0.03 % and are 4 % below the last. Two
-    meshes are therefore never enough (fea.verdict.FEWEST); from three on the estimate must hold.
+    meshes are therefore never enough (fea.solve.verdict.FEWEST); from three on the estimate must
+    hold.
     """
     seen = (34.10, 34.09, 34.8, 35.5, 35.49)
     assert FEWEST == 3

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.asked import Asked
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.model import HarmonicModel
-from fea.single_mesh import Problem, Rung, result_on
-from fea.solve_pin import solve_pin
+from fea.solve.requirement import Asked
+from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.solve_pin import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 

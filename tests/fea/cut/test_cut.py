@@ -14,12 +14,12 @@ from fea.cut.evaluate import CutAnswer
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refused, zone
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import ArgumentError, CutPin, Flat, Hole, Passage, Pin, Segment
-from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
+from pinbase.arrays import Floats
 from tests.support.errors import raises
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)

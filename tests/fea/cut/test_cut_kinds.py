@@ -19,10 +19,10 @@ from fea.cut.inner_corners import inner_corners
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.region import pieces, zone
 from fea.solid.assembly import Discretisation
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
-from geometry.arrays import Floats
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
+from pinbase.arrays import Floats
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
 D, R, MIDDLE = 0.02, 0.01, 0.08

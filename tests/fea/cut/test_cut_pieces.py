@@ -10,8 +10,8 @@ from fea.core.pin_loads import PinLoads
 from fea.cut import region
 from fea.cut.evaluate import CutAnswer
 from fea.cut.local_fields import LocalFields
-from fea.single_mesh import Problem, Rung, result_on
-from fea.solve_pin import Asked, Solution, solve_pin
+from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.solve_pin import Asked, Solution, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
 STEEL = Material("steel", 210e9, 0.3, 500e6, 0.0)

@@ -14,7 +14,7 @@ from fea.cut.lost_loads import bearings, trial_forces
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.model import HarmonicModel
 from fea.solid.boundary import resultants
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.support.errors import raises

@@ -14,22 +14,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from fea.asked import Asked
 from fea.core.linear_solver import ConstrainedSystem
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.joint.contact import ContactProblem, Pressed
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_in_lugs import InLugs, solve_in_lugs
-from fea.joint.solve_joint import JointModel
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, area_vectors, slopes_at, surface
 from fea.solid.stress_recovery import nodal_stress
+from fea.solve.requirement import Asked
+from fea.support.contact.contact import ContactProblem, Pressed
+from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.support.contact.solve_joint import JointModel
+from fea.support.lugs.lug import Lug
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment
-from geometry.arrays import Floats, Mask
 from geometry.mesh import cut_piece
 from geometry.mesh.cut_piece import Piece, piece_mesh
+from pinbase.arrays import Floats, Mask
 
 D, F = 0.02, 50e3
 STEEL = Material("steel", 2.1e11, 0.3)

@@ -11,7 +11,7 @@ from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.half_section import MeridianPlane
 from fea.harmonic.superposition import Circumference
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 
 ANGLE = 0.7

@@ -14,8 +14,8 @@ from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solu
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import DIRECTIONS, jumps
 from fea.harmonic.superposition import Circumference
-from fea.refine import STEP
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.refine import STEP
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot

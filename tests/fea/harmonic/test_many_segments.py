@@ -14,8 +14,8 @@ from fea.core.mesh_result import MeshResult
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.quiet_corners import CROWD, crowd
-from fea.refine import STEP
-from fea.solve_pin import Asked, count_loads, singularities_of, solve_pin
+from fea.solve.refine import STEP
+from fea.solve.solve_pin import Asked, count_loads, singularities_of, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles

@@ -10,7 +10,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.evaluate import HarmonicAnswer
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import SECTORS
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 
 NU = 0.3  # does not matter without lugs

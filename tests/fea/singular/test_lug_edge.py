@@ -18,11 +18,11 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel
-from fea.joint.contact import Bands, ContactProblem
-from fea.joint.lugs.lug import Lug
-from fea.joint.solve_joint import Cells, JointModel
 from fea.singular.lug_edge import edge_exponent, lug_edge_exponent
 from fea.singular.williams import plane_exponent
+from fea.support.contact.contact import Bands, ContactProblem
+from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.sizing import Grade
@@ -186,7 +186,9 @@ def graded_rings() -> Floats:
 
 
 def flexibility(body: Pin, rings: list[str], of: Material, inwards: bool, start: float) -> Floats:
-    """C_0 (1, R, R), m/Pa, as fea.joint.flexibility, on a mesh that is graded to the edges."""
+    """C_0 (1, R, R), m/Pa, as fea.support.contact.flexibility, on a mesh that is graded to the
+    edges.
+    """
     edges = ((D / 2.0, start), (D / 2.0, start + 2.0 * D))
     mesh = meridian_mesh(body, SectionSize(6.0), finer=[Grade(edges, 7e-5 * D, 0.0, 0.2)])
     model = HarmonicModel(body, mesh, of, (), pivot=0.5)

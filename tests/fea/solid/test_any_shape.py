@@ -16,12 +16,12 @@ from fea.core.voigt import von_mises
 from fea.solid.evaluate import SolidAnswer
 from fea.solid.model import SolidModel, acting
 from fea.solid.superposition import envelope
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import CutPin, Flat, Hole, Pin, PinLike, Segment
 from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
+from geometry.imported.meshing import solid_mesh
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.meshing import solid_mesh
 from tests.support.pins.pin_files import MM, write_mesh, write_step
 from tests.support.pins.unit_loads import forces
 

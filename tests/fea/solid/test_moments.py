@@ -19,7 +19,7 @@ from fea.solid.evaluate import SolidAnswer
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.nodal_loads import Unit, nodal_loads
 from fea.solid.superposition import envelope
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import ArgumentError, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import pytest
 
-from fea.checks.cantilever import cantilever
+from assess.opinion.cantilever import cantilever
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.singular.singularities import find_singularities
 from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
 from fea.solid.model import SolidModel
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.pins.solid_line import axial_stress

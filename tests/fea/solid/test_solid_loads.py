@@ -19,7 +19,7 @@ from fea.solid.boundary import Patch, resultants, surface
 from fea.solid.model import SolidModel, acting
 from fea.solid.nodal_loads import closed, nodal_loads
 from fea.solid.superposition import envelope
-from fea.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Asked, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises

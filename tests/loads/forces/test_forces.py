@@ -30,7 +30,7 @@ from loads import (
     move,
     over_time,
 )
-from loads.arrays import Floats
+from pinbase.arrays import Floats
 from tests.support.errors import raises
 from tests.support.mechanism.mechanisms import four_bar, slider_crank
 

@@ -10,7 +10,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from loads import LoadsArgumentError
+from loads import ArgumentError
 from loads.landing import (
     Drop,
     GasSpring,
@@ -210,7 +210,7 @@ def test_gas_stores_the_integral_of_its_force() -> None:
     ],
 )
 def test_what_cannot_be_is_refused(make: object, code: str) -> None:
-    with pytest.raises(LoadsArgumentError) as caught:
+    with pytest.raises(ArgumentError) as caught:
         make()  # type: ignore[operator]
     assert caught.value.code == code
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 from pinstress import InputError, load_study, study_from
-from pinstress.analysis.gather import loads_only
+from pinstress.analysis.gather.gather import loads_only
 from pinstress.analysis.plan import all_loads
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
-from pinstress.study.file import Study
+from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
 
 SHIPPED = ROOT / "studies" / "drop.toml"

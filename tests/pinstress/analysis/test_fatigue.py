@@ -11,8 +11,8 @@ import pytest
 
 import pinstress
 from fea.core.voigt import von_mises
-from fea.solve_pin import Model
-from pinstress.study.errors import InputError
+from fea.solve.solve_pin import Model
+from pinstress.study.reading.errors import InputError
 from tests.pinstress.test_import import loaded_by
 
 PIN = """

@@ -14,8 +14,8 @@ import pytest
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.results import solve
 from pinstress.cli.commands import run_command_line
-from pinstress.study.file import load_study
-from pinstress.study.in_python import changed_study
+from pinstress.study.reading.file import load_study
+from pinstress.study.reading.in_python import changed_study
 from tests.conftest import ROOT
 from tests.support.pins.clevis import CLEVIS
 

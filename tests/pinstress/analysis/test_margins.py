@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from fea.strength.model_stress import YIELD
+from assess.strength.model_stress import YIELD
 from pinstress import run, study_from
 from pinstress.cli.commands import run_command_line
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 from reports.data.governing import governing, not_made
 
 STUDY: dict[str, Any] = {

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import pinstress
-from pinstress.analysis.gather import loads_only
+from pinstress.analysis.gather.gather import loads_only
 from pinstress.cli.check import describe
-from pinstress.study.errors import InputError
-from pinstress.study.file import load_study
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import load_study
 from reports.data.results import Results
 from reports.format.numbers import engineering
 from tests.conftest import ROOT

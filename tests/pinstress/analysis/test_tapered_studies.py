@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from assess.plastic.solve import limit_load
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.plastic.solve import limit_load
 from geometry import Pin, Segment
 from geometry.shape.dimensions import dimensions
 from pinstress import load_study, run
-from pinstress.model.pins import far_ends, outline, pin
-from pinstress.schema.units import SYSTEMS
-from pinstress.sizing.scaled_study import resized
+from pinstress.explore.size.scaled_study import resized
+from pinstress.study.model.pins import far_ends, outline, pin
+from pinstress.study.schema.units import SYSTEMS
 from reports.data.results import PinShape
 from reports.page.pin_drawing import draw_pin
 from tests.support.results.made_up_run import make_results

@@ -7,10 +7,10 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve_pin import Asked, solve_pin
-from fea.surface_fields import amounts, excluded, largest_there, unit_surface
+from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.surface_fields import amounts, excluded, largest_there, unit_surface
 from geometry import Pin
-from geometry.chords import needed
+from geometry.shape.chords import needed
 from pinstress import load_study, run
 from pinstress.analysis.thinning import STRESS, meridian_points
 from reports.data.surface import SurfaceCase

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import pinstress
-from pinstress.analysis.gather import loads_only
+from pinbase.processes.pool import processes
+from pinstress.analysis.gather.gather import loads_only
 from pinstress.cli.commands import run_command_line
-from pinstress.processes.pool import processes
-from pinstress.study.file import Study
+from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
 from tests.support.errors import raises
 

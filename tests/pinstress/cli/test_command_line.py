@@ -15,7 +15,7 @@ import pytest
 from geometry import Pin
 from pinstress.cli.commands import commands, run_command_line
 from pinstress.cli.output_folder import replacing
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
 from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
 from tests.support.programs.process_group import started
@@ -243,7 +243,7 @@ def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
 
 CRASHES = """
 import os, signal, sys
-from pinstress.processes.threads import hold_threads
+from pinbase.processes.threads import hold_threads
 hold_threads()
 import fea.harmonic.evaluate
 from pinstress.cli.commands import commands, run_command_line

@@ -9,7 +9,7 @@ import pytest
 
 from pinstress import load_study, run
 from pinstress.cli.commands import run_command_line
-from pinstress.study.inputs import inputs
+from pinstress.study.reading.inputs import inputs
 from reports.vtk.read_back import open_results
 from tests.conftest import ROOT
 

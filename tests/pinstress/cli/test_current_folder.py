@@ -12,7 +12,7 @@ import pytest
 from tests.conftest import ROOT
 
 LIBRARIES = "pyvista", "matplotlib", "gmsh", "meshio", "numpy", "pydantic", "skfem", "vtkmodules"
-OURS = "fea", "geometry", "loads", "reports"
+OURS = "assess", "fea", "geometry", "loads", "pinbase", "reports"
 TRAP = """
 import pathlib
 pathlib.Path(__file__).with_name("executed").touch()

@@ -14,8 +14,8 @@ from geometry.imported.imported_pin import SolidBody
 from pinstress import load_study
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
-from pinstress.model.pins import pin as pin_of
-from pinstress.model.pins import shape_notes
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.pins import shape_notes
 from tests.geometry.test_recognise import (
     PROFILES,
     Change,

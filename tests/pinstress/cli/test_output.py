@@ -16,10 +16,10 @@ from pathlib import Path
 
 import pytest
 
+from pinbase.processes import exchange
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import replacing
-from pinstress.processes import exchange
-from pinstress.study.errors import InputError
+from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
 from tests.support.programs.process_group import alive, started
 

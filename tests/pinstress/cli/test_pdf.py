@@ -10,7 +10,7 @@ import pytest
 
 from pinstress.cli import manifest
 from pinstress.cli.commands import run_command_line
-from pinstress.study.shipped import shipped
+from pinstress.study.reading.shipped import shipped
 
 BLOCK = """
 [report]

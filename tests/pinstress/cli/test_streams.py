@@ -16,10 +16,10 @@ import click
 import pytest
 
 from fea.core.linear_solver import SolveError
-from fea.solve_pin import solve_pin
+from fea.solve.solve_pin import solve_pin
+from pinbase.processes import interrupts
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line
-from pinstress.processes import interrupts
 from tests.conftest import ROOT
 from tests.support.programs.command_line import QUICK
 
@@ -236,7 +236,7 @@ def test_whatever_an_interrupt_becomes_the_status_is_130(
         except KeyboardInterrupt:
             raise error from None
 
-    monkeypatch.setattr("pinstress.study.file.load_study", interrupted)
+    monkeypatch.setattr("pinstress.study.reading.file.load_study", interrupted)
     with signals_heard():
         assert run_command_line(["check", "study.toml"]) == 130
     assert capsys.readouterr().err == "Interrupted; nothing was written.\n"

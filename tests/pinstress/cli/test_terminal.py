@@ -21,7 +21,7 @@ import pyvista
 from pinstress import load_study
 from pinstress.analysis.gather_fields import STILLS, instants
 from pinstress.cli.commands import run_command_line
-from pinstress.model.pins import pin
+from pinstress.study.model.pins import pin
 from tests.conftest import INCH
 from tests.support.programs.command_line import QUICK
 from tests.support.programs.process_group import started

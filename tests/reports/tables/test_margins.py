@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from fea.strength.margin import RATIO, Margin, PinMargin, not_made
+from assess.strength.margin import RATIO, Margin, PinMargin, not_made
 from reports.data.results import Results, Units
 from reports.page.paper import document
 from reports.tables.strength.margins import (

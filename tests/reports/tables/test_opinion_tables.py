@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from fea.checks.opinions import BandOpinion, ContactOpinion, LimitOpinion, Opinion
+from assess.opinion.opinions import BandOpinion, ContactOpinion, LimitOpinion, Opinion
 from reports.data.results import Results
 from reports.page.page import render
 from reports.page.second_opinion import opinion_part

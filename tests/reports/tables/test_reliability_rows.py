@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pinstress.reliability.designs import Answers
+from pinstress.explore.reliability.designs import Answers
 from reports.data.reliability import ByErrors, FirstOrder, Reliability, Risk, Spread
 from reports.plots.reliability import distribution_plot
 from reports.tables.reliability import chance_range, factor_interval, remark, risks_grid

@@ -9,7 +9,7 @@ import numpy as np
 
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, compliances
 from fea.core.material import Material
-from geometry.arrays import Floats
+from pinbase.arrays import Floats
 
 
 def deflections(forces: InternalForces, material: Material, z: Floats) -> Floats:

@@ -14,7 +14,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.harmonic.assembly import Section, around, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes, slopes
-from geometry.arrays import Ints
+from pinbase.arrays import Ints
 
 Field = Callable[[Floats, Floats], Floats]  # of r and z (...), with components last
 

@@ -4,16 +4,16 @@ import math
 
 import numpy as np
 
+from assess.plastic.body import FlowingBody, untied
+from assess.plastic.flow import FlowRule
+from assess.plastic.limit_load import OnMesh, limit_on_mesh
+from assess.plastic.mechanism import Finer
+from assess.plastic.pin_body import acting_at, finer, hexahedral, nodal_forces, pin_body
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.plastic.body import FlowingBody, untied
-from fea.plastic.flow import FlowRule
-from fea.plastic.limit_load import OnMesh, limit_on_mesh
-from fea.plastic.mechanism import Finer
-from fea.plastic.pin_body import acting_at, finer, hexahedral, nodal_forces, pin_body
 from geometry import Pin, Segment
-from geometry.arrays import Floats
 from geometry.mesh.hexahedra import HexSize, hexahedra
+from pinbase.arrays import Floats
 
 YIELD = 250e6
 STEEL = Material("steel", 200e9, 0.3, None, YIELD)

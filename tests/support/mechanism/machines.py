@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from pinstress.model.cases import CaseLoads, case_loads
-from pinstress.model.mechanism.linkage import linkage
-from pinstress.study.file import Study, load_study
+from pinstress.study.model.cases import CaseLoads, case_loads
+from pinstress.study.model.mechanism.linkage import linkage
+from pinstress.study.reading.file import Study, load_study
 from tests.conftest import ROOT
 
 G = 9.80665

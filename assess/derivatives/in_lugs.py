@@ -1,0 +1,260 @@
+"""Derivatives of the largest stress of a pin in contact with its lugs: by shape, material, loads.
+
+As long as the same cells are in contact pressures are a smooth function of everything, and stress
+one of these and of the pin. Three adjoints serve all parameters: that of stress under given
+pressures (assess.derivatives.pressed_stress), of the surface on the mesh of the maximum, of a
+section by its forces; that of contact
+(assess.derivatives.held_contact); and the displacements of pin and lugs under the pressures and
+under the adjoint ones (assess.derivatives.ring_work), on the meshes of their flexibilities. So
+these are the derivatives of the maximum on all meshes as they are moved, with the cells of the
+solution.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from assess.derivatives.governing import By
+from assess.derivatives.held_contact import HeldContact
+from assess.derivatives.in_section import OTHER
+from assess.derivatives.pressed_stress import JointStep, OfSections, OfSurface, PressedStress
+from assess.derivatives.records import SolvedCase
+from assess.derivatives.ring_work import RingWork
+from assess.derivatives.virtual_work import Interior
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.core.places import Place
+from fea.harmonic.assembly import elasticity
+from fea.support.contact.pressure_loads import others_along
+from fea.support.contact.solve_joint import JointModel
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError, GeometryError, Pin
+from geometry.mesh.moved.outline_motion import (
+    PLACES,
+    STEPS,
+    OtherShapeError,
+    OutlineNodes,
+    rate_of,
+)
+from pinbase.arrays import Floats
+
+FORCE = 1e-4  # step of a force, of the largest
+AXES = "xy"
+SAME = 1e-13  # of the size: what round-off moves
+Joint = tuple[Pin, Material, tuple[Lug, ...]]
+
+
+@dataclass(frozen=True)
+class JointParameter:
+    """Anything of a pin in its lugs, by a key; scale: what steps of it are parts of; changed: the
+    joint with another value of it.
+    """
+
+    key: str
+    value: float
+    scale: float
+    changed: Callable[[float], Joint]
+
+
+@dataclass(frozen=True)
+class JointDerivatives:
+    """Of the largest stress `maximum`, Pa. by_parameter: per unit of it, by key; without: why
+    others have none. by_force: Pa/N, of the force of each link, by connection and axis of the pin,
+    what is out of balance then being shared by the links; by_moment: Pa/(N m), about its axis.
+    tied_places, tied_times as assess.derivatives.records.Derivatives has them; changing: how many
+    cells are about to open or to close, with which the derivatives hold on one side only.
+    """
+
+    maximum: float
+    by_parameter: dict[str, float]
+    without: dict[str, str]
+    by_force: By
+    by_moment: By
+    tied_places: tuple[tuple[float, float], ...] = ()
+    tied_times: tuple[float, ...] = ()
+    changing: int = 0
+
+
+def joint_derivatives(
+    solved: SolvedCase,
+    model: JointModel,
+    links: PinLoads,
+    parameters: Iterable[JointParameter] = (),
+    *,
+    alone: bool = False,
+    place: Place = "surface",
+) -> JointDerivatives:
+    """Of the maximum of a place under pressures at one instant. solved: the pin with its bands cut
+    into rings under them; links: the loads that they carry; alone: the parameters, without loads
+    and ties.
+
+    Raises: MeshError, SolveError.
+    """
+    of = OfSections if place == "section" else OfSurface
+    found = _InLugs(of(solved, model, links), model, links)
+    return found.derivatives(tuple(parameters), alone)
+
+
+class _InLugs:
+    def __init__(self, stress: PressedStress, model: JointModel, links: PinLoads) -> None:
+        self.stress, self.model, self.links = stress, model, links
+        self.contact = HeldContact(model, links, stress.by_pressures())
+
+    def derivatives(self, parameters: tuple[JointParameter, ...], alone: bool) -> JointDerivatives:
+        changes, without = [], {}
+        for parameter in parameters:
+            try:
+                changes.append(self._change(parameter))
+            except OtherShapeError:
+                without[parameter.key] = OTHER
+        stress = self.stress
+        if alone:
+            return JointDerivatives(stress.maximum, self._by(changes), without, {}, {})
+        return JointDerivatives(
+            stress.maximum,
+            self._by(changes),
+            without,
+            self._by_forces(),
+            self._by_moments(),
+            stress.tied_places,
+            stress.tied_times,
+            self.contact.changing,
+        )
+
+    @cached_property
+    def pin_work(self) -> RingWork:
+        return RingWork(self.model.on_pin, {"": tuple(self.contact.pairs())})
+
+    @cached_property
+    def lug_works(self) -> dict[str, RingWork]:
+        """By connection; of equal lugs one."""
+        model, out = self.model, dict[str, RingWork]()
+        for key, equal in model.alike().items():
+            pairs = {x.connection: tuple(self.contact.pairs(own)) for own, x, _ in equal}
+            out |= dict.fromkeys(pairs, RingWork(model.on_lugs[key], pairs))
+        return out
+
+    @cached_property
+    def _flexible(self) -> OutlineNodes:
+        """The nodes of the mesh of the pin's flexibility."""
+        return OutlineNodes(self.pin_work.space.section, self.model.pin)
+
+    def _change(self, parameter: JointParameter) -> JointStep:
+        """Raises: OtherShapeError."""
+        model, key = self.model, parameter.key
+        for part in STEPS:
+            step = part * parameter.scale
+            values = [parameter.value + x * step for x in PLACES]
+            try:
+                models = tuple(model.reshaped(*parameter.changed(value)) for value in values)
+            except (ArgumentError, GeometryError):
+                continue
+            if any(one.rings != model.rings for one in models):
+                continue
+            change, pins = (
+                JointStep(key, models, step, None),
+                tuple(one.pin for one in models),
+            )
+            try:
+                if any(pin != model.pin for pin in pins):
+                    change = replace(change, flexible=self._flexible.among(key, pins, step))
+                self.stress.require(change)
+            except OtherShapeError:
+                continue
+            return change
+        raise OtherShapeError
+
+    def _by(self, changes: Sequence[JointStep]) -> dict[str, float]:
+        """By key."""
+        out = self.stress.held(changes)
+        shapes = [x.flexible for x in changes if x.flexible is not None]
+        if shapes:
+            moved = np.stack([motion.velocity for motion in shapes], axis=2)
+            interior = Interior(self.pin_work.space, self._flexible.rows)
+            each = np.moveaxis(interior.velocity(moved), 2, 0)
+            for motion, velocity in zip(shapes, each, strict=True):
+                out[motion.key] += self.pin_work.by_shape("", velocity)
+        for change in changes:
+            total = float(change.rate(self.contact.held))
+            if any(one.material != self.model.material for one in change.models):
+                D = change.rate(lambda one: elasticity(one.material))
+                total += self.pin_work.by_material("", [D])
+            total += sum(self._by_lug(change, lug) for lug in self.model.lugs)
+            out[change.key] += total
+        return out
+
+    def _acts(self, what: str) -> bool:
+        """Whether there is any along the axis."""
+        return bool(getattr(self.links, what)[..., 2].any())
+
+    def _by_lug(self, change: JointStep, lug: Lug) -> float:
+        """What the elasticity of a lug adds."""
+        name = lug.connection
+        number = self.model.lugs.index(lug)
+        others = [one.lugs[number] for one in change.models]
+        work, total = self.lug_works[name], 0.0
+        if any(_made_of(one) != _made_of(lug) for one in others):
+            each = [[elasticity(part) for part in _made_of(one)] for one in others]
+            rates = [rate_of(parts, change.step) for parts in zip(*each, strict=True)]
+            total += work.by_material(name, rates)
+        at = _knots(self.model, lug)
+        knots = [_knots(*both) for both in zip(change.models, others, strict=True)]
+        if all(
+            np.abs(x - y).max() <= SAME * y[-1]
+            for one in knots
+            for x, y in zip(one, at, strict=True)
+        ):
+            return total
+        moved = [rate_of([one[k] for one in knots], change.step) for k in (0, 1)]
+        nodes = work.space.nodes
+        each_way = [np.interp(nodes[:, k], at[k], moved[k]) for k in (0, 1)]
+        velocity, lengths = np.stack(each_way, axis=1), [float(z[-1]) for _, z in knots]
+        total += work.by_shape(name, velocity)
+        return total + work.by_reaction(name, velocity, lengths, change.step)
+
+    def _by_forces(self) -> By:
+        """Of the links across, in which contact is linear, and along the axis where any act."""
+        links, out = self.links, dict[tuple[str, str], float]()
+        step = FORCE * float(np.abs(links.forces).max())
+        before = self.contact.by_loads(links)
+        for c, surface in enumerate(links.surfaces):
+            for a, axis in enumerate(AXES):
+                one = np.zeros_like(links.forces)
+                one[:, c, a] = step
+                more = replace(links, forces=links.forces + one)
+                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+            if self._acts("forces"):
+                out[surface, "z"] = self._by_one("forces", c)
+        return out
+
+    def _by_moments(self) -> By:
+        """About the axis, where any act."""
+        links = self.links
+        turns = enumerate(links.surfaces if self._acts("moments") else ())
+        return {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
+
+    def _by_one(self, what: str, c: int) -> float:
+        """Of a link's force along the axis or moment about it."""
+        none = np.zeros_like(self.links.forces)
+        one = none.copy()
+        one[:, c, 2] = 1.0
+        both = (one, none) if what == "forces" else (none, one)
+        given = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
+        along = others_along(self.model.pin, self.model.rings, given).coefficients()
+        return self.stress.of_amounts({load: both[0] for load, both in along.items()})
+
+
+def _made_of(lug: Lug) -> tuple[Material, ...]:
+    """The parts of its section."""
+    return (lug.material,) if lug.bushing is None else (lug.bushing.material, lug.material)
+
+
+def _knots(model: JointModel, lug: Lug) -> tuple[Floats, Floats]:
+    """Radii and z (m) of a lug between which the nodes of its mesh keep their places."""
+    bore, ends = model.whole.band(lug.connection).radius, model.ends[lug.connection]
+    between = [] if lug.bushing is None else [bore + lug.bushing.thickness]
+    return np.array([bore, *between, 0.5 * lug.outer_diameter]), ends - ends[0]

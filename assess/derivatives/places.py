@@ -1,0 +1,87 @@
+"""Derivatives of the largest stress in each part of a pin, on one mesh and with one adjoint's
+matrices, so that what may govern next is known beside what governs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from assess.derivatives.derivatives import Adjoint
+from assess.derivatives.records import SolvedCase
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.free_surface import reader
+from fea.harmonic.superposition import Top
+from geometry.mesh.moved.outline_motion import NodeMotion, OtherShapeError
+from geometry.shape.dimensions import Dimension
+from pinbase.arrays import Floats, Mask
+
+Parts = Sequence[tuple[str, Mask]]
+
+
+@dataclass(frozen=True)
+class PartTop:
+    """The largest stress, at any instant of a case, outside its zones in a part of the pin."""
+
+    part: str
+    case: str
+    top: Top
+
+
+def halves(stations: Sequence[float], points: Floats) -> Parts:
+    """The near and the far half of every segment between stations (m): points (S, 2) in each."""
+    out = []
+    last = len(stations) - 2
+    for k, (a, b) in enumerate(pairwise(stations)):
+        middle = 0.5 * (a + b)
+        low = -np.inf if k == 0 else a
+        high = np.inf if k == last else b
+        z = points[:, 1]
+        out.append((f"segment {k + 1}, start", (z >= low) & (z < middle)))
+        out.append((f"segment {k + 1}, end", (z >= middle) & (z < high)))
+    return out
+
+
+class PartsOfSection:
+    """Of the cases of a pin that were solved on one mesh, by some dimensions."""
+
+    def __init__(self, dimensions: tuple[Dimension, ...]) -> None:
+        self._dimensions = dimensions
+        self._first: Adjoint | None = None
+        self._motions: dict[tuple[object, ...], list[NodeMotion]] = {}
+
+    def tops(self, solved: SolvedCase, loads: PinLoads, parts: Parts) -> list[PartTop]:
+        """Of all parts with points. loads: of all instants."""
+        around = reader(solved.solution.fields, loads, solved.material.poisson_ratio)
+        outside = around.fields.outside(solved.zones)
+        return [
+            PartTop(part, loads.case, around.top(outside & mask))
+            for part, mask in parts
+            if (outside & mask).any()
+        ]
+
+    def slopes(self, solved: SolvedCase, loads: PinLoads, found: PartTop, mask: Mask) -> Floats:
+        """Of a part's largest stress by the dimensions (n,), Pa/m; 0 by one that has no derivative.
+
+        Raises: SolveError.
+        """
+        now = replace(solved, loads=loads.at(np.array([found.top.instant])), history=None)
+        adjoint = Adjoint(now, mask, self._first)
+        self._first = self._first or adjoint
+        zones = tuple(solved.zones)
+        if zones not in self._motions:
+            self._motions[zones] = self._moving(adjoint)
+        by_key = adjoint.by_motions(self._motions[zones])
+        return np.array([by_key.get(d.key, 0.0) for d in self._dimensions])
+
+    def _moving(self, adjoint: Adjoint) -> list[NodeMotion]:
+        out = []
+        for dimension in self._dimensions:
+            try:
+                out.append(adjoint.outline_nodes.motion(dimension))
+            except OtherShapeError:
+                continue
+        return out

@@ -1,0 +1,188 @@
+"""The largest stress of a pin under given pressures of its lugs: what these add to it, and what
+changes of the joint do while they stay. Of the surface, and of sections.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from assess.derivatives.derivatives import Adjoint
+from assess.derivatives.governing import turned
+from assess.derivatives.in_section import GoverningSection, on_sections
+from assess.derivatives.reading_point import Continued
+from assess.derivatives.records import SolvedCase
+from assess.derivatives.ties import tied_places, tied_times
+from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.support.contact.pressure_loads import others_along, resultants
+from fea.support.contact.solve_joint import JointModel
+from geometry import Pin
+from geometry.mesh.moved.outline_motion import NodeMotion, rate_of
+from pinbase.arrays import Floats
+
+
+@dataclass(frozen=True)
+class JointStep:
+    """Of a parameter, by its key: the joint at PLACES times a step (m, or its unit) more of it.
+    flexible: the motion of the outline on the mesh of the pin's flexibility, None where the pin
+    stays.
+    """
+
+    key: str
+    models: tuple[JointModel, ...]
+    step: float
+    flexible: NodeMotion | None
+
+    @property
+    def pins(self) -> tuple[Pin, ...]:
+        """With their rings."""
+        return tuple(one.pin for one in self.models)
+
+    def rate(self, of: Callable[[JointModel], Floats | float]) -> Floats:
+        """Of what the joint has."""
+        return rate_of([np.asarray(of(one)) for one in self.models], self.step)
+
+
+class PressedStress(Protocol):
+    """A stress, Pa, by pressures at one instant."""
+
+    @property
+    def maximum(self) -> float: ...
+
+    @property
+    def tied_places(self) -> tuple[tuple[float, float], ...]: ...
+
+    @property
+    def tied_times(self) -> tuple[float, ...]: ...
+
+    def by_pressures(self) -> Floats:
+        """Gradient by the amplitudes of pressures on the rings, (N + 1, R, 2)."""
+
+    def require(self, change: JointStep) -> None:
+        """Raises: OtherShapeError where a change gives another shape."""
+
+    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+        """Of each change, by its key, what it does under the same pressures."""
+
+    def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
+        """What amounts (2,) of unit loads along the axis and about it, by phase, add."""
+
+
+class OfSurface:
+    """The largest over the surface of a pin (assess.derivatives.derivatives)."""
+
+    def __init__(self, solved: SolvedCase, model: JointModel, links: PinLoads) -> None:
+        self._solved, self._model, self._links = solved, model, links
+        self._adjoint = Adjoint(solved)
+        self._motions: dict[str, NodeMotion] = {}
+
+    @property
+    def maximum(self) -> float:
+        return self._adjoint.top.value
+
+    @property
+    def tied_places(self) -> tuple[tuple[float, float], ...]:
+        adjoint, solved = self._adjoint, self._solved
+        return tied_places(adjoint.around, solved.zones, adjoint.top, solved.error)
+
+    @property
+    def tied_times(self) -> tuple[float, ...]:
+        return tied_times(self._solved, self.maximum)
+
+    def by_pressures(self) -> Floats:
+        model, adjoint = self._model, self._adjoint
+        out = np.zeros((model.cells.highest + 1, len(model.rings), 2))
+        for k, wave in enumerate(adjoint.waves):
+            if wave.n < len(out):
+                loads = [UnitLoad("", "pressure", wave.n, ((name, 1.0),)) for name in model.rings]
+                each = turned(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
+                out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
+        return out
+
+    def require(self, change: JointStep) -> None:
+        if change.flexible is not None:
+            nodes = self._adjoint.outline_nodes
+            self._motions[change.key] = nodes.among(change.key, change.pins, change.step)
+
+    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+        moved = [self._motions[x.key] for x in changes if x.flexible is not None]
+        out = self._adjoint.by_motions(moved)
+        for x in changes:
+            out[x.key] = out.get(x.key, 0.0) + self._by_material(x) + self._by_shares(x)
+        return out
+
+    def _by_material(self, change: JointStep) -> float:
+        """Of the pin; and of a lug, by the exponent of the pressure at its edge."""
+        adjoint, point, total = self._adjoint, self._adjoint.point, 0.0
+        if isinstance(point, Continued):
+            more = change.rate(lambda one: one.on_shaft.exponent[point.cusp.ring])
+            if more:
+                total += float(more) * adjoint.by_exponent()
+        if poisson := float(change.rate(lambda one: one.material.poisson_ratio)):
+            total += poisson * adjoint.by_poisson()
+        if density := float(change.rate(lambda one: one.material.density or 0.0)):
+            total += density * adjoint.by_density()
+        return total
+
+    def _by_shares(self, change: JointStep) -> float:
+        """Of what acts along the axis and about it, which rings take by their lengths."""
+        links = self._links
+        along = links.forces[..., 2].any() or links.moments[..., 2].any()
+        if change.flexible is None or not along:
+            return 0.0
+        each = [others_along(x.pin, x.rings, links).coefficients() for x in change.models]
+        rates = {load: rate_of([x[load][0] for x in each], change.step) for load in each[0]}
+        return self.of_amounts(rates)
+
+    def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
+        total, adjoint = 0.0, self._adjoint
+        for load, both in amounts.items():
+            parts = turned(load.n, both, adjoint.top.angle)
+            for k, wave in enumerate(adjoint.waves):
+                if wave.n == load.n and parts[wave.part]:
+                    total += float(parts[wave.part] * adjoint.of_loads(k, [load])[0])
+        return total
+
+
+class OfSections:
+    """The largest over the sections of a pin (assess.derivatives.in_section), which feel the
+    resultants of the pressures alone.
+    """
+
+    def __init__(self, solved: SolvedCase, model: JointModel, links: PinLoads) -> None:
+        self._model, self._links = model, links
+        self._section = GoverningSection(solved, on_sections(solved.loads))
+        self._waves = model.waves(model.pressed(links))
+        self.tied_places = self._section.tied_places
+        self.tied_times = self._section.tied_times
+
+    @property
+    def maximum(self) -> float:
+        return self._section.maximum
+
+    def by_pressures(self) -> Floats:
+        model = self._model
+        out = np.zeros((model.cells.highest + 1, len(model.rings), 2))
+        area = np.array([model.pin.band(name).area for name in model.rings])
+        for c, name in enumerate(model.rings):
+            load = UnitLoad(name, "force", 1)
+            each = [self._section.of_amounts({load: one}) for one in np.eye(2)]
+            out[1, c] = -0.5 * area[c] * np.array(each)
+        return out
+
+    def require(self, change: JointStep) -> None:
+        self._value(change.models[0])
+
+    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+        return {x.key: float(x.rate(self._value)) for x in changes}
+
+    def _value(self, model: JointModel) -> float:
+        """Under the same pressures. Raises: OtherShapeError."""
+        on_rings = resultants(model.pin, model.rings, self._waves, self._links)
+        return self._section.value(model.pin, model.material, on_rings)
+
+    def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
+        return self._section.of_amounts(dict(amounts))

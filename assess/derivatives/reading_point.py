@@ -1,0 +1,273 @@
+"""The stress that is read at one point of a section's mesh, as a function of what is near it.
+
+A point is read as fea.harmonic.stress_recovery reads it: on the surface from the strains of its
+edge and the ones before and after it; inside, on clamped surfaces and on rims of excluded zones
+from the samples of the nearest elements; where a pressure ends from samples further on. Where lugs
+press on the surface it may be a combination of such (fea.harmonic.free_surface). Nodes may move,
+and then the point moves with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea.core.local_fit import NEIGHBOURS, at_one_place
+from fea.core.material import Material
+from fea.harmonic.assembly import Section, elasticity, strain_map
+from fea.harmonic.boundary import Outline, shapes
+from fea.harmonic.free_surface import Cusp, relief
+from fea.harmonic.pressure_edge import Jump, at_edge
+from fea.harmonic.stress_recovery import AXIS
+from fea.harmonic.surface_stress import AT, on_edges, smooth_neighbours
+from geometry.mesh.section_mesh import triangle_shapes
+from pinbase.arrays import Floats, Ints
+
+_TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class SectionState:
+    """A section with nodes (N, 2), m, and tractions (E, 3, 3, K), Pa, on its outline's edges.
+    places: (Z, 3) r, z and radius of the excluded zones, m.
+    """
+
+    nodes: Floats
+    traction: Floats
+    places: Floats
+
+
+class ReadingPoint(Protocol):
+    """A point, and the numbers (L,) of the nodes on whose displacements its stress depends."""
+
+    @property
+    def nodes(self) -> Ints: ...
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        """Amplitudes (6, K) Pa of displacements u (L, 3, K), m, of these nodes, of harmonics n
+        (K,).
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class OnSkin:
+    """Some points (P,) of the skin. edges: those they are on, and the ones before and after these
+    that go on smoothly; neighbours: of each before and after it, numbers among these or -1. of:
+    (P,) the edge of each point, likewise; at: (P,) which of its five it is.
+    """
+
+    outline: Outline
+    edges: Ints
+    neighbours: tuple[Ints, Ints]
+    of: Ints
+    at: Ints
+
+    @cached_property
+    def nodes(self) -> Ints:
+        return np.unique(self.outline.nodes[self.edges])
+
+    @cached_property
+    def _local(self) -> Ints:
+        return np.searchsorted(self.nodes, self.outline.nodes[self.edges])
+
+    def each(
+        self, material: Material, state: SectionState, n: Ints, u: Floats
+    ) -> tuple[Floats, Floats]:
+        """Where the points are, (P, 2) m, and the stress there, (P, 6, K) Pa."""
+        x = state.nodes[self.outline.nodes[self.edges]]
+        traction = state.traction[self.edges]
+        found = on_edges(material, n, x, u[self._local], traction, self.neighbours)
+        return found.points[self.of, self.at], found.stress[self.of, self.at]
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        """Of the only point."""
+        return np.asarray(self.each(material, state, n, u)[1][0])
+
+
+def on_skin(outline: Outline, traction: Floats, edges: Ints, at: Ints) -> OnSkin:
+    """Points `at` of edges. traction: (E, 3, 3, K) Pa, whose jumps separate edges."""
+    x = outline.every_node[outline.nodes]
+    both = [found[edges] for found in smooth_neighbours(outline, x, traction)]
+    every = np.unique(np.concatenate([edges, *(some[some >= 0] for some in both)]))
+    local = []
+    for found in smooth_neighbours(outline, x, traction):
+        near = found[every]
+        known = np.isin(near, every) & np.isin(every, edges)
+        local.append(np.where(known, np.searchsorted(every, near), -1))
+    return OnSkin(outline, every, (local[0], local[1]), np.searchsorted(every, edges), at)
+
+
+@dataclass(frozen=True)
+class Relieved:
+    """A point in the middle of a ring, without the local stress of its pressure
+    (fea.harmonic.free_surface).
+    """
+
+    point: OnSkin
+
+    @property
+    def nodes(self) -> Ints:
+        return self.point.nodes
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        found = self.point.stress(material, state, n, u)
+        return np.asarray(found - relief(material.poisson_ratio)[:, None] * found[0])
+
+
+@dataclass(frozen=True)
+class Continued:
+    """The edge of a lug, at a node, by points of the skin beside it; exponent: of the pressure
+    there.
+    """
+
+    points: OnSkin
+    cusp: Cusp
+    edge: int
+
+    @property
+    def nodes(self) -> Ints:
+        return self.points.nodes
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        at, found = self.points.each(material, state, n, u)
+        weights = self.cusp.weights(at[:, 1], float(state.nodes[self.edge, 1]))
+        return np.asarray(np.einsum("p,pck->ck", weights, found))
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Some of a section's samples: `which` (S,), three to an element."""
+
+    space: Section
+    which: Ints
+
+    @cached_property
+    def elements(self) -> Ints:
+        """(m,) of all that they are in."""
+        return np.unique(self.which // 3)
+
+    @cached_property
+    def nodes(self) -> Ints:
+        """(L,) of these elements."""
+        return np.unique(self.space.elements[self.elements])
+
+    @cached_property
+    def _local(self) -> tuple[Ints, Ints]:
+        rows = np.searchsorted(self.elements, self.which // 3)
+        return rows, self.which % 3
+
+    def read(self, material: Material, nodes: Floats, n: Ints, u: Floats) -> tuple[Floats, Floats]:
+        """Where they are (S, 2), m, and the stress there (S, 6, K), Pa, of the displacements u
+        (L, 3, K) of harmonics n (K,).
+        """
+        members = self.space.elements[self.elements]
+        x, moved = nodes[members], u[np.searchsorted(self.nodes, members)]
+        values, slopes = _reference(self.space)
+        at = np.einsum("qi,mia->mqa", values, x)
+        jacobian = np.einsum("qid,mia->mqad", slopes, x)
+        gradients = np.einsum("qid,mqda->mqia", slopes, np.linalg.inv(jacobian))
+        over_r = values / at[..., :1]
+        G = np.concatenate([gradients, over_r[..., None]], axis=3)  # (m, q, i, a)
+        unknowns = np.einsum("pc,mick->mipk", _TO_UNKNOWNS, moved)
+        E = np.stack([strain_map(int(one)) for one in n], axis=-1)  # (6, 3, 3, K)
+        strain = np.einsum("spak,mqia,mipk->mqsk", E, G, unknowns)
+        rows, q = self._local
+        return at[rows, q], np.einsum("ts,xsk->xtk", elasticity(material), strain[rows, q])
+
+
+def _reference(space: Section) -> tuple[Floats, Floats]:
+    """Shape functions (3, 6) and their slopes (3, 6, 2) at the samples of an element."""
+    values, slopes = triangle_shapes(space.sampled_at)
+    return values.T, slopes.T
+
+
+@dataclass(frozen=True)
+class FromInside:
+    """Parts of values that are continued from the nearest samples to places: at `on` (node numbers)
+    or, without, at `place` (r, z) on the rim of a zone.
+    """
+
+    samples: tuple[Samples, ...]
+    shares: tuple[float, ...]
+    on: tuple[int, ...]
+    place: tuple[float, float] = (0.0, 0.0)
+    zone: int = -1
+    zone_at: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+    @cached_property
+    def nodes(self) -> Ints:
+        return np.unique(np.concatenate([s.nodes for s in self.samples]))
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        out = np.zeros((6, u.shape[2]))
+        places = [state.nodes[k] for k in self.on] or [self._on_rim(state)]
+        for samples, share, place in zip(self.samples, self.shares, places, strict=True):
+            mine = u[np.searchsorted(self.nodes, samples.nodes)]
+            at, found = samples.read(material, state.nodes, n, mine)
+            distance = np.hypot(*(at - place).T)
+            weights = at_one_place(at - place, 1.0 - (distance / distance[-1]) ** 2)
+            out += share * np.einsum("s,sck->ck", weights, found)
+        return out
+
+    def _on_rim(self, state: SectionState) -> Floats:
+        if self.zone < 0:
+            return np.array(self.place)
+        r, z, radius = self.zone_at
+        now = state.places[self.zone]
+        offset = np.array(self.place) - [r, z]
+        return np.asarray(now[:2] + offset * (now[2] / radius))
+
+
+@dataclass(frozen=True)
+class AtJump:
+    """A direction at the end of a pressure (fea.harmonic.pressure_edge), by its number."""
+
+    outline: Outline
+    jump: Jump
+    samples: Samples
+    direction: int
+
+    @property
+    def nodes(self) -> Ints:
+        return self.samples.nodes
+
+    def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
+        before, after = self.jump.before, self.jump.after
+        edges = self.outline.nodes
+        x = state.nodes[[edges[before, 0], edges[before, 1], edges[after, 1]]]
+        at, found = self.samples.read(material, state.nodes, n, u)
+        normal, weights, field = at_edge((x[0], x[1], x[2]), at, material.poisson_ratio)
+        more = state.traction[after, 0] - state.traction[before, 1]
+        smooth = np.einsum("s,sck->ck", weights, found)
+        return np.asarray(smooth + field[self.direction][:, None] * (normal @ more[[0, 2]]))
+
+
+def nearest(space: Section, places: Sequence[Floats]) -> tuple[Samples, ...]:
+    """Those from which fea.core.local_fit.continuation takes the value at each place."""
+    count = min(NEIGHBOURS, len(space.samples))
+    tree = cKDTree(space.samples)
+    return tuple(Samples(space, np.asarray(tree.query(place, count)[1])) for place in places)
+
+
+def at_node(space: Section, node: int) -> FromInside:
+    """An inner node."""
+    return FromInside(nearest(space, [space.nodes[node]]), (1.0,), (node,))
+
+
+def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside:
+    """Point `at` of a clamped edge or one on the axis."""
+    parts = shapes(AT[at : at + 1])[0]
+    some = [(float(p), int(k)) for p, k in zip(parts, outline.nodes[edge], strict=True) if p]
+    on = tuple(k for _, k in some)
+    return FromInside(nearest(space, [space.nodes[k] for k in on]), tuple(p for p, _ in some), on)
+
+
+def on_axis(space: Section, r: float) -> bool:
+    """Whether a radius (m) is nothing."""
+    return bool(r < AXIS * space.nodes[:, 0].max())

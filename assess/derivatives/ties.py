@@ -1,0 +1,51 @@
+"""Other places and times at which stress is as large as the maximum, as far as is known."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from assess.derivatives.records import SolvedCase
+from fea.core.pin_loads import PinLoads
+from fea.core.solution import Answer
+from fea.harmonic.evaluate import HarmonicAnswer, high_places
+from fea.harmonic.superposition import Circumference, Top
+from fea.singular.singularities import Singularity
+
+
+def tied_places(
+    around: Circumference,
+    zones: Iterable[Singularity],
+    top: Top,
+    error: float,
+) -> tuple[tuple[float, float], ...]:
+    """(r, z), m, at the governing instant, well apart; error: of the maximum, relative."""
+    fields = around.fields
+    return high_places(around, fields.points, fields.outside(zones), top, 1.0 - error)[1:]
+
+
+def tied_times(solved: SolvedCase, maximum: float) -> tuple[float, ...]:
+    """Of crests in time other than the governing one, s, each at its highest."""
+    return crests(HarmonicAnswer(solved.solution, solved.zones), solved, maximum)
+
+
+def crests(
+    answer: Answer,
+    solved: SolvedCase,
+    maximum: float,
+    felt: Callable[[PinLoads], PinLoads] = lambda loads: loads,
+) -> tuple[float, ...]:
+    """The same of any answer; felt: what it notices of loads."""
+    every, times = solved.history, solved.loads.times
+    if every is None or every.times is None or times is None:
+        return ()
+    least, now, at = (1.0 - solved.error) * maximum, float(times[0]), every.times
+    maxima = answer.maxima(felt(every), least)
+    high = np.flatnonzero(maxima > least)
+    runs = np.split(high, np.flatnonzero(np.diff(high) > 1) + 1)
+    return tuple(
+        float(at[crest[maxima[crest].argmax()]])
+        for crest in runs
+        if len(crest) and not at[crest[0]] <= now <= at[crest[-1]]
+    )

@@ -1,0 +1,114 @@
+"""How the work of stresses on virtual displacements changes when the nodes of a section move.
+
+The stiffness K of a harmonic does the work l^T K u = integral of e(l)^T D e(u) r dA about the axis,
+where strains are linear in G = (u,r u,z u/r) of every unknown. If all points move by V, shape
+functions move with them, so that
+
+    d(u,b) = - sum over a of u,a V_a,b    d(u/r) = -(u/r) V_r / r    d(r dA) = (div V + V_r/r) r dA
+
+at every point, quadrature points of the elements included. So the rate of the work, of the discrete
+problem exactly, is the integral of W : grad V + w V_r / r with
+
+    W_ab = e d_ab - sum over unknowns of (G_a(l) P_b(u) + G_a(u) P_b(l))
+    w    = e      - sum over unknowns of (G_3(l) P_3(u) + G_3(u) P_3(l))
+
+e the density of the work and P the stresses that work on G. It is linear in V: a vector of the
+nodes, found once for all ways to move them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fea.core.linear_solver import ConstrainedSystem
+from fea.harmonic.assembly import Section, around, strain_map
+from pinbase.arrays import Floats, Ints
+
+CHUNK = 8192  # elements at once
+COLUMNS = 32  # motions at once
+
+
+def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> Floats:
+    """Rate (N, 2) of adjoint^T K u, N m per m, with the coordinates r, z of every node; u, adjoint
+    (3 N,): unknowns of harmonic n. D: fea.harmonic.assembly.elasticity, (6, 6) or of each element.
+    """
+    out = np.zeros((len(space.nodes), 2))
+    for here, gradients, weights, (G, L) in _parts(space, (u, adjoint)):
+        P, Q = (_conjugate(D, here, n, x) for x in (G, L))
+        both = np.einsum("mqca,mqcb->mqab", L, P) + np.einsum("mqca,mqcb->mqab", G, Q)
+        work = np.einsum("mqca,mqca->mq", L, P)
+        of = work[..., None] - np.stack([both[..., a, a] for a in range(3)], axis=-1)
+        W = -both[..., :2, :2]
+        W[..., 0, 0], W[..., 1, 1] = of[..., 0], of[..., 1]
+        rate = np.einsum("mq,mqab,mqbi->mia", weights, W, gradients[:, :, :2])
+        rate[..., 0] += np.einsum("mq,mq,mqi->mi", weights, of[..., 2], gradients[:, :, 2])
+        nodes = space.elements[here]
+        for a in range(2):
+            out[:, a] += np.bincount(nodes.ravel(), rate[..., a].ravel(), len(out))
+    return around(n) * out
+
+
+def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float:
+    """adjoint^T K u, N m, of such a D."""
+    total = 0.0
+    for here, _, weights, (G, L) in _parts(space, (u, adjoint)):
+        total += float(np.einsum("mq,mqca,mqca->", weights, L, _conjugate(D, here, n, G)))
+    return around(n) * total
+
+
+def _parts(
+    space: Section, unknowns: tuple[Floats, ...]
+) -> Iterator[tuple[slice, Floats, Floats, list[Floats]]]:
+    """Elements, chunk by chunk, with the gradients of their shape functions, their weights, and
+    G (M, Q, 3, 3) of each vector of unknowns.
+    """
+    gradients, weights = space.quadrature
+    at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
+    for k in range(0, len(weights), CHUNK):
+        here = slice(k, k + CHUNK)
+        G = [np.einsum("mqai,mic->mqca", gradients[here], x[here]) for x in at_nodes]
+        yield here, gradients[here], weights[here], G
+
+
+def _conjugate(D: Floats, here: slice, n: int, G: Floats) -> Floats:
+    """The stresses (M, Q, 3, 3) that work on G: derivatives of half e^T D e."""
+    E = strain_map(n).reshape(6, 9)
+    own = D[here] if D.ndim > 2 else D
+    return np.asarray((G.reshape(*G.shape[:2], 9) @ (E.T @ own @ E)).reshape(G.shape))
+
+
+def integral_rate(space: Section, velocity: Floats) -> Floats:
+    """Rate (N,) of Section.integrals, m^3 per unit, with the nodes' velocities (N, 2)."""
+    gradients, weights = space.quadrature
+    value = gradients[:, :, 2] * space.radii[..., None]
+    v = velocity[space.elements]
+    rate = np.einsum("mqai,mia->mq", gradients[:, :, :2], v)
+    rate += np.einsum("mqi,mi->mq", gradients[:, :, 2], v[..., 0])
+    found = np.einsum("mq,mqi->mi", weights * rate, value)
+    count = len(space.nodes)
+    return np.bincount(space.elements.ravel(), found.ravel(), count).astype(np.float64)
+
+
+class Interior:
+    """Velocities of all nodes of a section from those of its outline: harmonic functions."""
+
+    def __init__(self, space: Section, outline: Ints) -> None:
+        gradients, weights = space.quadrature
+        root = np.sqrt(weights / space.radii)
+        flat = (gradients[:, :, :2] * root[..., None, None]).reshape(len(weights), -1, 6)
+        blocks = space.pattern.sums(flat.swapaxes(1, 2) @ flat)
+        self._matrix = space.pattern.matrix(blocks.reshape(-1, 1, 1))
+        self._free = np.ones(len(space.nodes))
+        self._free[outline] = 0.0
+        self._outline = outline
+        self._system = ConstrainedSystem(self._matrix)
+
+    def velocity(self, on_outline: Floats) -> Floats:
+        """(N, 2, P) of those of the outline's nodes (B, 2, P)."""
+        count = on_outline.shape[2]
+        out = np.zeros((len(self._free), 2 * count))
+        out[self._outline] = on_outline.reshape(len(self._outline), -1)
+        out += self._system.solve(self._matrix.copy(), self._free, -(self._matrix @ out))
+        return out.reshape(-1, 2, count)

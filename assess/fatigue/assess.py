@@ -1,0 +1,225 @@
+"""Damage at a critical point under a spectrum, by one of three methods.
+
+signed-von-mises   rainflow of the signed von Mises stress, mean stress, S-N curve
+critical-plane     Findley's plane of largest damage                  (`critical_plane`)
+fkm-p-ram          local strains by the FKM guideline                 (`fkm`)
+
+The first and the last take one course of stress with a sign. Where none stands for the history
+(assess.fatigue.proportional), the critical plane is taken instead, or the history is refused.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import inf, isfinite
+from typing import Literal
+
+import numpy as np
+
+from assess.fatigue.critical_plane import findley_k, worst_plane
+from assess.fatigue.fkm import FkmMaterial, p_ram_life
+from assess.fatigue.flight import Cycles, case_by_case, flight, rainflow
+from assess.fatigue.proportional import SEEN, SignedCourse, course
+from assess.fatigue.records import PointFatigue, PointHistory
+from assess.fatigue.sn_curve import SnCurve
+from pinbase.arrays import Floats
+from pinbase.errors import ArgumentError
+
+Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
+SHOWN = (0.1, 0.5, 0.9)  # failure probabilities
+SHEAR = 2.0 / 3.0**0.5  # Tresca's stress over von Mises stress, at most
+LEAST = 0.01  # of the largest amplitude: smaller ones are not shown
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """occurrences: of cases per unit. probability: of failure at which damage is found, by default
+    that of the S-N data. life: in units, for which the pin is designed.
+    """
+
+    occurrences: Mapping[str, float]
+    method: Method = "signed-von-mises"
+    probability: float | None = None
+    life: float | None = None
+
+
+@dataclass(frozen=True)
+class FatigueMaterial:
+    """What a method needs: an S-N curve, Findley's mean stress sensitivity, FKM's data."""
+
+    curve: SnCurve | None = None
+    sensitivity: float | None = None
+    fkm: FkmMaterial | None = None
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Damage per unit at a probability (None: the asked one), and the cycles behind it."""
+
+    damage: dict[float | None, float]
+    amplitude: float
+    mean: float
+    equivalent: Floats
+    units: int
+    normal: Floats | None = None
+
+
+def assess(
+    history: PointHistory, spectrum: Spectrum, material: FatigueMaterial
+) -> PointFatigue | None:
+    """Damage at a point; None where no case of the spectrum acts, or no data are given for the
+    method.
+
+    Raises: ArgumentError where the method cannot see the history and the critical plane, which can,
+    lacks data (`unseen-history`).
+    """
+    cases = [c for c in history.cases if spectrum.occurrences.get(c.case, 0.0) > 0.0]
+    if not cases or (material.fkm if spectrum.method == "fkm-p-ram" else material.curve) is None:
+        return None
+    often, seen = [spectrum.occurrences[c.case] for c in cases], course(cases)
+    method, note = _method(spectrum, seen, material)
+    if method == "fkm-p-ram":
+        found = _by_fkm(seen.cases, often, spectrum, material)
+    elif method == "critical-plane":
+        found = _by_plane([c.stress for c in cases], often, spectrum, material)
+    else:
+        found = _by_sign(seen.cases, often, spectrum, material)
+    damage = found.damage[None]
+    shown, counts = _collective(found.equivalent, found.units)
+    return PointFatigue(
+        pin=history.pin,
+        point=history.point,
+        location=history.location,
+        cases=tuple(c.case for c in cases),
+        method=method,
+        damage=damage,
+        life=_life(damage),
+        lives=tuple(_life(found.damage[p]) for p in SHOWN if p in found.damage),
+        utilisation=None if spectrum.life is None else damage * spectrum.life,
+        amplitude=found.amplitude,
+        mean=found.mean,
+        amplitudes=shown,
+        counts=counts,
+        note="; ".join(filter(None, (history.chosen, note))),
+        normal=None if found.normal is None else history.in_pin_axes(found.normal),
+    )
+
+
+def _method(
+    spectrum: Spectrum, seen: SignedCourse, material: FatigueMaterial
+) -> tuple[Method, str]:
+    """The method that sees the history, and why, if it is not the asked one."""
+    asked, curve = spectrum.method, material.curve
+    if asked == "critical-plane":
+        return asked, ""
+    if seen.stands:
+        return asked, seen.note
+    if _harmless(SHEAR * seen.largest, spectrum, material):
+        return asked, "the stress is not proportional, but does no damage in any direction"
+    why = (
+        f"the stress is not proportional (off by {100.0 * seen.unseen:.0f} % of its largest value, "
+        f"above {100.0 * SEEN:.0f} %), which {asked} cannot see"
+    )
+    needs = ""
+    if curve is None:
+        needs = "an S-N curve"
+    elif material.sensitivity is None and curve.rule != "none":
+        needs = "the mean_stress_sensitivity of the S-N curve"
+    elif spectrum.probability not in (None, curve.probability) and curve.scatter == 1.0:
+        needs = "the scatter of the S-N curve"
+    if needs:
+        raise ArgumentError(f"{why}; the critical plane needs {needs}", "unseen-history")
+    return "critical-plane", f"{why}: by the critical plane"
+
+
+def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> bool:
+    """Whether cycles of this amplitude, Pa, at stress ratio -1 do no damage."""
+    if spectrum.method == "fkm-p-ram":
+        assert material.fkm is not None
+        both = np.array([0.0, largest, -largest, 0.0])
+        return p_ram_life(both, material.fkm, spectrum.probability or 0.5).infinite
+    assert material.curve is not None
+    return not material.curve.life(spectrum.probability).damage(np.array([largest])).any()
+
+
+def _life(damage: float) -> float | None:
+    return 1.0 / damage if damage > 0.0 and isfinite(damage) else (0.0 if damage else None)
+
+
+def _by_sign(
+    courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
+) -> _Found:
+    curve, order = material.curve, flight(often)
+    assert curve is not None
+    cycles = rainflow(order.sequence([case_by_case(course)[0] for course in courses]))
+    equivalent = curve.equivalent(cycles.amplitude, cycles.mean)
+    damage = _damage(curve, equivalent, order.units, spectrum.probability)
+    return _Found(damage, *_largest(cycles, equivalent), equivalent, order.units)
+
+
+def _by_plane(
+    courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
+) -> _Found:
+    curve, order = material.curve, flight(often)
+    assert curve is not None
+    life = curve.life(spectrum.probability)
+    worst = worst_plane(courses, order, findley_k(material.sensitivity or 0.0), life)
+    damage = _damage(curve, worst.equivalent, order.units, spectrum.probability)
+    largest = _largest(worst.shear, worst.equivalent)
+    return _Found(damage, *largest, worst.equivalent, order.units, worst.normal)
+
+
+def _by_fkm(
+    courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
+) -> _Found:
+    order, data = flight(often), material.fkm
+    assert data is not None
+    sequence = order.sequence([case_by_case(course)[0] for course in courses])
+    cycles = rainflow(sequence)
+
+    found: dict[float | None, float] = dict.fromkeys((None, *SHOWN), 0.0)
+    if sequence.any():
+        whole = np.append(sequence, 0.0)
+        middle = p_ram_life(whole, data)
+        asked = middle
+        if spectrum.probability not in (None, 0.5):
+            asked = p_ram_life(whole, data, spectrum.probability)
+        if not asked.infinite:
+            found[None] = _per_unit(asked.repetitions, order.units)
+        if not middle.infinite and middle.at is not None:
+            found |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN}
+    return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
+
+
+def _per_unit(repetitions: float, units: int) -> float:
+    return 1.0 / (repetitions * units) if repetitions > 0.0 else inf
+
+
+def _damage(
+    curve: SnCurve, equivalent: Floats, units: int, probability: float | None
+) -> dict[float | None, float]:
+    """Per unit, at the asked probability and, with a scatter, at those that are shown."""
+    every = (None, *SHOWN) if curve.scatter > 1.0 else (None,)
+    return {
+        p: curve.damage(equivalent, 1.0 / units, probability if p is None else p) for p in every
+    }
+
+
+def _largest(cycles: Cycles, equivalent: Floats) -> tuple[float, float]:
+    """Amplitude and mean of the cycle that is largest at stress ratio -1, Pa."""
+    if not len(equivalent):
+        return 0.0, 0.0
+    k = int(equivalent.argmax())
+    return float(cycles.amplitude[k]), float(cycles.mean[k])
+
+
+def _collective(equivalent: Floats, units: int) -> tuple[Floats, Floats]:
+    """Different amplitudes (C,) Pa, the largest first, and how often each occurs per unit."""
+    largest = equivalent.max(initial=0.0)
+    if not isfinite(largest):
+        largest = float(equivalent[equivalent < inf].max(initial=0.0))
+    kept = equivalent[(equivalent >= LEAST * largest) & (equivalent < inf)]
+    scale = largest * 1e-6 or 1.0
+    values, counts = np.unique(np.round(kept / scale), return_counts=True)
+    return values[::-1] * scale, counts[::-1] / units

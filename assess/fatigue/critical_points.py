@@ -1,0 +1,177 @@
+"""The few points of a pin at which fatigue is assessed, and the stress there over all cases.
+
+Damage follows the range of stress, not its peak, and is larger where the mean is tensile. So the
+surface is searched for local maxima of `a + 0.3 m` over all cases, zero load included: m is the
+signed von Mises stress of the tensor in the middle of the range of each component, and a the
+largest von Mises stress of the difference from it, which sees stress that changes its sign or its
+direction. Singular zones are left out; where lugs press on the pin, points have the stress that
+assess.fatigue.pressed_points says. The points of the largest von Mises stress are added to them.
+
+One mesh is searched, that of the case with the largest stress; of other cases' meshes the nearest
+node answers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from assess.fatigue.records import CaseHistory, PointHistory
+from assess.fatigue.signed_stress import signed_von_mises
+from assess.fatigue.stress_points import StressPoints, stress_points
+from fea.core.voigt import von_mises
+from fea.solve.solve_pin import Solution
+from pinbase.arrays import Floats, Ints
+
+COARSE, FINE = 16, 72  # angles about the axis
+FEW, MORE = 12, 48  # instants
+MEAN = 0.3  # usual mean stress sensitivity of steel
+MOST = 4  # local maxima
+COUNTS = 0.3  # of the largest: lower ones are no candidates
+APART = 0.25  # of the distance from the axis: so far apart local maxima are
+SAME = 0.05  # of that: nearer points are one
+SOME = 2  # of the points one in so many is compared with others
+TRIED = 500  # points whose neighbours are compared
+CLOSE = 9  # points about a local maximum that are compared at all angles
+CHUNK = 16_384  # points and angles, by cases, at once
+
+
+@dataclass(frozen=True)
+class _Place:
+    point: Floats  # (3,) m, of a body of revolution at theta = 0
+    angle: float
+    chosen: str
+
+    @property
+    def location(self) -> Floats:
+        x, y, z = self.point
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.array([c * x - s * y, s * x + c * y, z])
+
+
+@dataclass(frozen=True)
+class _Case:
+    solution: Solution
+    known: StressPoints
+
+    def instants(self, most: int) -> Ints:
+        """Some, evenly, with the governing one."""
+        even = np.linspace(0, self.known.count - 1, most).round().astype(np.int64)
+        return np.unique(np.append(even, self.solution.instant))
+
+
+def stress_histories(pin: str, solutions: Sequence[Solution]) -> tuple[PointHistory, ...]:
+    """At the critical points of a pin, from the solutions of its cases; none where no case was
+    solved.
+    """
+    cases = [
+        _Case(solution, known)
+        for solution in solutions
+        if (known := stress_points(solution.answer, solution.loads)) is not None
+    ]
+    if not cases:
+        return ()
+    return tuple(
+        PointHistory(
+            pin,
+            k,
+            _tuple(place.location),
+            place.chosen,
+            _at(place, cases),
+            cases[0].known.revolved,
+        )
+        for k, place in enumerate(_places(cases), 1)
+    )
+
+
+def _tuple(point: Floats) -> tuple[float, float, float]:
+    x, y, z = point.tolist()
+    return x, y, z
+
+
+def _at(place: _Place, cases: Sequence[_Case]) -> tuple[CaseHistory, ...]:
+    found = []
+    for case in cases:
+        known, loads = case.known, case.solution.loads
+        row = _nearest(known, place.point[None])
+        stress = known.at(row, np.array([place.angle]), np.arange(known.count))[0]
+        signed, plain = signed_von_mises(stress), von_mises(stress)
+        found.append(CaseHistory(loads.case, loads.times, stress, plain, signed))
+    return tuple(found)
+
+
+def _places(cases: Sequence[_Case]) -> list[_Place]:
+    out: list[_Place] = []
+    for place in (*_local_maxima(cases), *_governing(cases)):
+        near = SAME * float(np.hypot(*place.point[:2]))
+        if all(np.linalg.norm(place.location - other.location) > near for other in out):
+            out.append(place)
+    return out
+
+
+def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
+    """Where von Mises stress of the surface is largest in each case."""
+    for case in cases:
+        peak = case.solution.peak
+        at = peak.location if peak.places is None else peak.places.surface.location
+        text = f"largest von Mises stress, {peak.case}"
+        if at is None:
+            continue
+        x, y, z = at
+        if case.known.revolved:
+            yield _Place(np.array([np.hypot(x, y), 0.0, z]), float(np.arctan2(y, x)), text)
+        else:
+            yield _Place(np.array(at), 0.0, text)
+
+
+def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
+    base = max(cases, key=lambda case: case.solution.peak.max_von_mises or 0.0).known
+    rows = np.flatnonzero(base.surface)
+    if not len(rows):
+        return
+    every, points = base.points[rows], base.points[rows[::SOME]]
+    score = _score(cases, points, COARSE, FEW).max(axis=1)
+    whole, tree, radius = KDTree(every), KDTree(points), np.hypot(points[:, 0], points[:, 1])
+    order = np.argsort(-score, kind="stable")[:TRIED]
+    chosen: list[int] = []
+    for k in order:
+        if len(chosen) == MOST or score[k] <= COUNTS * score[order[0]]:
+            return
+        near = tree.query_ball_point(points[k], APART * radius[k])
+        if score[near].max() > score[k] or set(near) & set(chosen):
+            continue
+        chosen.append(int(k))
+        _, about = whole.query(points[k], min(CLOSE, len(every)))
+        about = np.atleast_1d(about)
+        fine = _score(cases, every[about], FINE, MORE)
+        row, turn = np.unravel_index(fine.argmax(), fine.shape)
+        angle = 2.0 * np.pi * float(turn) / FINE if base.revolved else 0.0
+        text = "largest range of stress" if len(chosen) == 1 else "local maximum of the range"
+        yield _Place(every[about[row]], angle, text)
+
+
+def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) -> Floats:
+    """Amplitude and a part of the mean, (P, A) Pa, at points (P,) and angles (A,) over all cases,
+    zero load included.
+    """
+    turns = turns if cases[0].known.revolved else 1
+    angles = np.tile(2.0 * np.pi * np.arange(turns) / turns, len(points))
+    known = [(c.known, np.repeat(_nearest(c.known, points), turns), c.instants(instants))
+             for c in cases]  # fmt: skip
+    chunk = max(CHUNK // len(cases), 1)
+    score = np.zeros(len(angles))
+    for k in range(0, len(angles), chunk):
+        here = slice(k, k + chunk)
+        stress = [of.at(rows[here], angles[here], some) for of, rows, some in known]
+        whole = np.concatenate([np.zeros_like(stress[0][:, :1]), *stress], axis=1)
+        middle = 0.5 * (whole.min(axis=1) + whole.max(axis=1))
+        apart = von_mises(whole - middle[:, None]).max(axis=1)
+        score[here] = apart + MEAN * signed_von_mises(middle)
+    return score.reshape(len(points), turns)
+
+
+def _nearest(known: StressPoints, points: Floats) -> Ints:
+    return np.asarray(KDTree(known.points).query(points)[1], dtype=np.int64)

@@ -1,0 +1,120 @@
+"""The FKM guideline for local strains (nonlinear, 2019) with the damage parameter P_RAM, by pyLife.
+
+Source: Fiedler, Wächter, Varfolomeev, Vormwald, Esderts: Richtlinie nichtlinear, Frankfurt 2019;
+its P_RAJ is not used here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from assess.fatigue.quiet import quiet
+from pinbase.arrays import Floats
+
+if TYPE_CHECKING:
+    import pandas
+
+MaterialGroup = Literal["Steel", "SteelCast", "Al_wrought"]
+PER_MPA, PER_MM = 1e6, 1e-3
+
+
+@dataclass(frozen=True)
+class FkmMaterial:
+    """ultimate: R_m, Pa. roughness: R_z, m. plastic: K_p, limit load over the load at yield.
+    area, gradient: highly stressed surface (m^2) and related stress gradient (1/m), which support
+    the notch; by default they do not.
+    """
+
+    group: MaterialGroup
+    ultimate: float
+    roughness: float
+    plastic: float
+    area: float = 500e-6
+    gradient: float = 0.0
+
+
+@dataclass(frozen=True)
+class FkmLife:
+    """Cycles and repetitions of the sequence until failure; infinite: below the endurance limit.
+    at: repetitions at failure probabilities, from the scatter of the guideline without its least
+    safety factor; only of a life at 50 %.
+    """
+
+    cycles: float
+    repetitions: float
+    infinite: bool
+    at: Callable[[float], float] | None = None
+
+
+def p_ram_life(
+    sequence: Floats,
+    material: FkmMaterial,
+    probability: float = 0.5,
+    loads: tuple[float, float | None] = (50.0, None),
+) -> FkmLife:
+    """Life of a point under a sequence of elastic stress (T,) Pa, repeated, at a failure
+    probability of at most 50 %. loads: probability P_L (%) that they do not exceed it, and their
+    standard deviation (Pa).
+    """
+    import pandas
+    from pylife.strength.fkm_nonlinear.assessment_nonlinear_standard import (
+        perform_fkm_nonlinear_assessment,
+    )
+
+    asked = _parameters(material) | {"P_A": probability, "P_L": loads[0]}
+    if loads[1] is not None:
+        asked["s_L"] = loads[1] / PER_MPA
+    with quiet():
+        found = perform_fkm_nonlinear_assessment(
+            pandas.Series(asked), pandas.Series(sequence / PER_MPA), calculate_P_RAJ=False
+        )
+        infinite = bool(found["P_RAM_is_life_infinite"])
+    cycles, curve = found["P_RAM_collective"], found["P_RAM_woehler_curve"]
+    bearable = found.get("P_RAM_N_max_bearable")
+
+    def at(wanted: float) -> float:
+        with quiet():
+            bearable(wanted)  # which leaves the damage at this probability
+        calculated = found["P_RAM_damage_calculator"].collective
+        return _repetitions(calculated, calculated["D"].to_numpy(dtype=float))
+
+    parameter, closed = (cycles[x].to_numpy() for x in ("P_RAM", "is_closed_hysteresis"))
+    ratio = np.nan_to_num(parameter.astype(float) / float(curve.P_RAM_Z))
+    slope = np.where(ratio >= 1.0, 1.0 / curve.d_1, 1.0 / curve.d_2)
+    damage = np.where(closed, 1.0, 0.5) * 1e-3 * ratio**-slope
+    repetitions = _repetitions(cycles, damage)
+    count = int((cycles["run_index"] == 2).sum())
+    never = infinite or repetitions == inf
+    return FkmLife(count * repetitions, repetitions, never, None if bearable is None else at)
+
+
+def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
+    """Of the sequence until failure, by equation 2.6-90 of the guideline from the damage (C,) in
+    its first and its second run; within these by the part of their damage, where pyLife has none. A
+    cycle in compression, without P_RAM, does no damage.
+    """
+    run = cycles["run_index"].to_numpy()
+    first, second = (float(np.nansum(damage[run == n])) for n in (1, 2))
+    if first >= 1.0:
+        return 1.0 / first
+    return 1.0 + (1.0 - first) / second if second > 0.0 else inf
+
+
+def _parameters(material: FkmMaterial) -> dict[str, object]:
+    """As pyLife calls them, in MPa and mm."""
+    return {
+        "MatGroupFKM": material.group,
+        "FinishingFKM": "none",
+        "R_m": material.ultimate / PER_MPA,
+        "R_z": material.roughness / 1e-6,
+        "c": 1.0,
+        "A_sigma": material.area / PER_MM**2,
+        "A_ref": 500.0,
+        "G": material.gradient * PER_MM,
+        "K_p": material.plastic,
+    }

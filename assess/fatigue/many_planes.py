@@ -1,0 +1,204 @@
+"""Damage on many planes and in many directions at once, for a search among them.
+
+Rainflow cannot be vectorised over the instants, but over the planes: all of them take a step at the
+same time, each with a stack of turning points of its own. What repeats itself in the spectrum is
+counted three times at most, the third time for all others: from then on four-point counting closes
+the same cycles every time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+from typing import TypeVar
+
+import numpy as np
+
+from assess.fatigue.flight import PASSES, Flight
+from assess.fatigue.sn_curve import Life
+from pinbase.arrays import Floats, Ints, Mask
+
+AT_ONCE = 1_000_000  # planes and instants
+GRAIN = 1e-6  # of the largest shear stress of a case: smaller steps are none
+DEPTH = 16  # of the stacks at first
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class OnPlanes:
+    """Damage (M,) until the spectrum repeats itself, the same with a knee that is lower by SOFTER
+    (sn_curve), and the largest equivalent amplitude, Pa.
+    """
+
+    damage: Floats
+    softer: Floats
+    largest: Floats
+
+    def order(self) -> Ints:
+        """Of the planes, the worst first."""
+        return np.lexsort((-self.largest, -self.damage))
+
+
+def on_planes(
+    cases: Sequence[Floats], flight: Flight, planes: tuple[Floats, Floats], k: float, life: Life
+) -> OnPlanes:
+    """Of stress (T, 6) Pa in cases that begin and end at zero, on planes with normals (M, 3) and
+    directions of the shear stress in them (M, 3), by Findley's k.
+    """
+    normals, ways = planes
+    longest = max(len(stress) for stress in cases)
+    size = max(1, AT_ONCE // longest)
+    parts = []
+    for start in range(0, len(normals), size):
+        here = slice(start, start + size)
+        across, along = _components(normals[here], ways[here]), _components(normals[here])
+        count = _Count(len(across), k, life)
+        left = [
+            count.alone(_turns(across @ stress.T, along @ stress.T), flight.order.count(case))
+            for case, stress in enumerate(cases)
+        ]
+        for n in range(PASSES):
+            for case, weight in _blocks(flight):
+                for point in zip(*left[case], strict=True):
+                    count.step(*point, weight if n == PASSES - 1 else 0)
+        parts.append(count.found)
+    return OnPlanes(*(np.concatenate(x) for x in zip(*parts, strict=True)))
+
+
+def _components(normals: Floats, ways: Floats | None = None) -> Floats:
+    """What the components of a stress count (M, 6) in its part along `ways` on planes; by default
+    along their normals.
+    """
+    a, b = normals.T, (normals if ways is None else ways).T
+    shear = [a[i] * b[j] + a[j] * b[i] for i, j in ((1, 2), (0, 2), (0, 1))]
+    return np.stack([*(a * b), *shear], axis=1)
+
+
+def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
+    """Turning points of (M, T) shear stress, from zero and back to it without the last zero, and
+    the largest normal stress from each up to the next: (K, M), filled up with the last point.
+    """
+    zero = np.zeros((len(shear), 1))
+    grain = GRAIN * float(np.abs(shear).max(initial=0.0)) or 1.0
+    whole = np.concatenate([zero, np.round(shear / grain) * grain, zero], axis=1)
+    top = np.concatenate([zero, normal, zero], axis=1)
+    slope = np.sign(np.diff(whole, axis=1)).astype(np.int8)
+    ahead = slope.copy()  # that of the next step that is one
+    for t in range(ahead.shape[1] - 2, -1, -1):
+        ahead[:, t] = np.where(ahead[:, t], ahead[:, t], ahead[:, t + 1])
+    turn = np.ones(whole.shape, dtype=bool)
+    turn[:, 1:-1] = (slope[:, :-1] != 0) & (ahead[:, 1:] == -slope[:, :-1])
+    largest = np.maximum.reduceat(top.ravel(), np.flatnonzero(turn))
+    row, column = np.nonzero(turn)
+    place = np.cumsum(turn, axis=1)[row, column] - 1
+    kept = column < whole.shape[1] - 1
+    row, place = row[kept], place[kept]
+    values = np.full((int(place.max()) + 1, len(shear)), np.nan)
+    tops = np.zeros_like(values)
+    values[place, row], tops[place, row] = whole[turn][kept], largest[kept]
+    for one, two in pairwise(values):
+        np.copyto(two, one, where=np.isnan(two))
+    return values, np.maximum(tops, 0.0)
+
+
+def _blocks(flight: Flight) -> Iterator[tuple[int, int]]:
+    """Cases in their order, and how many times their cycles count."""
+    for unit, often in _thrice(flight.each):
+        for case, n in _thrice(unit):
+            yield case, often * n
+
+
+def _thrice(items: Iterable[T]) -> Iterator[tuple[T, int]]:
+    """Each item of a run once, but no more than three of them, of which the last is for all."""
+    for item, run in groupby(items):
+        n = sum(1 for _ in run)
+        yield from ((item, 1) for _ in range(min(n, 2)))
+        if n > 2:
+            yield item, n - 2
+
+
+class _Count:
+    """Four-point rainflow of M courses side by side. Of each, `value` are the turning points that
+    still wait (depth, M), `raw` the largest normal stress up to the next point of the course, and
+    `top` that up to the next one that waits.
+    """
+
+    def __init__(self, size: int, k: float, life: Life) -> None:
+        self._k, self._life = k, life
+        self._value, self._raw, self._top = (np.zeros((DEPTH, size)) for _ in range(3))
+        self._n = np.zeros(size, dtype=np.int64)
+        self.found = np.zeros(size), np.zeros(size), np.zeros(size)
+
+    def alone(self, turns: tuple[Floats, Floats], often: int) -> tuple[Floats, Floats, Floats]:
+        """Count the cycles that close within a case wherever it stands, `often` times: what of its
+        turning points is left for `step`, (K, M) each.
+        """
+        own = _Count(len(self._n), self._k, self._life)
+        own.found = self.found
+        for value, top in zip(*turns, strict=True):
+            own.step(value, top, top, often)
+        count = int(own._n.max())
+        beyond = np.arange(count)[:, None] >= own._n
+        last = own._value[own._n - 1, np.arange(len(own._n))]
+        value = np.where(beyond, last, own._value[:count])
+        raw, top = (np.where(beyond, 0.0, kind[:count]) for kind in (own._raw, own._top))
+        return value, raw, top
+
+    def step(self, x: Floats, raw: Floats, top: Floats, weight: int) -> None:
+        """Go on to a value; weight: how many times the cycles count that it closes."""
+        n = self._n
+        every = np.arange(len(n))
+        last = self._value[n - 1, every]  # what it is without any does not matter
+        same = (n > 0) & (x == last)
+        onward = ~same & (n > 1) & ((x - last) * (last - self._value[n - 2, every]) > 0.0)
+        self._raise(self._raw, same, 1, raw)
+        self._raise(self._top, same, 1, top)
+        self._raise(self._top, onward, 2, self._top[n - 1, every])
+        self._n = n = n - onward
+        reverses = np.flatnonzero(~same & ~onward & (n > 3))
+        while len(reverses):
+            reverses = self._close(reverses, weight)
+        self._push(np.flatnonzero(~same), x, raw, top)
+
+    def _raise(self, kind: Floats, which: Mask, back: int, top: Floats) -> None:
+        at = np.flatnonzero(which)
+        row = self._n[at] - back
+        kind[row, at] = np.maximum(kind[row, at], top[at])
+
+    def _push(self, at: Ints, x: Floats, raw: Floats, top: Floats) -> None:
+        row = self._n[at]
+        if len(at) and row.max() >= len(self._value):
+            more = ((0, len(self._value)), (0, 0))
+            self._value, self._raw, self._top = (
+                np.pad(a, more) for a in (self._value, self._raw, self._top)
+            )
+        self._value[row, at], self._raw[row, at], self._top[row, at] = x[at], raw[at], top[at]
+        self._n[at] += 1
+
+    def _close(self, at: Ints, weight: int) -> Ints:
+        """Take out the cycle before the last point, where there is one; those that may have
+        another.
+        """
+        n = self._n[at]
+        a, b, c, d = (self._value[n - j, at] for j in (4, 3, 2, 1))
+        size = np.abs(b - c)
+        closes = (size <= np.abs(a - b)) & (size <= np.abs(c - d))
+        at, n, size, d = at[closes], n[closes], size[closes], d[closes]
+        tops = [self._top[n - j, at] for j in (4, 3, 2)]
+        if weight:
+            largest = np.maximum(tops[1], self._raw[n - 2, at])
+            self._add(at, 0.5 * size + self._k * largest, weight)
+        self._top[n - 4, at] = np.maximum(np.maximum(*tops[:2]), tops[2])
+        for kind in (self._value, self._raw, self._top):
+            kind[n - 3, at] = kind[n - 1, at]
+        self._n[at] = n - 2
+        return at[n > 5]
+
+    def _add(self, at: Ints, findley: Floats, weight: int) -> None:
+        equivalent = 2.0 / (self._k + np.hypot(1.0, self._k)) * findley
+        damage, softer, largest = self.found
+        damage[at] += weight * self._life.damage(equivalent)
+        softer[at] += weight * self._life.softer(equivalent)
+        largest[at] = np.maximum(largest[at], equivalent)

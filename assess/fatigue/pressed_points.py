@@ -1,0 +1,108 @@
+"""Stress for fatigue at points on which lugs press at some instants.
+
+A point of a band is free under one load and pressed under the opposite one. While it is free its
+stress is read; while a lug presses on it, it has that of the same fibre without the pressure's
+(fea.harmonic.free_surface), and at the edge of a lug, where that is not known either, that of the
+nearest point of the outline at the same angle where it is. So an alternating load has its whole
+range beside an edge: to keep the last free value would halve it, and the pressure of cells would
+make ranges that are a matter of cells. What contact adds by itself, fretting, is none of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.spatial import KDTree
+
+from fea.core.pressed import BINS, PressedArcs
+from fea.cut.evaluate import CutAnswer
+from fea.cut.free_points import FreePoints, relieved
+from fea.harmonic.free_surface import FreeSurface, SurfacePoints
+from fea.harmonic.surface_stress import AT
+from pinbase.arrays import Floats, Ints, Mask
+
+ALONG = 0.1  # of a distance along the pin counts, so that neighbours have the same angle
+
+Stress = Callable[[Ints, Floats, Ints], Floats]
+
+
+class StandIns:
+    """By which points of a surface of revolution others are replaced, where they are not read."""
+
+    def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
+        self.free, self._x = FreeSurface(of, pressed), of.fields.points
+        outline = np.flatnonzero(of.relieved[: of.fields.skin] < 0)[len(AT) // 2 :: len(AT)]
+        amid = np.flatnonzero(of.relieved >= 0)
+        self._may = np.setdiff1d(np.concatenate([outline, amid]), of.fields.unread)
+        self._known: dict[int, Mask] = {}
+
+    def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
+        """Of points (J,) at angles (J,), rad, those (J,) that stand for them at an instant."""
+        arc, out = np.rint(angles / (2.0 * np.pi) * BINS).astype(np.int64) % BINS, rows.copy()
+        some = np.flatnonzero(self.free.masked(rows))
+        own, place = np.unique(rows[some], return_inverse=True)
+        read = self.free.read(own, np.full(len(own), instant))[place, arc[some]]
+        lost = some[~read]
+        here, place = np.unique(rows[lost], return_inverse=True)
+        apart = np.linalg.norm(self._x[here][:, None] - self._x[self._may], axis=2)
+        order = np.argsort(apart, axis=1, kind="stable")[place]
+        found = self._readable(instant)[order, arc[lost][:, None]]
+        first = order[np.arange(len(lost)), found.argmax(axis=1)]
+        known = found.any(axis=1)
+        out[lost[known]] = self._may[first[known]]
+        return out
+
+    def _readable(self, instant: int) -> Mask:
+        """On which arcs (M, BINS) what may stand for others is read."""
+        if instant not in self._known:
+            at = np.full(len(self._may), instant)
+            self._known[instant] = self.free.read(self._may, at)
+        return self._known[instant]
+
+
+class CutStandIns:
+    """The same of the surface of a pin with cuts, by its points in space."""
+
+    def __init__(self, answer: CutAnswer, pressed: PressedArcs) -> None:
+        cut, pieces = answer.surface, answer.solution.pieces
+        each = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
+        first = len(cut.points) - sum(len(x) for x in each)
+        outline = np.concatenate([np.ones(first, dtype=bool), *each])
+        self.pressed, self._stress = pressed, cut.stress
+        self.free = FreePoints.of(cut.points, outline, pressed.rings)
+        self.amid = np.flatnonzero(self.free.amid >= 0)
+        self.points = np.concatenate([cut.points, cut.points[self.amid]])
+        nu = answer.solution.section.nu
+        more = relieved(cut.stress[self.amid], cut.points[self.amid], nu)
+        self.stress = np.concatenate([cut.stress, more])
+        rows = np.concatenate([np.arange(len(cut.points)), self.amid])
+        self._both = self.free.some(rows, len(cut.points))
+        self._may: Mask = cut.read[rows]
+
+    def rows(self, rows: Ints, instant: int) -> Ints:
+        """Of points (J,), those (J,) of `stress` that stand for them at an instant."""
+        read = self._both.read(self.pressed, instant)
+        lost, out = np.flatnonzero(~read[rows]), rows.copy()
+        may = np.flatnonzero(read & self._may)
+        if len(lost) and len(may):
+            scaled = self.points * [1.0, 1.0, ALONG]
+            out[lost] = may[np.atleast_1d(KDTree(scaled[may]).query(scaled[rows[lost]])[1])]
+        return out
+
+
+def replaced(stress: Stress, stands: Callable[[Ints, Floats, int], Ints]) -> Stress:
+    """Stress (J, T, 6) at points, angles and instants, where others stand for some at an instant
+    with that of these.
+    """
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        out = stress(rows, angles, instants)
+        for k, t in enumerate(instants.tolist()):
+            found = stands(rows, angles, t)
+            some = np.flatnonzero(found != rows)
+            if len(some):
+                out[some, k] = stress(found[some], angles[some], np.array([t]))[:, 0]
+        return out
+
+    return at

@@ -1,0 +1,124 @@
+"""Stress at any points of a pin and all instants of a case, of every model alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.fatigue.pressed_points import CutStandIns, StandIns, Stress, replaced
+from fea.beam.model import BeamAnswer
+from fea.core.pin_loads import PinLoads
+from fea.core.solution import Answer
+from fea.cut.evaluate import CutAnswer
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.five_numbers import BACK
+from fea.harmonic.free_surface import surface_points
+from fea.solid.evaluate import SolidAnswer
+from fea.support.foundation.solve_on_foundations import FoundationAnswer
+from pinbase.arrays import Floats, Ints, Mask
+
+
+@dataclass(frozen=True)
+class StressPoints:
+    """Points (S, 3) m where a model knows the stress, of a body of revolution those at theta = 0.
+
+    surface: (S,) those at which fatigue is looked for: on the surface, outside of singularities.
+    at: the stress (J, T, 6) Pa at points (J,) turned by angles (J,), rad, at some instants (T,) by
+    their numbers. Of bodies that are not of revolution angles count for nothing.
+    """
+
+    points: Floats
+    surface: Mask
+    revolved: bool
+    count: int
+    at: Stress
+
+
+def stress_points(answer: Answer | None, loads: PinLoads) -> StressPoints | None:
+    """Of a solution and the loads of its case; None where nothing was solved."""
+    if isinstance(answer, HarmonicAnswer):
+        return _harmonic(answer, loads)
+    if isinstance(answer, BeamAnswer | FoundationAnswer):
+        return _beam(answer.points, answer.harmonics(loads), len(loads))
+    if isinstance(answer, CutAnswer):
+        return _cut(answer, loads)
+    if isinstance(answer, SolidAnswer):
+        fields, surface = answer.solution.fields, answer.solution.outside.copy()
+        surface[len(fields.surface.nodes) :] = False
+        return _solid(fields.points, fields.read, surface, fields.coefficients(loads))
+    return None
+
+
+def _harmonic(answer: HarmonicAnswer, loads: PinLoads) -> StressPoints:
+    """Of the surface, where lugs press on it as pressed_points has it."""
+    if loads.pressed is None:
+        fields = answer.fields
+        surface = fields.outside(answer.singularities)
+        surface[fields.skin :] = False
+        at = _of_fields(fields, loads)
+        return StressPoints(_at_zero(fields.points), surface, True, len(loads), at)
+    of = surface_points(answer.fields, loads.pressed.rings, answer.solution.nu)
+    stands, own = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
+    at = replaced(_of_fields(of.fields, loads), stands.rows)
+    surface = of.fields.outside(answer.singularities)[own]
+    return StressPoints(
+        _at_zero(of.fields.points[own]), surface, True, len(loads),
+        lambda rows, angles, instants: at(own[rows], angles, instants),
+    )  # fmt: skip
+
+
+def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
+    acting = loads.coefficients()
+    units = [k for k, load in enumerate(fields.loads) if load in acting]
+    n = np.array([fields.loads[k].n for k in units])
+    amounts = np.zeros((len(loads), len(units), 2))
+    for i, k in enumerate(units):
+        amounts[:, i] = acting[fields.loads[k]]
+    even = BACK[:, None]
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        turns = np.outer(angles, n)[:, None, :]
+        c, s = np.cos(turns), np.sin(turns)
+        unit, now = fields.stress[rows][:, :, units], amounts[instants]
+        first = (unit * np.where(even, c, s)) @ now[..., 0].T
+        second = (unit * np.where(even, s, -c)) @ now[..., 1].T
+        return np.asarray((first + second).swapaxes(1, 2))
+
+    return at
+
+
+def _cut(answer: CutAnswer, loads: PinLoads) -> StressPoints:
+    cut, amounts = answer.surface, answer.coefficients(loads)
+    if loads.pressed is None:
+        return _solid(cut.points, cut.stress, cut.read, amounts)
+    stands = CutStandIns(answer, loads.pressed)
+    every = _solid(stands.points, stands.stress, cut.read, amounts)
+    at = replaced(every.at, lambda rows, _, t: stands.rows(rows, t))
+    return StressPoints(cut.points, cut.read, False, len(amounts), at)
+
+
+def _beam(points: Floats, stress: Floats, count: int) -> StressPoints:
+    """Of stresses (3, S, 6, T): constant, times cos theta, times sin theta."""
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        constant, cosine, sine = stress[:, rows][..., instants]
+        c, s = (x[:, None, None] for x in (np.cos(angles), np.sin(angles)))
+        return np.asarray((constant + c * cosine + s * sine).swapaxes(1, 2))
+
+    return StressPoints(_at_zero(points), points[:, 0] > 0.0, True, count, at)
+
+
+def _solid(points: Floats, stress: Floats, surface: Mask, amounts: Floats) -> StressPoints:
+    """Of unit stresses (S, 6, L) and their amounts (T, L)."""
+
+    def at(rows: Ints, _: Floats, instants: Ints) -> Floats:
+        return np.asarray((stress[rows] @ amounts[instants].T).swapaxes(1, 2))
+
+    return StressPoints(points, surface, False, len(amounts), at)
+
+
+def _at_zero(points: Floats) -> Floats:
+    r, z = points.T
+    return np.stack([r, np.zeros_like(r), z], axis=1)

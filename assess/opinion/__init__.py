@@ -1,0 +1,1 @@
+"""Second opinions on a solution: beam theory, and CalculiX."""

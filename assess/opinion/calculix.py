@@ -1,0 +1,125 @@
+"""CalculiX, another finite-element program: run it on a deck, read its results."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from geometry import Coded
+from pinbase.arrays import Floats
+
+COMMAND = "ccx"
+JOB = "job"
+TO_GET = "on Debian and Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
+FRD_TO_OURS = [0, 1, 2, 4, 5, 3]  # xx, yy, zz, xy, yz, zx there; xx, yy, zz, yz, xz, xy here
+
+
+class CalculixError(Coded, RuntimeError):
+    """CalculiX failed; the message has the end of its output."""
+
+
+@dataclass(frozen=True)
+class CalculixSolution:
+    """Results of CalculiX: displacement (N, 3), m; stress (N, 6), Pa, extrapolated to the nodes and
+    averaged there: xx, yy, zz, yz, xz, xy.
+    """
+
+    displacement: Floats
+    stress: Floats
+
+
+def installed() -> bool:
+    """Whether there is a CalculiX to run."""
+    return shutil.which(COMMAND) is not None
+
+
+def run(folder: Path) -> str:
+    """Run CalculiX on the deck JOB.inp in a folder; returns its output.
+
+    Raises: CalculixError when it cannot be run or fails.
+    """
+    done = attempt(folder)
+    if done.returncode:
+        raise CalculixError(
+            f"{COMMAND} ended with status {done.returncode}: {end(done.stdout + done.stderr)}",
+            "failed",
+        )
+    return done.stdout
+
+
+def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
+    """The same, of a job that may end without an answer. Raises: CalculixError if it cannot run."""
+    threads = {"OMP_NUM_THREADS": str(os.cpu_count() or 1)}
+    try:
+        return subprocess.run(
+            [COMMAND, "-i", JOB],
+            cwd=folder,
+            env=threads | os.environ,
+            capture_output=True,
+            text=True,
+            errors="replace",
+        )
+    except OSError as error:
+        raise CalculixError(
+            f"{COMMAND} cannot be run ({error.strerror}); {TO_GET}", "not-installed"
+        ) from None
+
+
+def solved(folder: Path, printed: str) -> CalculixSolution:
+    """The results of a run with this output.
+
+    Raises: CalculixError when it failed: its own status is 0 after many of its errors.
+    """
+    seconds_of(printed)
+    try:
+        found = CalculixSolution(
+            displacements(folder / f"{JOB}.dat"), stresses(folder / f"{JOB}.frd")
+        )
+    except (OSError, ValueError, IndexError, StopIteration) as error:
+        raise CalculixError(
+            f"{COMMAND} wrote no readable results ({error})", "unreadable-results"
+        ) from None
+    if not (np.isfinite(found.displacement).all() and np.isfinite(found.stress).all()):
+        raise CalculixError(f"the results of {COMMAND} are not finite", "not-finite")
+    return found
+
+
+def seconds_of(printed: str) -> float:
+    """The run time that CalculiX reports, s. Raises: CalculixError when it failed before."""
+    time = re.search(r"Total CalculiX Time:\s*(\S+)", printed)
+    if "*ERROR" in printed or time is None:
+        raise CalculixError(f"{COMMAND} failed: {end(printed)}", "failed")
+    return float(time[1])
+
+
+def end(printed: str) -> str:
+    """What a program printed from its first error on, or the end of it, on one line."""
+    words = " ".join(printed.split())
+    first = words.find("*ERROR")
+    return words[first:][:500] if first >= 0 else words[-500:]
+
+
+def displacements(dat: Path) -> Floats:
+    """Displacements (N, 3) of all nodes from a .dat file, which has 7 digits (.frd has 6)."""
+    lines = dat.read_text("ascii", "replace").splitlines()
+    first = next(i for i, line in enumerate(lines) if "displacements" in line) + 2
+    return np.loadtxt(lines[first:], usecols=(1, 2, 3), ndmin=2)
+
+
+def stresses(frd: Path) -> Floats:
+    """Stresses (N, 6) at all nodes from a .frd file."""
+    lines = frd.read_text("ascii", "replace").splitlines()
+    first = next(i for i, line in enumerate(lines) if line.startswith(" -4  STRESS"))
+    rows = []
+    for line in lines[first + 1 :]:
+        if line.startswith(" -3"):
+            break
+        if line.startswith(" -1"):  # then the node in 10 columns and six numbers of 12
+            rows.append([float(line[i : i + 12]) for i in range(13, 85, 12)])
+    return np.array(rows)[:, FRD_TO_OURS]

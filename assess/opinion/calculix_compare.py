@@ -1,0 +1,120 @@
+"""A second opinion on a pin: CalculiX solves what our solid model solves, and both are compared.
+
+Both get the same nodes, elements, material, supports and nodal forces, so that all that is left to
+differ is the program: assembly, solver and stress recovery, in which both extrapolate from the same
+four points of an element and average at the nodes. Displacements and stresses must agree to the
+digits that CalculiX prints; more than the limits below is no round-off.
+
+What neither shares with the other is whether the mesh is fine enough. So the largest stress is also
+compared with the answer of the chosen model, which comes from other meshes or another model.
+
+A pin without clamps is supported as in our own model: six displacement components, chosen well
+apart, are zero in both. Its loads are in balance, so these supports carry nothing and only choose
+which of all rigid motions is shown.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from assess.opinion import calculix
+from assess.opinion.calculix_deck import write_deck
+from assess.opinion.opinions import Opinion
+from fea.core.material import Material
+from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.core.voigt import von_mises
+from fea.solid.evaluate import SolidSolution, solid_solution
+from fea.solid.stress_recovery import nodal_stress
+from fea.solve.solve_pin import singularities_of
+from geometry import PinLike
+from geometry.mesh.solid_mesh import MeshSize
+from pinbase.arrays import Floats, Ints
+
+
+def second_opinions(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    peaks: tuple[Peak, ...],
+    distance: float,
+    progress: Callable[[str], None] = lambda _: None,
+) -> tuple[Opinion, ...]:
+    """Opinions on a pin's cases, each at the governing instant of its peak, on the first mesh of
+    the solid model. distance: as in fea.solve.solve_pin.Asked. An unconstrained pin has none.
+
+    Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
+    """
+    constrained = tuple(pin.surface(name) for name in clamps)
+    instants = {p.case: p for p in peaks if p.verdict != "rigid"}
+    live = tuple(case for case in cases if case.case in instants)
+    if not live:
+        return ()
+    singularities = singularities_of(pin, material, constrained, live, distance)
+    solution = solid_solution(pin, material, constrained, live, singularities, MeshSize(), distance)
+    out = []
+    for case in live:
+        progress(f"pin {pin.name}, {case.case}, CalculiX")
+        peak = instants[case.case]
+        answer = Opinion(pin.name, case.case, peak.max_von_mises, peak.own_error)
+        assert peak.governing is not None
+        c = solution.fields.coefficients(peak.governing)[0]
+        try:
+            out.append(_compared(answer, material, solution, c))
+        except calculix.CalculixError as error:
+            out.append(replace(answer, failure=str(error)))
+    return tuple(out)
+
+
+def _compared(
+    answer: Opinion, material: Material, solution: SolidSolution, loads: Floats
+) -> Opinion:
+    """Both programs under one combination (L,) of the unit loads. Raises: CalculixError."""
+    fields, space = solution.fields, solution.fields.space
+    forces = fields.forces @ loads
+    with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
+        folder = Path(name)
+        deck = folder / f"{calculix.JOB}.inp"
+        write_deck(deck, space.nodes, space.elements, material, fields.fixed, forces)
+        found = calculix.solved(folder, calculix.run(folder))
+    u = fields.displacement @ loads
+    if found.displacement.shape != u.shape or len(found.stress) != len(u):
+        raise calculix.CalculixError(
+            f"{calculix.COMMAND} did not write results for all {len(u)} nodes", "missing-nodes"
+        )
+    ours = von_mises(nodal_stress(space, material, u[..., None])[..., 0])
+    theirs = von_mises(found.stress)
+    outside = _outside(solution)
+    return replace(
+        answer,
+        unknowns=space.unknowns,
+        displacement=_difference(u, found.displacement),
+        stress=_difference(ours, theirs),
+        ours=float(ours[outside].max()),
+        theirs=float(theirs[outside].max()),
+    )
+
+
+def _outside(solution: SolidSolution) -> Ints:
+    """Nodes outside the excluded zones of a body of revolution, where all models search
+    inside, where such a singularity ends; of any other body those of its surface.
+    """
+    fields = solution.fields
+    if not fields.revolved:
+        return fields.surface.nodes[solution.outside]
+    x = fields.space.nodes
+    r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
+    inside = [np.hypot(r - p.r, z - p.z) <= p.radius for p in solution.singularities]
+    return np.flatnonzero(~np.any(inside, axis=0)) if inside else np.arange(len(x))
+
+
+def _difference(ours: Floats, theirs: Floats) -> float:
+    largest = float(np.abs(ours).max())
+    apart = float(np.abs(ours - theirs).max())
+    return apart / largest if largest else apart

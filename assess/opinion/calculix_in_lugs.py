@@ -1,0 +1,163 @@
+"""A second opinion on a pin in its lugs: CalculiX's contact at the governing instant, on two
+meshes, compared with our load per length, largest bending moment, and stress at our maximum, of the
+surface or of a section.
+
+CalculiX has its own meshes, which cause most of the differences; the change from the coarser to the
+finer one shows how much they explain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from assess.opinion.calculix import CalculixError
+from assess.opinion.calculix_joint import JointOpinion, joint_opinion, plane_of
+from assess.opinion.calculix_joint_mesh import Fineness
+from assess.opinion.calculix_row import section_of
+from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.peak import Peak
+from fea.core.pin_loads import Floats, PinLoads
+from fea.support.contact.records import BandContact, JointResult
+from fea.support.lugs.links import link_forces
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError, Pin
+
+Meshes = tuple[Fineness, Fineness]
+HALF = Fineness(rings=4, sectors=16, eye=2), Fineness(rings=6, sectors=24, layers=3, eye=2)
+WHOLE = Fineness(rings=4, sectors=8, eye=1), Fineness(rings=6, sectors=16, eye=2)
+SMALL = 1e-3  # of the largest force: what CalculiX's model may lack
+UNLOADED = 1e-6  # of the largest force
+STATIONS = 401
+
+
+@dataclass(frozen=True)
+class Seated:
+    """A pin in its lugs."""
+
+    pin: Pin
+    material: Material
+    lugs: tuple[Lug, ...]
+
+
+def opinion_in_lugs(
+    seated: Seated,
+    peak: Peak,
+    joint: JointResult,
+    progress: Callable[[str], None] = lambda _: None,
+    meshes: Meshes | None = None,
+) -> Opinion:
+    """Of a case with a peak and its contact there; the opinion has the reason if there is none."""
+    answer = Opinion(peak.pin, peak.case, peak.max_von_mises, peak.own_error)
+    try:
+        loads = across(seated, peak.governing)
+        found = []
+        for number, mesh in enumerate(meshes or _meshes(loads), 1):
+            progress(f"pin {peak.pin}, {peak.case}, contact by CalculiX, mesh {number} of 2")
+            found.append(joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh))
+    except (ArgumentError, CalculixError, SolveError) as error:
+        return replace(answer, failure=str(error))
+    return _compared(answer, seated, peak, joint, found)
+
+
+def across(seated: Seated, governing: PinLoads | None) -> PinLoads:
+    """The links' forces across the pin, in balance. Raises: ArgumentError for what CalculiX's model
+    lacks; SolveError for forces out of balance.
+    """
+    _require_modelled(seated)
+    assert governing is not None
+    loads, largest = governing, float(np.abs(governing.forces[..., :2]).max())
+    weight = (seated.material.density or 0.0) * seated.pin.volume
+    for what, size in (
+        ("forces along the axis", np.abs(loads.forces[..., 2]).max()),
+        ("torques", np.abs(loads.moments).max() / seated.pin.smallest_diameter),
+        ("weight and inertia of the pin", weight * np.abs(loads.body).max()),
+    ):
+        if size > SMALL * largest:
+            raise ArgumentError(f"CalculiX's model has no {what}", "other-loads")
+    plain = PinLoads(loads.case, loads.surfaces, loads.forces * [1.0, 1.0, 0.0])
+    force = link_forces(seated.pin, 0.0, plain)
+    return PinLoads(loads.case, seated.pin.connections, np.pad(force, ((0, 0), (0, 0), (0, 1))))
+
+
+def _require_modelled(seated: Seated) -> None:
+    structure = [x.connection for x in seated.lugs if x.connection not in seated.pin.connections]
+    tight = [lug.connection for lug in seated.lugs if lug.clearance < 0.0]
+    if structure:
+        raise ArgumentError(
+            f"CalculiX's model has no lugs of the structure ({', '.join(structure)})", "structure"
+        )
+    if tight:
+        raise ArgumentError(
+            f"CalculiX's model has no interference ({', '.join(tight)})", "interference"
+        )
+
+
+def _meshes(loads: PinLoads) -> Meshes:
+    """As fine as takes minutes."""
+    _, half = plane_of(loads.forces[0, :, :2])
+    return HALF if half else WHOLE
+
+
+def _compared(
+    answer: Opinion,
+    seated: Seated,
+    peak: Peak,
+    joint: JointResult,
+    found: Sequence[JointOpinion],
+) -> Opinion:
+    assert joint.bending_moment is not None  # contact has one
+    pin = seated.pin
+    moments = [largest_moment(x, pin) for x in found]
+    stresses = [_stress(x, seated, peak) for x in found]
+    coarse, fine = found
+    least = UNLOADED * max(band.force for band in joint.bands)
+    contact = ContactOpinion(
+        tuple(_band(pin, b, fine) for b in joint.bands if b.ends and b.force > least),
+        joint.bending_moment,
+        moments[1],
+        coarse.unknowns,
+        moments[1] / moments[0] - 1.0,
+        stresses[1] / stresses[0] - 1.0,
+        fine.appended,
+    )
+    return replace(answer, unknowns=fine.unknowns, theirs=stresses[1], contact=contact)
+
+
+def _stress(found: JointOpinion, seated: Seated, peak: Peak) -> float:
+    """At our maximum, Pa: on the surface where that is, or in the section that has it, by the
+    forces of CalculiX's rings.
+    """
+    if peak.places is not None and peak.places.governs == "section":
+        return section_of(found, seated.pin, seated.material).value
+    assert peak.location is not None
+    return found.surface_at(np.array(peak.location), seated.material.poisson_ratio)
+
+
+def largest_moment(found: JointOpinion, pin: Pin) -> float:
+    """Along the pin, N m."""
+    z = np.linspace(0.0, pin.length, STATIONS)
+    return float(np.linalg.norm(found.bending_moment(z), axis=1).max())
+
+
+def _band(pin: Pin, ours: BandContact, theirs: JointOpinion) -> BandOpinion:
+    """Ours is spread over CalculiX's rings."""
+    band = pin.band(ours.name)
+    tiny = 1e-9 * pin.length
+    own = (theirs.ends[:, 0] > band.z0 - tiny) & (theirs.ends[:, 1] < band.z1 + tiny)
+    ends = np.append(theirs.ends[own, 0], theirs.ends[own, 1].max())
+    total = theirs.force[own].sum(axis=0)
+    line = theirs.line_load[own] @ total / np.linalg.norm(total)
+    mine = _mean(np.array(ours.ends), np.array([load for _, load in ours.line_load]), ends)
+    lists: list[list[float]] = [x.tolist() for x in (ends, mine, line)]
+    return BandOpinion(ours.name, *(tuple(x) for x in lists))
+
+
+def _mean(ends: Floats, load: Floats, onto: Floats) -> Floats:
+    """Means over other parts (P,) of a load (R,) that is even between ends (R + 1,)."""
+    sums = np.concatenate([[0.0], np.cumsum(load * np.diff(ends))])
+    return np.asarray(np.diff(np.interp(onto, ends, sums)) / np.diff(onto))

@@ -1,0 +1,362 @@
+"""A second opinion on a pin in its lugs: CalculiX's contact in three dimensions.
+
+The geometry is that of fea.joint: the pin as it is, each lug an annulus as thick as its band is
+long, a bushing in it, with the clearance and the edges' rounding in the bore. Lugs are supported as
+there: the link's force is a traction of constant direction on the outer surface, whose mean tilt is
+guided or sprung.
+What differs: elements (C3D20R), contact (surface to surface, by a penalty), solver, stress
+recovery. Of forces that lie in a plane only one half is modelled. A lug begins where it touches
+the pin: shifted by half of its clearance along its force, which without friction changes nothing.
+
+CalculiX finds contact between the moved bodies, ours between those at rest. So forces and gaps are
+made small in one proportion (Fineness.scale) and results enlarged by it: this is the limit that
+fea.joint computes. At full loads a lug that tilts slides along the pin by more than an element.
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.opinion import calculix
+from assess.opinion.calculix_joint_deck import Eye, JointDeck, Part, slave
+from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pin_mesh
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.voigt import von_mises
+from fea.cut.free_points import relieved
+from fea.support.lugs.lug import Lug
+from fea.support.lugs.rings import graded
+from geometry import ArgumentError, Pin
+
+Ints = NDArray[np.int64]
+
+APPENDED = "zero-size increment is appended"
+USUAL = Fineness()
+FLAT = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
+IN_A_PLANE = 1e-6  # of the largest force: what may be across the plane of the others
+NEAR, STEPS, NATURAL = 12, 12, 1e-9  # elements in which a point is looked for, and how
+SIGNS = np.array([[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+
+
+@dataclass(frozen=True)
+class JointOpinion:
+    """CalculiX's answer, in the pin's axes, SI.
+
+    ends: (R, 2) m along z of the rings of all bands in their order; force: (R, 2) N of the lugs on
+    the pin at each; first: (R, 2) N m, the forces' moments about z = 0: integrals of z times force.
+    nodes (N, 3) m, elements (M, 20) and stress (N, 6) Pa of the pin, or of its half, in axes turned
+    about the pin's by `angle`. edges: (K, 2), r and z, m, of circles where stress is unbounded.
+    unknowns, iterations, seconds: of the run. appended: whether CalculiX found tension in the
+    contact and added an increment of no load with contact found anew, which is less accurate.
+    """
+
+    ends: Floats
+    force: Floats
+    first: Floats
+    nodes: Floats
+    elements: Ints
+    stress: Floats
+    angle: float
+    half: bool
+    edges: Floats
+    unknowns: int
+    iterations: int
+    seconds: float
+    appended: bool = False
+
+    @property
+    def line_load(self) -> Floats:
+        """Force per length of the lugs on the pin, mean over each ring, (R, 2) N/m."""
+        return self.force / np.diff(self.ends)
+
+    def bending_moment(self, z: Floats) -> Floats:
+        """Of the part of the pin before z (Z,) m: (Z, 2) N m, the integral of the shear along x and
+        along y; at a ring's ends exactly by its force and moment, within it by an even load.
+        """
+        low, high = self.ends.T
+        reach = np.clip(z[:, None] - low, 0.0, high - low)
+        arm = reach * (z[:, None] - low - reach / 2.0)
+        even = np.einsum("zr,ra->za", arm, self.line_load)
+        off = self.force * self.ends.mean(axis=1)[:, None] - self.first
+        return np.asarray(even + (z[:, None] >= high) @ off)
+
+    def surface_at(self, point: Floats, nu: float) -> float:
+        """Von Mises stress, Pa, at a point (3,), m, of the surface, without that of pressure on a
+        ring (fea.harmonic.free_surface).
+        """
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        x = point @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        if self.half:
+            x[1] = abs(x[1])
+        stress = self._stress_at(x)
+        on = (x[2] > self.ends[:, 0]) & (x[2] < self.ends[:, 1])
+        if on.any():
+            stress = relieved(stress[None, :, None], x[None], nu)[0, :, 0]
+        return float(von_mises(stress))
+
+    def von_mises_at(self, points: Floats) -> Floats:
+        """Von Mises stress (P,) Pa at points (P, 3) m of the pin."""
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        x = points @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        if self.half:
+            x[:, 1] = np.abs(x[:, 1])
+        return von_mises(np.array([self._stress_at(p) for p in x]))
+
+    def largest(self, distance: float) -> float:
+        """Largest von Mises stress at a node, Pa, farther than a distance (m) from the edges."""
+        r, z = np.hypot(self.nodes[:, 0], self.nodes[:, 1]), self.nodes[:, 2]
+        away = np.hypot(r[:, None] - self.edges[:, 0], z[:, None] - self.edges[:, 1])
+        return float(von_mises(self.stress[(away > distance).all(axis=1)]).max())
+
+    def _stress_at(self, point: Floats) -> Floats:
+        """(6,) Pa, linear within the element that has the point, or comes nearest to it."""
+        corners = self.nodes[self.elements[:, :8]]
+        near = np.argsort(np.linalg.norm(corners.mean(axis=1) - point, axis=1))[:NEAR]
+        natural = [_natural(corners[e], point) for e in near]
+        beyond = [float(np.abs(x).max()) for x in natural]
+        best = int(np.argmin(beyond))
+        shape, _ = _trilinear(np.clip(natural[best], -1.0, 1.0))
+        return np.asarray(shape @ self.stress[self.elements[near[best], :8]])
+
+
+def joint_opinion(
+    pin: Pin,
+    material: Material,
+    lugs: Sequence[Lug],
+    loads: PinLoads,
+    fineness: Fineness = USUAL,
+) -> JointOpinion:
+    """CalculiX's opinion on a pin under loads of one instant: forces across of the links, no more.
+
+    Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
+    """
+    deck, angle = joint_deck(pin, material, lugs, loads, fineness)
+    return deck_opinion(pin, deck, angle, fineness.scale)
+
+
+def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> JointOpinion:
+    """Of a deck whose axes are turned by an angle, rad, with forces and gaps times `scale`.
+
+    Raises: CalculixError.
+    """
+    with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
+        folder = Path(name)
+        deck.write(folder / f"{calculix.JOB}.inp")
+        printed = calculix.run(folder)
+        return _read(pin, deck, angle, folder, printed, scale)
+
+
+def joint_deck(
+    pin: Pin,
+    material: Material,
+    lugs: Sequence[Lug],
+    loads: PinLoads,
+    fineness: Fineness,
+) -> tuple[JointDeck, float]:
+    """The deck, and by which angle (rad) its axes are turned about the pin's. As joint_opinion."""
+    force = _forces(loads, [lug.connection for lug in lugs])
+    angle, half = plane_of(force)
+    c, s = np.cos(angle), np.sin(angle)
+    turned = force @ np.array([[c, -s], [s, c]]) * (0.5 if half else 1.0) * fineness.scale
+    radii = {lug.connection: lug.edge_radius for lug in lugs}
+    stations = _stations(pin, radii, fineness)
+    mesh = pin_mesh(pin, stations, fineness, half)
+    eyes = [
+        _eye(pin, lug, f, mesh, stations, fineness, half)
+        for lug, f in zip(lugs, turned, strict=True)
+    ]
+    eyes.sort(key=lambda eye: float(eye.part.mesh.nodes[:, 2].min()))
+    hard = fineness.stiffness * material.youngs_modulus / pin.smallest_diameter
+    return JointDeck(Part("PIN", mesh, material), tuple(eyes), hard, half), angle
+
+
+def _forces(loads: PinLoads, connections: Sequence[str]) -> Floats:
+    """(B, 2) N. Raises: ArgumentError for more than one instant, or other loads."""
+    if len(loads) != 1:
+        raise ArgumentError("the contact is solved for one instant", "not-one-instant")
+    if loads.body.any() or loads.moments.any() or loads.forces[..., 2].any():
+        raise ArgumentError("only forces across the pin are modelled", "other-loads")
+    out = np.zeros((len(connections), 2))
+    for name, force in zip(loads.surfaces, loads.forces[0], strict=True):
+        out[list(connections).index(name)] = force[:2]
+    return out
+
+
+def plane_of(force: Floats) -> tuple[float, bool]:
+    """The direction (rad) of the largest of forces (B, 2) N, and whether all have it, or its
+    opposite; then half of the joint is modelled.
+    """
+    fx, fy = force[np.argmax(np.linalg.norm(force, axis=1))]
+    across = np.abs(force @ [-fy, fx]).max() / np.hypot(fx, fy)
+    if across > IN_A_PLANE * np.hypot(fx, fy):
+        return 0.0, False
+    return float(np.arctan2(fy, fx)), True
+
+
+def _stations(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
+    """Ends of the layers of elements in every segment, m. radii: of the bores' edges, m."""
+    out = []
+    for segment, start in zip(pin.segments, pin.stations, strict=False):
+        if segment.connection:
+            ends = _ring_ends(segment.length, radii[segment.connection], fineness.rings)
+            count, parts = len(ends) - 1, fineness.parts
+            cut = np.interp(np.arange(count * parts + 1) / parts, range(count + 1), ends)
+        else:
+            count = max(2, round(fineness.along * segment.length / pin.smallest_diameter))
+            cut = np.linspace(0.0, segment.length, count + 1)
+        out.append(start + cut)
+    return out
+
+
+def _ring_ends(length: float, radius: float, count: int) -> Floats:
+    """Of the rings of a band, m: `count` on its flat part, and two in the rounding of each edge,
+    since the parabola of one would press on the pin.
+    """
+    flat = length - 2.0 * radius
+    inner = radius + graded(flat, count) if flat > FLAT * length else np.array([length / 2.0])
+    if not radius:
+        return inner
+    edge = np.array([0.0, radius / 2.0])
+    return np.concatenate([edge, inner, (length - edge)[::-1]])
+
+
+def _eye(
+    pin: Pin,
+    lug: Lug,
+    force: Floats,
+    mesh: Hexahedra,
+    stations: list[Floats],
+    fineness: Fineness,
+    half: bool,
+) -> Eye:
+    i = pin.labels.index(lug.connection)
+    radius, z = pin.segments[i].diameter / 2.0, stations[i]
+    inside = lug.bushing
+    lining = None if inside is None else (radius + inside.thickness, inside.material)
+    radii = (radius, *(lining[:1] if lining else ()), lug.outer_diameter / 2.0)
+    plain = annulus_mesh(radii, z, fineness, half)
+    body = _opened(plain, lug, force, fineness.scale)
+    before = sum(len(x) - 1 for x in stations[:i])
+    surface = np.abs(mesh.outer - radius) < 1e-9 * radius
+    ring = (mesh.layer - before) // fineness.parts
+    count = (len(z) - 1) // fineness.parts
+    rings = tuple(np.flatnonzero(surface & (ring == k)) for k in range(count))
+    part = Part(f"LUG{i}", body, lug.material, lining)
+    return Eye(part, force, lug.tilt * (0.5 if half else 1.0), rings)
+
+
+def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra:
+    """With the clearance and rounding of the bore, times `scale`, shifted until the loaded side
+    touches.
+    """
+    x = mesh.nodes
+    r = np.hypot(x[:, 0], x[:, 1])
+    edge = np.minimum(x[:, 2] - x[:, 2].min(), x[:, 2].max() - x[:, 2])
+    left = np.maximum(lug.edge_radius - edge, 0.0)
+    depth = lug.edge_radius - np.sqrt(lug.edge_radius**2 - left**2)
+    share = (mesh.outer.max() - r) / (mesh.outer.max() - mesh.inner.min())
+    moved = x.copy()
+    half = 0.5 * scale * lug.clearance
+    moved[:, :2] *= (1.0 + share * (half + scale * depth) / r)[:, None]
+    size = float(np.linalg.norm(force))
+    if size and half > 0.0:
+        moved[:, :2] += half * force / size
+    return replace(mesh, nodes=moved)
+
+
+def _read(
+    pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str, scale: float
+) -> JointOpinion:
+    """The results of a run. Raises: CalculixError."""
+    seconds = calculix.seconds_of(printed)
+    mesh = deck.pin.mesh
+    try:
+        found = contact_forces(folder / f"{calculix.JOB}.dat")
+        stress = calculix.stresses(folder / f"{calculix.JOB}.frd")
+        names = [slave(eye.part.name, k) for eye in deck.eyes for k in range(len(eye.rings))]
+        each = np.array([found[name] for name in names])
+    except (OSError, ValueError, IndexError, KeyError, StopIteration) as error:
+        raise calculix.CalculixError(
+            f"{calculix.COMMAND} wrote no readable results ({error})", "unreadable-results"
+        ) from None
+    if len(stress) != len(mesh.nodes) or not np.isfinite(each).all():
+        raise calculix.CalculixError(
+            f"{calculix.COMMAND} did not write finite results for the whole pin", "missing-nodes"
+        )
+    c, s = np.cos(angle), np.sin(angle)
+    back = np.array([[c, s], [-s, c]])
+    each = each / scale
+    force, first = each[:, :2], np.stack([each[:, 4], -each[:, 3]], axis=1)
+    if deck.half:
+        force, first = (2.0 * x * [1.0, 0.0] for x in (force, first))
+    return JointOpinion(
+        _ends(deck),
+        force @ back,
+        first @ back,
+        mesh.nodes,
+        mesh.elements,
+        stress / scale,
+        angle,
+        deck.half,
+        edges(pin),
+        deck.unknowns,
+        len(re.findall(r"^ iteration \d+", printed, re.MULTILINE)),
+        seconds,
+        APPENDED in printed,
+    )
+
+
+def _ends(deck: JointDeck) -> Floats:
+    z = deck.pin.mesh.nodes[deck.pin.mesh.elements[:, :8], 2]
+    rings = [ring for eye in deck.eyes for ring in eye.rings]
+    return np.array([(z[ring].min(), z[ring].max()) for ring in rings])
+
+
+def edges(pin: Pin) -> Floats:
+    """Circles (K, 2), r and z, m, of the lugs' edges and of the pin's shoulders, also inside."""
+    out = []
+    for band in (pin.band(name) for name in pin.connections):
+        out += [(band.radius, band.z0), (band.radius, band.z1)]
+    for i, z in enumerate(pin.stations[1:-1]):
+        one, other = pin.segments[i : i + 2]
+        if one.diameter != other.diameter:
+            out.append((min(one.diameter, other.diameter) / 2.0, z))
+        if one.bore != other.bore:
+            out.append((max(one.bore, other.bore) / 2.0, z))
+    return np.array(out)
+
+
+def contact_forces(dat: Path) -> dict[str, Floats]:
+    """By slave surface, force (3) N on it and moment (3) N m about the origin, from a .dat file."""
+    text, out = dat.read_text("ascii", "replace"), {}
+    for block in text.split("statistics for slave set ")[1:]:
+        _, numbers = block.split("(mx,my,mz)\n", 1)
+        out[block.split(",")[0].strip()] = np.array(numbers.split()[:6], dtype=float)
+    return out
+
+
+def _trilinear(natural: Floats) -> tuple[Floats, Floats]:
+    """Shape functions (8,) of a hexahedron's corners, and their slopes (8, 3)."""
+    parts = 1.0 + SIGNS * natural
+    shape = parts.prod(axis=1) / 8.0
+    others = np.stack([parts[:, [1, 2]], parts[:, [0, 2]], parts[:, [0, 1]]], axis=1).prod(axis=2)
+    return shape, SIGNS * others / 8.0
+
+
+def _natural(corners: Floats, point: Floats) -> Floats:
+    """Natural coordinates (3,) of a point in a hexahedron, by Newton's method."""
+    x = np.zeros(3)
+    for _ in range(STEPS):
+        shape, slopes = _trilinear(x)
+        step = np.linalg.solve(corners.T @ slopes, point - shape @ corners)
+        x = np.clip(x + step, -2.0, 2.0)
+        if np.abs(step).max() < NATURAL:
+            break
+    return x

@@ -1,0 +1,321 @@
+"""An input deck for CalculiX: a pin and its lugs in frictionless contact, surface to surface.
+
+The pin is the slave, ring by ring, so that CalculiX prints the force on every ring; the bore of a
+lug is the master. A lug is supported as in fea.joint: on its outer surface a traction of constant
+direction, linear along z, which is what *EQUATION of the mean motion of that surface makes of a
+force or a spring on an auxiliary node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from assess.opinion.calculix_deck import real
+from assess.opinion.calculix_joint_mesh import INNER, OUTER, Hexahedra
+from fea.core.material import Material
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
+CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+LAST = "FREQUENCY=1000000"  # of the increments, at which results are written
+WEAK = 1e-7  # of Young's modulus times the pin's length: springs that hold what has no contact
+
+
+@dataclass(frozen=True)
+class Part:
+    """A body: its name in the deck, mesh and material. lining: what has another material, up to a
+    radius, m.
+    """
+
+    name: str
+    mesh: Hexahedra
+    material: Material
+    lining: tuple[float, Material] | None = None
+
+    @property
+    def materials(self) -> Iterator[tuple[str, Material, Ints]]:
+        """Of the elements, by their numbers in this body: name in the deck and material."""
+        if self.lining is None:
+            yield self.name, self.material, np.arange(len(self.mesh.elements))
+            return
+        radius, other = self.lining
+        inside = self.mesh.outer < radius * (1.0 + 1e-9)
+        yield self.name, self.material, np.flatnonzero(~inside)
+        yield f"{self.name}LINING", other, np.flatnonzero(inside)
+
+
+@dataclass(frozen=True)
+class Eye:
+    """Support of a lug: force (2,) N of its link on it; tilt: N m/rad; inf, 0 as of fea.joint's
+    Lug. rings: the elements of the pin on each of its rings.
+    """
+
+    part: Part
+    force: Floats
+    tilt: float
+    rings: tuple[Ints, ...]
+
+
+@dataclass(frozen=True)
+class JointDeck:
+    """All bodies, in the pin's axes, or, when half of them lies in y > 0, in the loads' plane.
+
+    stiffness: of the contact, Pa/m. half: whether y = 0 is a plane of symmetry; forces and
+    stiffnesses of lugs are then those of the half.
+    """
+
+    pin: Part
+    eyes: tuple[Eye, ...]
+    stiffness: float
+    half: bool
+
+    def lines(self) -> Iterator[str]:
+        """The text of the deck."""
+        first = self._first()
+        for part, (node, element) in zip(self._parts, first, strict=True):
+            yield from _body(part, node, element)
+        yield from self._surfaces(first)
+        yield from self._contact()
+        yield from self._holding(first)
+        yield from self._step(first)
+
+    def write(self, path: Path) -> None:
+        """Write the deck."""
+        with path.open("w", encoding="ascii", newline="\n") as file:
+            for line in self.lines():
+                file.write(line + "\n")
+
+    @property
+    def unknowns(self) -> int:
+        """Displacement components of all nodes."""
+        return 3 * sum(len(part.mesh.nodes) for part in self._parts)
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """Across the pin, along which a lug may move: 1 and 2, or 1 of a half."""
+        return (1,) if self.half else (1, 2)
+
+    @property
+    def _parts(self) -> tuple[Part, ...]:
+        return (self.pin, *(eye.part for eye in self.eyes))
+
+    def _first(self) -> list[tuple[int, int]]:
+        """Numbers of the first node and the first element of each part; last, of what follows."""
+        out = [(1, 1)]
+        for part in self._parts:
+            node, element = out[-1]
+            out.append((node + len(part.mesh.nodes), element + len(part.mesh.elements)))
+        return out[:-1]
+
+    @property
+    def _nodes(self) -> int:
+        return sum(len(part.mesh.nodes) for part in self._parts)
+
+    def _surfaces(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        for eye, (_, start) in zip(self.eyes, first[1:], strict=True):
+            bore = np.flatnonzero(eye.part.mesh.inner == eye.part.mesh.inner.min())
+            yield from _surface(f"BORE{eye.part.name}", start + bore, INNER)
+            for k, elements in enumerate(eye.rings):
+                yield from _surface(slave(eye.part.name, k), 1 + elements, OUTER)
+
+    def _contact(self) -> Iterator[str]:
+        yield "*SURFACE INTERACTION, NAME=DRY"
+        yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
+        yield real(self.stiffness)
+        for eye in self.eyes:
+            for k in range(len(eye.rings)):
+                yield "*CONTACT PAIR, INTERACTION=DRY, TYPE=SURFACE TO SURFACE"
+                yield f"{slave(eye.part.name, k)}, BORE{eye.part.name}"
+
+    def _auxiliary(self, b: int) -> tuple[int, int]:
+        """Nodes whose displacements are the mean shift of a lug and its tilt, in rad."""
+        return self._nodes + 1 + 2 * b, self._nodes + 2 + 2 * b
+
+    def _holding(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        for b, (eye, (node, _)) in enumerate(zip(self.eyes, first[1:], strict=True)):
+            shift, tilt = self._auxiliary(b)
+            yield "*NODE"
+            yield from (f"{n}, 0, 0, 0" for n in (shift, tilt))
+            for axis in self.axes:
+                yield from _equations(eye.part.mesh, node, axis, shift, tilt)
+        yield from self._axial(first)
+        yield from self._springs(first)
+        yield "*BOUNDARY"
+        yield from self._fixed(first)
+
+    def _springs(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        number = sum(len(part.mesh.elements) for part in self._parts) + 1
+        mesh, E = self.pin.mesh, self.pin.material.youngs_modulus
+        length = float(np.ptp(mesh.nodes[:, 2]))
+        weak = WEAK * E * length
+        constrained = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
+        for b, eye in enumerate(self.eyes):
+            shift, tilt = self._auxiliary(b)
+            constrained += [(shift, axis, weak) for axis in self.axes if b]
+            if np.isfinite(eye.tilt):
+                stiff = max(eye.tilt, weak * length**2)
+                constrained += [(tilt, axis, stiff) for axis in self.axes]
+        for k, (node, axis, stiffness) in enumerate(constrained):
+            yield f"*ELEMENT, TYPE=SPRING1, ELSET=SPRING{k}"
+            yield f"{number + k}, {node}"
+            yield f"*SPRING, ELSET=SPRING{k}"
+            yield f"{axis}"
+            yield f"{stiffness:.10e}"  # without a point it would be read as another axis
+
+    def _fixed(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        """The first lug's shift, guided lugs' tilts, and what lies in the plane of symmetry."""
+        shift, _ = self._auxiliary(0)
+        yield from (f"{shift}, {axis}" for axis in self.axes)
+        for b, eye in enumerate(self.eyes):
+            shift, tilt = self._auxiliary(b)
+            others = [axis for axis in (1, 2, 3) if axis not in self.axes]
+            yield from (f"{node}, {axis}" for node in (shift, tilt) for axis in others)
+            if np.isinf(eye.tilt):
+                yield from (f"{tilt}, {axis}" for axis in self.axes)
+        for part, (start, _) in zip(self._parts, first, strict=True):
+            x = part.mesh.nodes
+            if self.half:
+                flat = np.flatnonzero(np.abs(x[:, 1]) < 1e-9 * np.abs(x).max())
+                yield from (f"{start + n}, 2" for n in flat)
+
+    def _axial(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        """No body moves along its axis or turns about it: by two opposite nodes, so that a tilt
+        does not shift it, which would move the edges of its contact.
+        """
+        for part, (start, _) in zip(self._parts, first, strict=True):
+            one, other = _opposite(part.mesh)
+            yield from ("*EQUATION", "2", f"{start + one}, 3, 1., {start + other}, 3, 1.")
+            if not self.half:
+                yield from ("*EQUATION", "2", f"{start + one}, 2, 1., {start + other}, 2, -1.")
+
+    def _step(self, first: list[tuple[int, int]]) -> Iterator[str]:
+        yield "*STEP"
+        yield "*STATIC"
+        yield "1, 1"
+        yield "*CLOAD"
+        for b, eye in enumerate(self.eyes):
+            if b:
+                for axis in self.axes:
+                    yield f"{self._auxiliary(b)[0]}, {axis}, {real(float(eye.force[axis - 1]))}"
+        for eye in self.eyes:
+            for k in range(len(eye.rings)):
+                name = eye.part.name
+                yield f"*CONTACT PRINT, SLAVE={slave(name, k)}, MASTER=BORE{name}, {LAST}"
+                yield "CF"
+        yield f"*NODE FILE, NSET={self.pin.name}, {LAST}"
+        yield "U"
+        yield f"*EL FILE, NSET={self.pin.name}, {LAST}"
+        yield "S"
+        yield "*END STEP"
+
+
+def slave(lug: str, ring: int) -> str:
+    """Name of the surface of a ring of the pin."""
+    return f"PIN{lug}R{ring + 1}"
+
+
+def _body(part: Part, node: int, element: int) -> Iterator[str]:
+    yield f"*NODE, NSET={part.name}"
+    for number, (x, y, z) in enumerate(part.mesh.nodes, node):
+        yield f"{number}, {real(x)}, {real(y)}, {real(z)}"
+    for name, material, own in part.materials:
+        yield f"*ELEMENT, TYPE=C3D20R, ELSET={name}"
+        for number, row in zip(own + element, part.mesh.elements[own] + node, strict=True):
+            text = [str(n) for n in row]
+            yield f"{number}, " + ", ".join(text[:10]) + ","
+            yield ", ".join(text[10:])
+        yield f"*MATERIAL, NAME=OF{name}"
+        yield "*ELASTIC"
+        yield f"{real(material.youngs_modulus)}, {real(material.poisson_ratio)}"
+        yield f"*SOLID SECTION, ELSET={name}, MATERIAL=OF{name}"
+
+
+def _surface(name: str, elements: Ints, face: int) -> Iterator[str]:
+    yield f"*SURFACE, NAME={name}"
+    yield from (f"{number}, S{face}" for number in elements)
+
+
+def _ends(mesh: Hexahedra) -> tuple[int, int]:
+    """Nodes of the pin at both ends, in the plane of symmetry."""
+    x = mesh.nodes
+    order = 1e-6 * np.abs(x[:, 1]) - 1e-7 * x[:, 0]
+    return int(np.argmin(x[:, 2] + order)), int(np.argmin(order - x[:, 2]))
+
+
+def _opposite(mesh: Hexahedra) -> tuple[int, int]:
+    """Nodes inside of the wall, at half its length, on both sides of the axis along x."""
+    z, wall = mesh.nodes[:, 2], mesh.outer[mesh.outer > 0.0]
+    middle = 0.5 * (z.min() + z.max()) + 1e-4 * np.ptp(z)  # between two nodes not their mean
+    r = 0.5 * (mesh.inner[mesh.outer > 0.0].min() + wall.max())
+    near = [np.linalg.norm(mesh.nodes - [x, 0.0, middle], axis=1).argmin() for x in (r, -r)]
+    return int(near[0]), int(near[1])
+
+
+def _equations(mesh: Hexahedra, first: int, axis: int, shift: int, tilt: int) -> Iterator[str]:
+    """The auxiliary nodes' displacements along an axis are the mean of those of the outer surface,
+    and their mean slope along z.
+    """
+    nodes, weight = surface_weights(mesh)
+    rows = weight / weight[:, 0].sum(), weight
+    z = mesh.nodes[nodes, 2]
+    middle = 0.5 * (z.min() + z.max())
+    arm = weight[:, 1] - middle * weight[:, 0]
+    second = float((arm * (z - middle)).sum())
+    means = np.stack([rows[0][:, 0], arm / second])  # (2, K)
+    dependent = [
+        int(np.argmax(weight[:, 0] * (z < middle))),
+        int(np.argmax(weight[:, 0] * (z > middle))),
+    ]
+    inverse = np.linalg.inv(means[:, dependent])
+    solved = inverse @ means
+    others = np.delete(np.arange(len(nodes)), dependent)
+    for k in range(2):
+        terms = [(first + int(nodes[dependent[k]]), axis, 1.0)]
+        terms += [(first + int(nodes[i]), axis, float(solved[k, i])) for i in others]
+        terms += [(n, axis, -float(inverse[k, j])) for j, n in enumerate((shift, tilt))]
+        yield "*EQUATION"
+        yield str(len(terms))
+        for i in range(0, len(terms), 4):
+            yield ", ".join(f"{n}, {a}, {real(c)}" for n, a, c in terms[i : i + 4])
+
+
+def surface_weights(mesh: Hexahedra) -> tuple[Ints, Floats]:
+    """Nodes (K,) of the outer surface, and the integrals of their shape functions, and of these
+    times z, (K, 2) m^2, m^3.
+    """
+    faces = mesh.face(np.flatnonzero(mesh.outer == mesh.outer.max()), OUTER)
+    nodes, number = np.unique(faces, return_inverse=True)
+    x = mesh.nodes[faces]  # (F, 8, 3)
+    out = np.zeros((len(nodes), 2))
+    for s, w in zip(GAUSS, WEIGHTS, strict=True):
+        for t, v in zip(GAUSS, WEIGHTS, strict=True):
+            shape, slope = _serendipity(float(s), float(t))
+            along = np.einsum("fnc,nd->fdc", x, slope)
+            area = w * v * np.linalg.norm(np.cross(along[:, 0], along[:, 1]), axis=1)
+            z = x[:, :, 2] @ shape
+            for j, value in enumerate((area, area * z)):
+                np.add.at(out[:, j], number.reshape(faces.shape), value[:, None] * shape)
+    return nodes, out
+
+
+def _serendipity(s: float, t: float) -> tuple[Floats, Floats]:
+    """Shape functions (8,) of a quadrilateral with middles, and their slopes (8, 2)."""
+    a, b = CORNERS.T
+    p, q = 1.0 + a * s, 1.0 + b * t
+    corner = 0.25 * p * q * (a * s + b * t - 1.0)
+    ds = 0.25 * a * q * (2.0 * a * s + b * t)
+    dt = 0.25 * b * p * (a * s + 2.0 * b * t)
+    middle = 0.5 * np.array(
+        [(1 - s * s) * (1 - t), (1 + s) * (1 - t * t), (1 - s * s) * (1 + t), (1 - s) * (1 - t * t)]
+    )
+    ms = np.array([-s * (1 - t), 0.5 * (1 - t * t), -s * (1 + t), -0.5 * (1 - t * t)])
+    mt = np.array([-0.5 * (1 - s * s), -t * (1 + s), 0.5 * (1 - s * s), -t * (1 - s)])
+    slopes = np.stack([np.concatenate([ds, ms]), np.concatenate([dt, mt])], axis=1)
+    return np.concatenate([corner, middle]), slopes

@@ -1,0 +1,116 @@
+"""The limit load in CalculiX: the same hexahedra, C3D20R, the same supports and forces, which rise
+until it finds no equilibrium; the load factor that it reached is a lower bound of that mesh.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from assess.opinion.calculix import COMMAND, JOB, CalculixError, attempt, end
+from assess.opinion.calculix_deck import mesh_lines, real
+from assess.opinion.opinions import LimitOpinion
+from assess.plastic.body import Ties
+from assess.plastic.flow import FlowRule
+from assess.plastic.limit_load import limit_on_mesh
+from assess.plastic.pin_body import PinBody, finer
+from assess.plastic.solve import SIZES, body_on
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from geometry import Pin
+from geometry.mesh.hexahedra import twenty
+from pinbase.arrays import Floats
+
+SMALLEST = 1e-3  # increment of the loads, of the largest
+LARGEST = 0.04
+BEYOND = 1.05  # of our factor: so far CalculiX is asked to load the pin
+
+
+def limit_opinion(
+    pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
+) -> LimitOpinion:
+    """On the first mesh of assess.plastic.solve, under the loads of one instant."""
+    made = body_on(pin, FlowRule(material), clamps, loads, SIZES[0])
+    try:
+        ours = limit_on_mesh(made.body, made.forces, finer(made.body.elements)).reached
+        with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
+            theirs = factor_reached(made, BEYOND * ours, Path(folder))
+    except (CalculixError, SolveError) as error:
+        return LimitOpinion(made.body.size, failure=f"limit load: {error}")
+    return LimitOpinion(made.body.size, ours, theirs)
+
+
+def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
+    """The load factor that CalculiX reaches on its way to `most`, to a thousandth of that.
+
+    Raises: CalculixError when it converges in no increment.
+    """
+    _write(pin, most, folder / f"{JOB}.inp")
+    done, status = attempt(folder), folder / f"{JOB}.sta"
+    lines = status.read_text("ascii").splitlines() if status.exists() else []
+    reached = [
+        float(line.split()[-2]) for line in lines if line.split()[:1] == ["1"] and "U" not in line
+    ]
+    if not reached:
+        raise CalculixError(f"{COMMAND} failed: {end(done.stdout + done.stderr)}", "failed")
+    return most * reached[-1]
+
+
+def _write(pin: PinBody, most: float, path: Path) -> None:
+    material, ties = pin.body.rule.material, pin.body.ties
+    lines = [
+        *_mesh(pin, material),
+        "*PLASTIC",
+        *(f"{real(s)}, {real(e)}" for e, s in zip(*pin.body.rule.curve, strict=True)),
+        "*SOLID SECTION, ELSET=PIN, MATERIAL=ONE",
+        *_supports(ties),
+        "*STEP, INC=1000",
+        "*STATIC",
+        f"{LARGEST}, 1., {SMALLEST}, {LARGEST}",
+        "*CLOAD",
+        *_forces(ties, most * pin.forces),
+        "*END STEP",
+    ]
+    path.write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
+    """With a line for each 16 numbers of an element, and without the section."""
+    for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, twenty()], material):
+        if line.startswith("*SOLID SECTION"):
+            continue
+        numbers = line.split(", ")
+        if len(numbers) > 16 and not line.startswith("*"):
+            yield ", ".join(numbers[:12]) + ",\n" + ", ".join(numbers[12:])
+        else:
+            yield line
+
+
+def _supports(ties: Ties) -> Iterator[str]:
+    """Zero components, and those that are plus or minus others."""
+    yield "*BOUNDARY"
+    for node, axis in zip(*divmod(np.flatnonzero(ties.unknown < 0), 3), strict=True):
+        yield f"{node + 1}, {axis + 1}"
+    for one, other in _pairs(ties):
+        sign = -ties.sign[one] * ties.sign[other]
+        (n, a), (m, b) = divmod(one, 3), divmod(other, 3)
+        yield f"*EQUATION\n2\n{n + 1}, {a + 1}, 1., {m + 1}, {b + 1}, {sign:.0f}."
+
+
+def _pairs(ties: Ties) -> Iterator[tuple[int, int]]:
+    """Components tied to another, and that."""
+    first = ties.first
+    for component in np.flatnonzero(ties.unknown >= 0).tolist():
+        if (other := int(first[ties.unknown[component]])) != component:
+            yield component, other
+
+
+def _forces(ties: Ties, forces: Floats) -> Iterator[str]:
+    first = ties.first
+    for component, force in zip(first.tolist(), (forces * ties.sign[first]).tolist(), strict=True):
+        node, axis = divmod(component, 3)
+        yield f"{node + 1}, {axis + 1}, {real(force)}"

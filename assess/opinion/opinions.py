@@ -1,0 +1,165 @@
+"""What CalculiX finds for a pin in one case, compared with our own answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fea.support.contact.records import Couple, LineLoad
+from pinbase.dimensions import Length, Stress
+
+SAME_DISPLACEMENT = 1e-5  # of the largest; CalculiX prints 7 digits
+SAME_STRESS = 1e-4  # of the largest; CalculiX prints 6 digits of each component
+# Allowed deviation from the answer, in addition to its error, of the solid model's first mesh at a
+# fillet or where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes
+# only.
+SAME_MAXIMUM = 0.30
+# For contact with lugs, on meshes that CalculiX solves in minutes: on random joints moments differ
+# by 3.5 % and loads by 6 % at most.
+SAME_MOMENT, SAME_LOAD = 0.05, 0.10
+# Our steps end where the work of flow is within 2 % of that of the loads; CalculiX goes on until it
+# finds no equilibrium, 0.7 % higher at most in docs/past-yield.md.
+SAME_LIMIT = 0.02
+
+
+@dataclass(frozen=True)
+class BandOpinion:
+    """Load per length along a band in the direction of its link's force, mean over each part
+    between `ends`, one more than there are parts: ours and CalculiX's.
+    """
+
+    name: str
+    ends: tuple[Length, ...]
+    ours: tuple[LineLoad, ...]
+    theirs: tuple[LineLoad, ...]
+
+    @property
+    def elsewhere(self) -> float:
+        """The part of the load that the programs place in different parts of the band."""
+        lengths = [b - a for a, b in zip(self.ends, self.ends[1:], strict=False)]
+        rows = list(zip(self.ours, self.theirs, lengths, strict=True))
+        whole = sum(abs(theirs) * length for _, theirs, length in rows)
+        return sum(abs(ours - theirs) * length for ours, theirs, length in rows) / whole / 2.0
+
+
+@dataclass(frozen=True)
+class ContactOpinion:
+    """Contact with lugs. moment: the largest bending moment. bands: those that carry. coarser:
+    unknowns of CalculiX's coarser mesh; moment_change, stress_change: of its results from that to
+    the finer mesh, relative. tension: whether it found tension in the contact, and repeated it.
+    """
+
+    bands: tuple[BandOpinion, ...]
+    our_moment: Couple
+    moment: Couple
+    coarser: int
+    moment_change: float
+    stress_change: float
+    tension: bool = False
+
+    @property
+    def moment_difference(self) -> float:
+        """CalculiX's largest bending moment over ours, less 1."""
+        return self.moment / self.our_moment - 1.0
+
+    @property
+    def elsewhere(self) -> float:
+        """The largest of the bands'."""
+        return max((band.elsewhere for band in self.bands), default=0.0)
+
+
+@dataclass(frozen=True)
+class LimitOpinion:
+    """The load factors that both programs reach on the coarsest mesh of a limit load, of
+    `unknowns`. failure: why there are none, or empty.
+    """
+
+    unknowns: int = 0
+    ours: float | None = None
+    theirs: float | None = None
+    failure: str = ""
+
+    @property
+    def difference(self) -> float | None:
+        """CalculiX's over ours, less 1."""
+        return None if not self.ours or self.theirs is None else self.theirs / self.ours - 1.0
+
+    @property
+    def complaint(self) -> str:
+        """As an Opinion's."""
+        said = _beyond("its limit load is", self.difference, SAME_LIMIT)
+        return self.failure or "; ".join(said)
+
+
+@dataclass(frozen=True)
+class Opinion:
+    """Of one pin in one case: both programs on one mesh of `unknowns`, and the answer of the run.
+
+    displacement, stress: largest differences, relative to the largest displacement and von Mises
+    stress. ours, theirs: largest von Mises stress outside of singularities, both averaged
+    at the nodes, Pa. answer, error: the run's, Pa. failure: why there is none of this, or empty.
+    contact: of a pin in its lugs, which CalculiX solves on its own mesh of `unknowns`;
+    `theirs` is then its stress at the point of our maximum. limit: where a solid gave a limit load.
+    """
+
+    pin: str
+    case: str
+    answer: Stress | None
+    error: Stress | None
+    unknowns: int = 0
+    displacement: float | None = None
+    stress: float | None = None
+    ours: Stress | None = None
+    theirs: Stress | None = None
+    failure: str = ""
+    contact: ContactOpinion | None = None
+    limit: LimitOpinion | None = None
+
+    @property
+    def deviation(self) -> float | None:
+        """How far their maximum is from the run's answer, relative to it."""
+        if self.theirs is None or not self.answer:
+            return None
+        return self.theirs / self.answer - 1.0
+
+    @property
+    def own_error(self) -> float:
+        """The error of the run's answer, relative to it."""
+        return (self.error or 0.0) / self.answer if self.answer else 0.0
+
+    @property
+    def complaint(self) -> str:
+        """What is beyond its limit, in words; empty when they agree."""
+        said = self._contact() if self.contact else self._same_mesh()
+        own = self.failure or "; ".join(said)
+        return "; ".join(x for x in (own, self.limit.complaint if self.limit else "") if x)
+
+    def _same_mesh(self) -> Iterator[str]:
+        for what, value, limit in (
+            ("displacements", self.displacement, SAME_DISPLACEMENT),
+            ("von Mises stresses", self.stress, SAME_STRESS),
+        ):
+            if value is None or not value <= limit:
+                yield f"{what} on the same mesh differ by {value:.1e}, allowed {limit:.0e}"
+        yield from _beyond("its maximum is", self.deviation, SAME_MAXIMUM + self.own_error)
+
+    def _contact(self) -> Iterator[str]:
+        assert self.contact is not None
+        limit = SAME_MOMENT + self.own_error
+        yield from _beyond("its largest bending moment is", self.contact.moment_difference, limit)
+        yield from _beyond(
+            "its stress at the point of our maximum is",
+            self.deviation,
+            SAME_MAXIMUM + self.own_error,
+        )
+        for band in self.contact.bands:
+            if not band.elsewhere <= SAME_LOAD:
+                yield (
+                    f"{band.elsewhere:.1%} of the load of {band.name} acts at other places, "
+                    f"allowed {SAME_LOAD:.0%}"
+                )
+
+
+def _beyond(what: str, difference: float | None, limit: float) -> Iterator[str]:
+    if difference is not None and not abs(difference) <= limit:
+        yield f"{what} {difference:+.1%} from the answer, allowed {limit:.1%}"

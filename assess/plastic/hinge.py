@@ -1,0 +1,200 @@
+"""Plastic hinges and slip of a pin as a beam: bounds of its load factor at every instant.
+
+Static theorem: internal forces in equilibrium, here the elastic ones, of which every section can
+carry its own,
+
+    g(M/Mp, N/Np)^2 + (V/Vs + T/Tp)^2 <= 1.
+
+g is the part that is used of the curve of bending with an axial force
+(fea.beam.plastic_interaction). Torsion has one shear stress everywhere, Tp the plastic torque;
+shear has that of a field with s_tz = -C sin theta, in equilibrium with elastic bending, whose
+largest value is the V Q / (I t) of the neutral axis (3/4 A and half of A resist in a solid bar and
+a thin tube), so that the sum of both is nowhere exceeded. It leaves sqrt(1 - (V/Vs + T/Tp)^2) of
+the yield stress for bending and pulling.
+
+Kinematic theorem: the least of the work of flow over the power of the loads among mechanisms. Slip
+of a section costs Vp = A s_y / sqrt 3, twist Tp; to slip apart along a plane of slope t from the
+section Vp (t + 1 / t), which is 2 Vp = 1.155 Np if there is room for a slope of one. A hinge bends
+and stretches as the curve g has it, or twists as well, which takes
+s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by Schwarz's inequality, for a stretch
+e, a curvature k and a twist t). One is enough where one side of a span is free, three, which bend
+alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract:
+a hinge is ROOM away from it, where the solid has it too, and what is nearer slips and twists.
+
+Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
+so of a bracket only what is beyond BEAM_ERROR decides.
+
+Source: B. G. Neal, The Plastic Methods of Structural Analysis (1977), chapters 2, 3 and 6.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.beam.line_load import acting, shares
+from fea.beam.plastic_interaction import bent_and_pulled, plastic_torque
+from fea.beam.round_section import Circle
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
+from fea.core.material import Material
+from fea.core.pin_loads import AnyLoads
+from geometry import Pin
+from pinbase.arrays import Floats, Mask
+
+ROOM = 0.75  # of a diameter, between a clamp and the hinge next to it
+BEAM_ERROR = 0.15  # of the factor: an allowance, docs/past-yield.md
+PER_CELL = 101  # sections looked at in a cell
+
+
+@dataclass(frozen=True)
+class BeamBounds:
+    """Bounds of the load factor at every instant, (T,); infinite where nothing acts. slip: the
+    upper bound by slip alone, which holds for the solid as well: what slips is rigid.
+    """
+
+    lower: Floats
+    upper: Floats
+    slip: Floats
+
+    @property
+    def governing(self) -> int:
+        """The instant with the least lower bound."""
+        return int(self.lower.argmin())
+
+
+def beam_bounds(
+    pin: Pin, material: Material, clamps: tuple[str, ...], loads: AnyLoads
+) -> BeamBounds:
+    """Of a pin with a yield strength, by its last hardening if it has any, for the upper bound."""
+    units = acting(loads)
+    first = material.yield_strength
+    assert first is not None
+    last = material.hardening[-1][1] if material.hardening else first
+    lower, upper, slip = np.full((3, len(loads)), np.inf)
+    if not units:
+        return BeamBounds(lower, upper, slip)
+    forces = stepped_beam(pin, material, units, clamps)
+    amounts = shares(units, loads)
+    for span in forces.spans:
+        z, sections, inside = _sampled(forces, span, amounts)
+        strong = _strengths(sections)
+        across = np.linalg.norm(inside, axis=1) / strong  # (T, S, 4)
+        most, least = _bending_and_axial(sections, across)
+        lower = np.minimum(lower, first * _static(sections, across, most))
+        slip = np.minimum(slip, last * _slip(span, strong, inside))
+        room = _room(span, sections, z)
+        if span.left and span.right:
+            away = room >= 2.0 * ROOM
+            power = _three_hinges(z, away, strong[:, MOMENT], inside[..., MOMENT])
+        else:
+            power = _one_mechanism(room, across, least)
+        upper = np.minimum(upper, last * _inverse(power))
+    return BeamBounds(lower, np.minimum(upper, slip), slip)
+
+
+def _sampled(
+    forces: InternalForces, span: Span, amounts: Floats
+) -> tuple[Floats, list[Circle], Floats]:
+    """z (S,) m, sections (S) and V, M, N, T there, (T, 2, S, 4) by phase."""
+    cells = np.repeat(np.arange(span.first, span.last), PER_CELL)
+    part = np.tile(np.linspace(0.0, 1.0, PER_CELL), span.last - span.first)
+    z = forces.stations[cells] + part * np.diff(forces.stations)[cells]
+    inside = np.einsum("sqk,tpk->tpsq", forces.inside(cells, z), amounts)
+    return z, [forces.sections[c] for c in cells], inside
+
+
+def _strengths(sections: list[Circle]) -> Floats:
+    """Vp, Mp, Np, Tp (S, 4) per Pa of yield stress."""
+    return np.array(
+        [(s.area / math.sqrt(3.0), s.plastic_modulus, s.area, _torque(s)) for s in sections]
+    ).reshape(-1, 4)
+
+
+def _torque(section: Circle) -> float:
+    """Plastic torque per Pa of yield stress, m^3."""
+    return plastic_torque(section) / math.sqrt(3.0)
+
+
+def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, Floats]:
+    """What bending with an axial force uses of each section, at most and at least, (T, S); at
+    least with torsion: work of flow is no more than by the mean square of its strain.
+    """
+    most, least = np.empty((2, *across.shape[:2]))
+    for section in set(sections):
+        same = np.array([s == section for s in sections])
+        moment, axial = across[:, same, MOMENT], across[:, same, AXIAL]
+        most[:, same], least[:, same] = bent_and_pulled(section, moment, axial)
+    squares = np.array(
+        [
+            (
+                s.plastic_modulus**2 / (s.area * s.inertia),
+                1.0,
+                _torque(s) ** 2 * 3.0 / (s.area * s.polar),
+            )
+            for s in sections
+        ]
+    )
+    together = np.sqrt((across[..., [MOMENT, AXIAL, TORQUE]] ** 2 * squares).sum(axis=2))
+    return most, np.maximum(least, together)
+
+
+def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
+    """Lower bounds (T,) per Pa of yield stress. bent: what bending and pulling use, (T, S)."""
+    peak = np.array([s.vq_it for s in sections])
+    sheared = across[..., SHEAR] * peak + across[..., TORQUE]
+    return _inverse(np.hypot(bent, sheared).max(axis=1))
+
+
+def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
+    """Upper bounds (T,) per Pa of yield stress, by a section that slips, or the part between two
+    of a span that is clamped at both ends, which the ends of cells are enough for.
+    """
+    if not (span.left and span.right):
+        return _inverse((np.linalg.norm(inside, axis=1) / strong)[..., SHEAR].max(axis=1))
+    ends = np.arange(len(strong)) % PER_CELL % (PER_CELL - 1) == 0
+    shear, most = inside[:, :, ends, SHEAR], strong[ends, SHEAR]
+    jump = shear[:, :, :, None] - shear[:, :, None, :]
+    power = np.linalg.norm(jump, axis=1) / (most[:, None] + most)
+    return _inverse(power.max(axis=(1, 2)))
+
+
+def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
+    """Power over work (T,) of a section that twists, slips apart or is a hinge. bent: of a hinge,
+    (T, S).
+    """
+    steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
+    apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
+    hinge = np.where(room >= 2.0 * ROOM, bent, 0.0)
+    return np.asarray(np.maximum(np.maximum(across[..., TORQUE], apart), hinge).max(axis=1))
+
+
+def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
+    """Distance (S,) from clamps and thicker sections over the outer radius."""
+    outer, inner = np.array([(s.outer, s.inner) for s in sections]).T
+    more = (outer > (1.0 + 1e-9) * outer[:, None]) | (inner < (1.0 - 1e-9) * inner[:, None])
+    room = np.where(more, np.abs(z - z[:, None]), np.inf).min(axis=1)
+    if span.left:
+        room = np.minimum(room, z - z[0])
+    if span.right:
+        room = np.minimum(room, z[-1] - z)
+    return np.asarray(room / outer)
+
+
+def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:
+    """Power over work (T,) of a hinge near each end and one between, moment (T, 2, S)."""
+    places = np.flatnonzero(away)
+    if len(places) < 3:
+        return np.zeros(len(moment))
+    a, b = places[0], places[-1]
+    middle = places[1:-1]
+    middle = middle[(z[middle] > z[a]) & (z[middle] < z[b])]
+    right = (z[middle] - z[a]) / (z[b] - z[middle])
+    power = moment[..., middle] * (1.0 + right) - moment[..., [a]] - moment[..., [b]] * right
+    work = strong[middle] * (1.0 + right) + strong[a] + strong[b] * right
+    return np.asarray((np.linalg.norm(power, axis=1) / work).max(axis=1, initial=0.0))
+
+
+def _inverse(used: Floats) -> Floats:
+    return np.divide(1.0, used, out=np.full_like(used, np.inf), where=used > 0.0)

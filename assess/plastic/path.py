@@ -1,0 +1,133 @@
+"""Equilibrium of a flowing body along a path of its loads, past where they can no longer grow.
+
+The loads are a factor times given forces f. Each step prescribes the work c = f u instead of the
+factor, which is then an unknown, and its equations are those of the least of a convex function (the
+incremental energy) on a plane: Newton's method with a search along its direction finds it.
+
+Source: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), section 4.3, for the
+incremental energy; J.-L. Batoz, G. Dhatt, Int. J. Num. Meth. Eng. 14 (1979) 1262, for the two
+solutions per iteration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.plastic.body import FlowingBody
+from assess.plastic.budget import Budget
+from assess.plastic.flow import Flow
+from fea.core.linear_solver import Analysis, SolveError
+from pinbase.arrays import Floats
+
+TOLERANCE = 1e-6  # residual over the loads
+MOST_ITERATIONS = 40
+SEARCH = 0.8  # part of the slope at the start that may be left after an iteration
+HALVINGS = 6
+
+
+@dataclass(frozen=True)
+class State:
+    """In equilibrium: load factor, unknowns (U,), work per load factor (J), flow at the points.
+    residuals: of the iterations, over the loads. instant: which of the steps.
+    """
+
+    factor: float
+    unknowns: Floats
+    work: float
+    flow: Flow
+    residuals: tuple[float, ...] = ()
+
+
+class EquilibriumPath:
+    """A body under forces (U,), N. budget: asked before every iteration.
+
+    Raises: SolveError for a body that is not constrained, from here and from the steps.
+    """
+
+    def __init__(self, body: FlowingBody, forces: Floats, budget: Budget | None = None) -> None:
+        self.body, self.load, self.budget = body, forces, budget or Budget()
+        stiff = body.stiffness(body.at_rest().tangent)
+        self._analysis = Analysis(stiff, body.ties.first // 3)
+        self.elastic = self._analysis.factorize(stiff)(forces)
+        self.compliance = float(forces @ self.elastic)
+
+    def start(self) -> State:
+        """Without loads."""
+        return State(0.0, np.zeros(self.body.size), 0.0, self.body.at_rest())
+
+    def steps(self, works: Floats) -> Iterator[State]:
+        """States at rising works (J). A step that Newton's method cannot solve is halved.
+
+        Raises: SolveError when a small part of a step cannot be solved either.
+        """
+        before, now = None, self.start()
+        for work in works:
+            while now.work < work * (1.0 - 1e-12):
+                before, now = now, self._reach(now, before, work)
+            yield now
+
+    def _reach(self, now: State, before: State | None, work: float) -> State:
+        for _ in range(HALVINGS):
+            try:
+                return self.step(now, before, work)
+            except SolveError as error:
+                failed, work = error, (now.work + work) / 2.0
+        raise failed
+
+    def step(self, now: State, before: State | None, work: float) -> State:
+        """The state at a work (J), from the one now and, for a guess, the one before that.
+
+        Raises: SolveError; OutOfTimeError.
+        """
+        guess = (work - now.work) * (
+            self.elastic / self.compliance
+            if before is None
+            else (now.unknowns - before.unknowns) / (now.work - before.work)
+        )
+        u, factor, residuals = now.unknowns + guess, now.factor, []
+        flow = self.body.flow(u, now.flow)
+        size = float(np.linalg.norm(self.load))
+        for _ in range(MOST_ITERATIONS):
+            self.budget.require()
+            inner = self.body.forces(flow.stress)
+            solve = self._analysis.factorize(self.body.stiffness(flow.tangent))
+            a, b = solve(np.stack([-inner, self.load], axis=1)).T
+            factor = (work - self.load @ (u + a)) / (self.load @ b)
+            residual = float(np.linalg.norm(factor * self.load - inner)) / size
+            residuals.append(residual / max(abs(float(factor)), 1e-300))
+            if residuals[-1] < TOLERANCE:
+                return State(float(factor), u, work, flow, tuple(residuals))
+            u, flow = self._search(u, a + factor * b, now.flow)
+        raise SolveError(
+            "the equilibrium of the flowing pin was not found: after "
+            f"{MOST_ITERATIONS} iterations {residuals[-1]:.1e} of the loads is unbalanced",
+            "no-convergence",
+        )
+
+    def _search(self, u: Floats, along: Floats, before: Flow) -> tuple[Floats, Flow]:
+        """A point along a direction at which the energy is about least, and its flow."""
+        flow = self.body.flow(u + along, before)
+        high, at_high = 1.0, self._slope(flow, along)
+        if at_high <= 0.0:
+            return u + along, flow
+        low, at_low, at = 0.0, self._slope(self.body.flow(u, before), along), 1.0
+        most = SEARCH * abs(at_low)
+        for _ in range(HALVINGS):
+            if abs(at_high) <= most or at_low >= 0.0:
+                break
+            at = low + max((high - low) * at_low / (at_low - at_high), 0.1 * (high - low))
+            flow = self.body.flow(u + at * along, before)
+            middle = self._slope(flow, along)
+            if abs(middle) <= most:
+                break
+            if middle > 0.0:
+                high, at_high = at, middle
+            else:
+                low, at_low = at, middle
+        return u + at * along, flow
+
+    def _slope(self, flow: Flow, along: Floats) -> float:
+        return float(self.body.forces(flow.stress) @ along)

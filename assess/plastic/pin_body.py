@@ -1,0 +1,259 @@
+"""A pin as a flowing body of hexahedra: how much of it is modelled, its supports, its loads.
+
+Elements have 20 nodes and 2 x 2 x 2 quadrature points, which leaves no volumetric locking when the
+material flows (benchmarks/pins/limit_load.py measures that, and that of tetrahedra).
+
+What part of a turn is modelled depends on the loads. Reflected at their plane nothing changes, so
+half is enough. Turned about the axis by half a turn, odd harmonics change sign, and with them all
+of the solution, because yield is the same in tension and compression: half is enough again, or a
+quarter where both apply.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+from skfem import ElementHexS2
+
+from assess.plastic.body import Elements, FlowingBody, Ties
+from assess.plastic.flow import FlowRule
+from assess.plastic.mechanism import Finer
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import AnyLoads, UnitLoad
+from fea.core.tractions import Traction, closing_tractions, tractions_of
+from fea.solid.model import rigid_modes
+from fea.solid.nodal_loads import components
+from geometry import Pin
+from geometry.mesh.hexahedra import HexMesh, HexSize, hexahedra
+from pinbase.arrays import Floats, Ints
+
+PLANE = 1e-6  # of the loads: less out of a plane is none
+
+Acting = tuple[tuple[UnitLoad, int, float], ...]  # unit loads with their phase and amount
+
+
+@dataclass(frozen=True)
+class Sector:
+    """quarters: of the turn. mirror: at the plane y = 0. odd: the sign changes by half a turn."""
+
+    quarters: int
+    mirror: bool
+    odd: bool
+
+
+@dataclass(frozen=True)
+class PinBody:
+    """body: of a part of the pin. forces: (U,) N on its unknowns. mesh, sector: what it is."""
+
+    body: FlowingBody
+    forces: Floats
+    mesh: HexMesh
+    sector: Sector
+
+
+def plane_of(loads: AnyLoads, instant: int) -> float:
+    """Direction (rad from x) of most of the transverse loads."""
+    vectors = [both[instant] for load, both in loads.coefficients().items() if load.n == 1]
+    if not vectors:
+        return 0.0
+    sizes = np.array([np.linalg.norm(v) for v in vectors])
+    x, y = vectors[int(sizes.argmax())]
+    return math.atan2(y, x)
+
+
+def sector_of(acting: Acting) -> Sector:
+    """The least part of the pin that its loads allow."""
+    largest: dict[str, float] = {}
+    for load, _, amount in acting:
+        largest[load.kind] = max(largest.get(load.kind, 0.0), abs(amount))
+    some = [(load, p) for load, p, amount in acting if abs(amount) > PLANE * largest[load.kind]]
+    mirror = all(p == 0 for _, p in some)
+    odd = all(load.n % 2 for load, _ in some)
+    return Sector(1 if mirror and odd else 2 if mirror or odd else 4, mirror, odd)
+
+
+def acting_at(loads: AnyLoads, instant: int, angle: float = 0.0) -> Acting:
+    """What acts at an instant, turned about the axis by an angle (rad)."""
+    out = []
+    for load, both in loads.coefficients().items():
+        c, s = math.cos(load.n * angle), math.sin(load.n * angle)
+        turned = np.array([[c, -s], [s, c]]) @ both[instant]
+        out += [(load, phase, float(turned[phase])) for phase in load.phases]
+    return tuple(out)
+
+
+def pin_body(
+    pin: Pin, rule: FlowRule, clamps: tuple[str, ...], acting: Acting, fineness: HexSize
+) -> PinBody:
+    """A pin clamped at surfaces (by name) under loads; without clamps their small imbalance is
+    closed as in fea.core.tractions.
+
+    Raises: SolveError for loads that nothing can balance.
+    """
+    sector = sector_of(acting)
+    mesh = hexahedra(pin, fineness, sector.quarters)
+    elements = hexahedral(mesh.nodes, mesh.elements)
+    ties = _ties(mesh, sector)
+    if clamps:
+        nodes = _clamped(pin, mesh, clamps)
+        unknown = ties.unknown[(3 * nodes[:, None] + np.arange(3)).ravel()]
+        ties = ties.without(np.unique(unknown[unknown >= 0]))
+    force = nodal_forces(pin, rule, mesh, elements, acting)
+    if not clamps:
+        force, ties = _balanced(pin, mesh, ties, force)
+    unknowns = np.asarray(ties.matrix.T @ force.ravel())
+    return PinBody(FlowingBody(elements, ties, rule), unknowns, mesh, sector)
+
+
+def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
+    """Elements of 20 nodes with so many quadrature points along each axis."""
+    x, weight = _gauss(points)
+    grid = np.stack(np.meshgrid(x, x, x, indexing="ij")).reshape(3, -1)
+    weights = np.einsum("i,j,k->ijk", weight, weight, weight).ravel()
+    local = np.stack([ElementHexS2().lbasis(grid, k)[1] for k in range(20)])
+    jacobian = np.einsum("kaq,mkb->mqab", local, nodes[numbers], optimize=True)
+    gradients = np.einsum("mqba,kaq->mqkb", np.linalg.inv(jacobian), local, optimize=True)
+    return Elements(nodes, numbers, gradients, np.linalg.det(jacobian) * weights)
+
+
+def finer(elements: Elements) -> Finer:
+    """Hexahedra with three instead of two quadrature points along each axis."""
+    three = _gauss(3)[0]
+    grid = np.stack(np.meshgrid(three, three, three, indexing="ij"), axis=-1).reshape(-1, 3)
+    return Finer(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
+
+
+def reading(local: Floats) -> Floats:
+    """(P, 8) values at places (P, 3) in an element, 0 to 1, from those at its quadrature points."""
+    two = _gauss(2)[0]
+    right = (local - two[0]) / (two[1] - two[0])
+    first, second, third = np.stack([1.0 - right, right], axis=-1).swapaxes(0, 1)
+    return np.asarray(np.einsum("pi,pj,pk->pijk", first, second, third).reshape(-1, 8))
+
+
+def _gauss(points: int) -> tuple[Floats, Floats]:
+    x, weight = np.polynomial.legendre.leggauss(points)
+    return (x + 1.0) / 2.0, weight / 2.0
+
+
+def _ties(mesh: HexMesh, sector: Sector) -> Ties:
+    """Of the nodes on the planes that bound a sector."""
+    x, y, z = mesh.nodes.T
+    near = 1e-9 * np.ptp(mesh.nodes)
+    zero = np.zeros((len(x), 3), dtype=bool)
+    unknown = np.arange(3 * len(x)).reshape(-1, 3)
+    sign = np.ones((len(x), 3))
+    if sector.mirror:
+        zero[np.abs(y) < near, 1] = True
+    if sector.odd and sector.mirror:
+        zero[np.abs(x) < near, 1:] = True
+    elif sector.odd:
+        zero[np.hypot(x, y) < near, 2] = True
+        cut = np.flatnonzero((np.abs(y) < near) & (np.abs(x) >= near))
+        left, right = cut[x[cut] < 0.0], cut[x[cut] > 0.0]
+        order = [np.lexsort((np.round(np.abs(x[s]) / near / 10), np.round(z[s] / near / 10)))
+                 for s in (left, right)]  # fmt: skip
+        unknown[left[order[0]]] = unknown[right[order[1]]]
+        sign[left, 2] = -1.0
+    free = np.where(zero, -1, unknown).ravel()
+    used, number = np.unique(free, return_inverse=True)
+    return Ties(number - int(used[0] < 0), sign.ravel())
+
+
+def _clamped(pin: Pin, mesh: HexMesh, clamps: tuple[str, ...]) -> Ints:
+    found = []
+    for name in clamps:
+        if name in ("start", "end"):
+            at = pin.ends[name == "end"]
+            found.append(np.flatnonzero(np.abs(mesh.nodes[:, 2] - at) < pin.tolerance))
+        else:
+            found.append(np.unique(mesh.elements[_on(pin, mesh, name)][:, _FAR]))
+    return np.unique(np.concatenate(found))
+
+
+_FAR = np.flatnonzero(np.asarray(ElementHexS2().doflocs)[:, 0] == 1.0)
+
+
+def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
+    """Cells that bear a band."""
+    band = pin.band(name)
+    cells = mesh.outside[pin.labels.index(band.name)]
+    z = mesh.nodes[mesh.elements[cells], 2].mean(axis=1)
+    return np.asarray(cells[(z > band.z0) & (z < band.z1)])
+
+
+def nodal_forces(
+    pin: Pin, rule: FlowRule, mesh: HexMesh, elements: Elements, acting: Acting
+) -> Floats:
+    """Nodal forces (N, 3) of loads."""
+    out = np.zeros_like(mesh.nodes)
+    for load, phase, amount in acting:
+        if load.kind == "body":
+            out += amount * _body_force(rule, elements, phase if load.n else 2)
+        for t in tractions_of(pin, load):
+            out += amount * _face_forces(pin, mesh, t, load.n, phase)
+    return out
+
+
+def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Floats:
+    """Of a traction on a band."""
+    cells = mesh.elements[_on(pin, mesh, t.surface)]
+    g, weight = _gauss(3)
+    grid = np.stack([np.ones(9), np.repeat(g, 3), np.tile(g, 3)])
+    basis = [ElementHexS2().lbasis(grid, k) for k in _FAR]
+    shapes, slopes = np.stack([b[0] for b in basis]), np.stack([b[1] for b in basis])
+    corners = mesh.nodes[cells[:, _FAR]]
+    x = np.einsum("kq,mka->mqa", shapes, corners)
+    tangents = np.einsum("kaq,mkb->amqb", slopes[:, 1:], corners)
+    area = (
+        np.linalg.norm(np.cross(tangents[0], tangents[1]), axis=2)
+        * np.outer(weight, weight).ravel()
+    )
+    out = np.zeros_like(mesh.nodes)
+    np.add.at(
+        out, cells[:, _FAR], np.einsum("mq,kq,mqa->mka", area, shapes, components(t, x, n, phase))
+    )
+    return out
+
+
+def _body_force(rule: FlowRule, elements: Elements, axis: int) -> Floats:
+    """Of one m/s^2 along an axis."""
+    density = rule.material.density
+    if density is None:
+        raise SolveError(
+            f"material {rule.material.name} has no density, which weight and inertia need",
+            "no-density",
+        )
+    x, _ = _gauss(2)
+    grid = np.stack(np.meshgrid(x, x, x, indexing="ij")).reshape(3, -1)
+    shapes = np.stack([ElementHexS2().lbasis(grid, k)[0] for k in range(20)])
+    each = density * np.einsum("mq,kq->mk", elements.weights, shapes)
+    out = np.zeros_like(elements.nodes)
+    np.add.at(out[:, axis], elements.numbers, each)
+    return out
+
+
+def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Floats, Ties]:
+    """Forces with closing tractions that leave no resultant, and ties without rigid motions."""
+    whole = ties.matrix
+    whole_turn = np.concatenate([mesh.nodes, mesh.nodes * [-1.0, -1.0, 1.0]])  # about the axis
+    modes = rigid_modes(whole_turn)[: mesh.nodes.size]
+    counts = np.asarray(abs(whole).sum(axis=0)).ravel()
+    free = (whole.T @ modes) / counts[:, None]
+    possible = np.abs(whole @ free - modes).max(axis=0) < 1e-9
+    free = free[:, possible]
+    closing = [
+        sum(_face_forces(pin, mesh, t, n, phase) for t in everywhere)
+        for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1))
+        for everywhere in closing_tractions(pin, n, phase)
+    ]
+    columns = whole.T @ np.stack([np.ravel(c) for c in closing], axis=1)
+    columns /= np.linalg.norm(columns, axis=0)[None]
+    unbalanced = free.T @ (whole.T @ force.ravel())
+    amount = np.linalg.lstsq(free.T @ columns, -unbalanced, rcond=1e-9)[0]
+    corrected = force.ravel() + whole @ ((columns @ amount) / counts)
+    _, _, pivot = scipy.linalg.qr(free.T, mode="economic", pivoting=True)
+    return corrected.reshape(-1, 3), ties.without(pivot[: free.shape[1]].astype(np.int64))

@@ -1,0 +1,186 @@
+"""The limit load of a pin by the smallest model that decides whether it carries its loads.
+
+beam     hinges and slip, if even the model's error leaves no doubt      (assess.plastic.hinge)
+solid    elastic-plastic, on two meshes, a third if they differ much    (assess.plastic.limit_load)
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import replace
+from typing import Literal
+
+from assess.plastic.budget import Budget, OutOfTimeError
+from assess.plastic.flow import FlowRule
+from assess.plastic.flow_field import flow_field
+from assess.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
+from assess.plastic.limit_load import WEAK_EQUILIBRIUM, OnMesh, bracket, limit_on_mesh
+from assess.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
+from assess.plastic.records import LimitLoad, PlasticMesh
+from fea.core.material import Material
+from fea.core.memory import solid_memory
+from fea.core.pin_loads import PinLoads
+from geometry import Pin, PinLike
+from geometry.mesh.hexahedra import HexSize
+
+Rung = Literal["auto", "solid"]
+
+SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
+WIDEST = 0.05 + WEAK_EQUILIBRIUM  # of a bracket, over its middle
+MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
+PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first, about
+GROWTH = 1.5  # exponent of the time of a mesh over its unknowns, at least
+BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
+TETRAHEDRA = (
+    "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
+    "the metal flows"
+)
+TOO_LONG = (
+    "limit load not computed, because it takes more than {:g} s of processor time: --limit-load "
+    "computes it"
+)
+TOO_LARGE = "the solid would need more than {:,} unknowns or the memory that is allowed"
+
+
+def limit_load(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    loads: PinLoads,
+    rung: Rung = "auto",
+    memory: float | None = None,
+    seconds: float = math.inf,
+) -> LimitLoad:
+    """Of a pin clamped at surfaces (by name) under the loads of one instant. rung: "solid" even if
+    the beam decides. memory: MB that may be used. seconds: of processor time that it may take, or
+    there is no answer: never a part of one.
+
+    Raises: ArgumentError for a material without yield strength; SolveError.
+    """
+    begin, budget = time.perf_counter(), Budget(seconds)
+    rule = FlowRule(material)
+    if not isinstance(pin, Pin):
+        return LimitLoad("none", note=TETRAHEDRA)
+    if not pin.stepped:
+        return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
+    bounds = of_beam(pin, material, clamps, loads)
+    if bounds is not None and rung == "auto":
+        carries = decided(bounds)
+        if carries is not None:
+            return LimitLoad(
+                "beam",
+                float(bounds.lower[0]),
+                float(bounds.upper[0]),
+                carries,
+                hardening=bool(material.hardening),
+                seconds=time.perf_counter() - begin,
+                note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
+            )
+    try:
+        meshes, last, note = _meshes(pin, rule, clamps, loads, (memory, budget))
+    except OutOfTimeError:
+        spent, note = time.perf_counter() - begin, TOO_LONG.format(seconds)
+        return LimitLoad("none", seconds=spent, note=note, stopped=True)
+    if last is None or len(meshes) < 2:
+        return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
+    flow = flow_field(last, meshes[-1].last, plane_of(loads, 0))
+    found = _of_solid(meshes, bounds, rule, note)
+    return replace(found, flow=flow, seconds=time.perf_counter() - begin)
+
+
+def decided(bounds: BeamBounds) -> bool | None:
+    """Whether a beam carries its loads at the first instant, None if its error leaves that open."""
+    if bounds.lower[0] > 1.0 + BEAM_ERROR:
+        return True
+    return False if bounds.upper[0] < 1.0 - BEAM_ERROR else None
+
+
+def of_beam(
+    pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
+) -> BeamBounds | None:
+    """None for contact pressures on rings, which the beam does not take."""
+    if any(load.parts for load in loads.coefficients()):
+        return None
+    return beam_bounds(pin, material, clamps, loads)
+
+
+def _meshes(
+    pin: Pin,
+    rule: FlowRule,
+    clamps: tuple[str, ...],
+    loads: PinLoads,
+    most: tuple[float | None, Budget],
+) -> tuple[list[OnMesh], PinBody | None, str]:
+    """The finest two at least, if there is room for them, with the body of the last; why not
+    otherwise. most: memory, MB, and time.
+
+    Raises: SolveError; OutOfTimeError, too, before a mesh that would take longer than is left: the
+    first two by the number of unknowns, which is the same on every computer, another by the time of
+    the one before it.
+    """
+    memory, budget = most
+    meshes: list[OnMesh] = []
+    last: PinBody | None = None
+    took = 0.0
+    for size in SIZES:
+        made = body_on(pin, rule, clamps, loads, size)
+        too_much = memory is not None and solid_memory(made.body.size) > memory
+        if made.body.size > MOST_UNKNOWNS or too_much:
+            return meshes, last, TOO_LARGE.format(MOST_UNKNOWNS)
+        if last is None:
+            budget.require(made.body.size * PER_UNKNOWN)
+        else:
+            budget.require(took * (made.body.size / last.body.size) ** GROWTH)
+        last, before = made, budget.spent
+        meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements), budget))
+        took = budget.spent - before
+        if len(meshes) > 1 and narrow(*bracket(meshes)):
+            break
+    return meshes, last, ""
+
+
+def body_on(
+    pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, size: HexSize
+) -> PinBody:
+    """On a mesh, under the loads of the first instant. Raises: SolveError."""
+    return pin_body(pin, rule, clamps, acting_at(loads, 0, -plane_of(loads, 0)), size)
+
+
+def narrow(lower: float, upper: float) -> bool:
+    """Whether a bracket is, and does not leave open whether the pin carries its loads."""
+    return upper - lower <= WIDEST * (upper + lower) / 2.0 and not lower < 1.0 < upper
+
+
+def _of_solid(
+    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str
+) -> LimitLoad:
+    lower, upper = bracket(meshes)
+    finest = meshes[-1]
+    if bounds is not None and bounds.slip[0] < upper:
+        upper, note = float(bounds.slip[0]), "slip of a section is the upper bound"
+        lower = min(lower, 2.0 * upper - finest.reached)  # as far below as the mesh is above
+    at = min(1.0, BEFORE_COLLAPSE * lower)
+    return LimitLoad(
+        "solid",
+        lower,
+        upper,
+        True if lower > 1.0 else False if upper < 1.0 else None,
+        hardening=bool(rule.material.hardening),
+        permanent_set=finest.permanent_at(at),
+        permanent_at=at,
+        meshes=tuple(
+            PlasticMesh(
+                m.unknowns,
+                m.reached,
+                m.above.factor,
+                m.above.volume,
+                m.above.charge,
+                m.steps,
+                m.iterations,
+            )
+            for m in meshes
+        ),
+        curve=finest.curve,
+        note=note,
+    )

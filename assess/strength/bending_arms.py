@@ -1,0 +1,80 @@
+"""The bending moment of the formulas next to that of the joint model, at the same instant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from assess.strength.section_forces import section_forces
+from assess.strength.situation import Situation
+from fea.support.contact.records import Couple
+from pinbase.dimensions import Time
+
+OPPOSED = -0.99  # cosine between the forces of outer lugs and of the middle one
+EQUAL = 0.05  # by which outer lugs may differ in force, width and gap
+
+
+@dataclass(frozen=True)
+class BendingArms:
+    """Largest moments along a pin at the governing instant: with even and with concentrated loads
+    on the bands, and by the joint model ("contact", "foundation"), if one supports the pin.
+    layout: of the bands.
+    """
+
+    pin: str
+    case: str
+    time: Time | None
+    layout: str
+    even: Couple
+    concentrated: Couple
+    joint: Couple | None = None
+    model: str = ""
+
+
+def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
+    """s: at one instant."""
+    even, concentrated = section_forces(s)
+    return BendingArms(
+        s.pin.name,
+        s.loads.case,
+        None if s.loads.times is None else float(s.loads.times[0]),
+        layout(s),
+        float(even.moment.max()),
+        float(concentrated.moment.max()),
+        joint,
+        model,
+    )
+
+
+def layout(s: Situation) -> str:
+    """What carries the pin at the first instant: "double shear" where the even moment is that of
+    EN 1993-1-8, figure 3.11.
+    """
+    if s.clamps:
+        return "clamped"
+    bands = sorted((s.pin.band(n) for n in s.loads.surfaces), key=lambda b: b.z0)
+    order = [s.loads.surfaces.index(b.name) for b in bands]
+    force = s.loads.forces[0, order, :2]
+    if len(bands) == 2:
+        return "single shear"
+    if len(bands) != 3 or not _opposed(force):
+        return f"{len(bands)} bands"
+    left, middle, right = bands
+    size = np.hypot(*force.T)
+    pairs = (
+        (size[0], size[2]),
+        (left.length, right.length),
+        (middle.z0 - left.z1, right.z0 - middle.z1),
+    )
+    same = all(abs(a - b) <= EQUAL * max(a, b) for a, b in pairs)
+    return "double shear" if same else "double shear, not symmetrical"
+
+
+def _opposed(force: np.ndarray) -> bool:
+    """Whether the middle one of three forces (3, 2) opposes both others."""
+    size = np.hypot(*force.T)
+    if not size.all():
+        return False
+    along = force / size[:, None]
+    return bool(max(along[0] @ along[1], along[2] @ along[1]) <= OPPOSED)

@@ -1,0 +1,49 @@
+"""The fully plastic section of a round pin, solid or hollow, in bending with shear.
+
+    M_pl = W_pl f_y       V_pl = A_v f_y / sqrt(3)
+
+W_pl is exact for a perfectly plastic section (fea.beam.round_section). A_v is the shear area 2 A /
+pi of a circular hollow section, or that at which V Q / (I t) reaches yield, which is safe, too, and
+larger for thick ones: 3 A / 4 if solid. Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every
+section, whose root is the utilisation, at ultimate load with the yield strength: a hinge is no
+permissible state at limit load. Shear at one stress tau everywhere leaves sqrt(f_y^2 - 3 tau^2) for
+bending, which gives this circle. Axial force and torque are not in it: assess.plastic.hinge has
+them.
+
+This is a rule of pinstress and of no standard. EN 1993-1-1:2005 has shear alone in 6.2.6, bending
+with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10.
+
+Source: EN 1993-1-1:2005, 6.2.6(3) g, for the shear area of a circular hollow section alone.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from assess.strength.margin import RATIO, Margin
+from assess.strength.section_forces import SectionForces
+from assess.strength.situation import Situation
+from assess.strength.worst import Check, strength_key
+from fea.beam.round_section import Circle
+
+PLASTIC = Check("plastic bending and shear", "rule of pinstress", "ultimate", RATIO)
+RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
+
+
+def plastic_shear(section: Circle, strength: float) -> float:
+    """V_pl, N, of a yield strength in Pa."""
+    area = section.area * max(2.0 / math.pi, 1.0 / section.vq_it)
+    return area * strength / math.sqrt(3.0)
+
+
+def plastic_margin(s: Situation, forces: SectionForces) -> Margin:
+    """Of the section that is nearest to a hinge."""
+    fy = s.material.yield_strength
+    if fy is None:
+        return PLASTIC.lacks(s, strength_key(s.material.name, "yield"))
+    M = fy * forces.of_sections("plastic_modulus")
+    V = np.array([plastic_shear(section, fy) for section in forces.sections])
+    used = np.hypot(forces.moment / M, forces.shear / V)
+    return PLASTIC.along(s, forces, used, np.ones(used.shape[1]), RULE)

@@ -1,0 +1,159 @@
+"""Results of hand checks and of the check against beam theory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pinbase.dimensions import (
+    Floats,
+    Force,
+    Forces,
+    Length,
+    Lengths,
+    Moments,
+    Stress,
+    Stresses,
+    Time,
+)
+
+JOINT_MODEL = "joint model"  # as the basis of section forces
+FOR_COMPARISON = "for comparison"
+WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
+
+
+@dataclass(frozen=True)
+class HandCheck:
+    """A hand check, `name` ("bending", "single shear", ..), where and when it is largest over
+    the case: stress and strength in Pa (None without a yield strength), formula and source.
+
+    at: the segment, by the name of its surface; z: there, m; time: s, None without a motion.
+    material: whose strength it is. ruptures: the strength of that material ("shear", "bearing",
+    "ultimate") that the stress reaches at rupture; empty where that is no measure of it. basis:
+    where the force or moment comes from, if it is not from even loads. governs: whether it may; if
+    not, it is there for comparison.
+    """
+
+    name: str
+    at: str
+    z: Length
+    time: Time | None
+    stress: Stress
+    strength: Stress | None
+    formula: str
+    source: str
+    material: str = ""
+    ruptures: str = ""
+    basis: str = ""
+    governs: bool = True
+
+    @property
+    def factor(self) -> float | None:
+        """Factor of safety."""
+        return self.strength / self.stress if self.strength and self.stress else None
+
+    @property
+    def shown(self) -> str:
+        """The name, and the joint model where it takes the section forces of that."""
+        return shown_with_basis(self.name, self.basis)
+
+    @property
+    def compared(self) -> HandCheck:
+        """The same for comparison only."""
+        return replace(self, name=f"{self.name}, {FOR_COMPARISON}", governs=False)
+
+
+def shown_with_basis(name: str, basis: str) -> str:
+    """The name of a check, and the joint model where it takes the section forces of that."""
+    named = JOINT_MODEL in name or not basis.startswith(JOINT_MODEL)
+    return name if named else f"{name} ({JOINT_MODEL})"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Of elasticity's stress from the beam's, as parts of the beam's peak: rms and largest within
+    the window, largest anywhere and its z.
+    """
+
+    rms: float
+    largest: float
+    largest_anywhere: float
+    largest_at: Length
+
+
+@dataclass(frozen=True)
+class BeamCheck:
+    """A cantilever pin's axial stress (Pa) on its line in tension along z (m), from the root to the
+    end of the load on a `band`: by beam theory, and by elasticity with the load on the band's
+    surface and on the axis (a bore of the diameter axis_bore).
+
+    expected_offset*: by how much exact elasticity is above beam theory while the load acts, away
+    from the ends (assess.opinion.michell), Pa.
+    """
+
+    pin: str
+    case: str
+    connection: str
+    force: Force
+    diameter: Length
+    axis_bore: Length
+    band: tuple[Length, Length]
+    z: Lengths
+    shear: Forces
+    moment: Moments
+    beam_axial_stress: Stresses
+    fea_axial_stress: Stresses
+    fea_axial_stress_axis_load: Stresses
+    expected_offset: Stress
+    expected_offset_axis_load: Stress
+
+    def difference(self, stress: Floats) -> Difference:
+        """How far `stress` is from the beam's."""
+        z, beam = self.z, self.beam_axial_stress
+        error = (stress - beam) / beam.max()
+        loaded = z[-1]
+        inside = (z >= WINDOW[0] * loaded) & (z <= WINDOW[1] * loaded)
+        worst = int(np.abs(error).argmax())
+        return Difference(
+            rms=float(np.sqrt(np.mean(error[inside] ** 2))),
+            largest=float(np.abs(error[inside]).max()),
+            largest_anywhere=float(abs(error[worst])),
+            largest_at=float(z[worst]),
+        )
+
+    @property
+    def rms(self) -> float:
+        """With the load on the band's surface, as are all that do not name the axis."""
+        return self.difference(self.fea_axial_stress).rms
+
+    @property
+    def rms_axis_load(self) -> float:
+        return self.difference(self.fea_axial_stress_axis_load).rms
+
+    @property
+    def largest(self) -> float:
+        return self.difference(self.fea_axial_stress).largest
+
+    @property
+    def largest_axis_load(self) -> float:
+        return self.difference(self.fea_axial_stress_axis_load).largest
+
+    @property
+    def largest_anywhere(self) -> float:
+        return self.difference(self.fea_axial_stress).largest_anywhere
+
+    @property
+    def largest_at(self) -> float:
+        """z of it."""
+        return self.difference(self.fea_axial_stress).largest_at
+
+    @property
+    def rms_beyond_offset(self) -> float:
+        """Once the expected offset is added to the beam."""
+        return self.difference(self.fea_axial_stress - self.expected_offset).rms
+
+    @property
+    def rms_axis_load_beyond_offset(self) -> float:
+        found = self.fea_axial_stress_axis_load - self.expected_offset_axis_load
+        return self.difference(found).rms

@@ -1,1 +1,0 @@
-"""Comparisons with the answers: hand formulas, beam theory, CalculiX."""

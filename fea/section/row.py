@@ -1,0 +1,123 @@
+"""A row's number: the larger of surface and section, each with its own error."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from fea.core.material import Material
+from fea.core.peak import Note, Peak, accuracy
+from fea.core.pin_loads import PinLoads
+from fea.core.places import ContactPlace, Place, Places, SurfacePlace
+from fea.section.place import FoundSection
+
+IN_SECTION = ("in-section",)
+OF_THE_SURFACE = ("within-tolerance", "above-tolerance", "too-few-meshes", "no-notch-factor")
+
+
+def row_of(
+    surface: Peak,
+    section: FoundSection | None,
+    material: Material,
+    tolerance: float,
+    links: PinLoads | None = None,
+) -> Peak:
+    """A surface's peak with its section's: what governs is the row. links: the loads of the links
+    at the section's instant, if they are not the section's own.
+    """
+    if surface.max_von_mises is None or surface.error_estimate is None:
+        return surface
+    places = Places("surface", _surface(surface))
+    if section is None:
+        return replace(surface, places=places)
+    used = None
+    if material.yield_strength is not None:
+        used = section.at.plastic_use(material.yield_strength)
+    governs: Place = "section" if section.at.value > surface.max_von_mises else "surface"
+    places = replace(places, section=section.place(tolerance, used), governs=governs)
+    if governs == "surface":
+        error = max(surface.error_estimate, section.upper_end - surface.max_von_mises)
+        row = _at_least(_looser(surface, error, tolerance), section.lower_end)
+        return replace(row, places=places)
+    return replace(_by_section(surface, section, tolerance, links), places=places)
+
+
+def _surface(peak: Peak) -> SurfacePlace:
+    assert peak.max_von_mises is not None
+    assert peak.error_estimate is not None
+    assert peak.location is not None
+    return SurfacePlace(
+        peak.max_von_mises, peak.error_estimate, peak.verdict, peak.location, peak.time
+    )
+
+
+def _looser(peak: Peak, error: float, tolerance: float) -> Peak:
+    """With an error (Pa) that the other place may add: a row is as uncertain as the larger of both
+    may be.
+    """
+    largest = peak.max_von_mises or 0.0
+    if error <= (peak.error_estimate or 0.0) or not largest:
+        return peak
+    loose = peak.verdict == "converged" and error > tolerance * largest
+    before, after = (
+        accuracy(x / largest, tolerance, peak.verdict == "converged" and not more)
+        for x, more in ((peak.error_estimate or 0.0, False), (error, loose))
+    )
+    return replace(
+        peak,
+        error_estimate=error,
+        interval=peak.interval and (peak.interval[0], max(peak.interval[1], largest + error)),
+        verdict="unconverged" if loose else peak.verdict,
+        note=peak.note.replace(before.text, after.text),
+        reasons=tuple(after.codes[0] if x == before.codes[0] else x for x in peak.reasons),
+    )
+
+
+def _at_least(peak: Peak, low: float) -> Peak:
+    """With an interval that begins at a stress (Pa), if it has one: sections have that much."""
+    if peak.interval is None:
+        return peak
+    largest, (first, last) = peak.max_von_mises or 0.0, peak.interval
+    first = max(first, low)
+    error = max(largest - first, last - largest)
+    return replace(peak, interval=(first, last), error_estimate=error)
+
+
+def _by_section(
+    surface: Peak, section: FoundSection, tolerance: float, links: PinLoads | None
+) -> Peak:
+    at, relative = section.at, section.parts.total / section.at.value
+    known = section.known(tolerance)
+    own = accuracy(relative, tolerance, known)
+    singular = surface.verdict == "singular"
+    _, more, rest = surface.note.partition("; ")
+    others = tuple(code for code in surface.reasons if code not in OF_THE_SURFACE)
+    note = Note("", IN_SECTION) + own + Note(more + rest, others)
+    row = replace(
+        surface,
+        max_von_mises=at.value,
+        error_estimate=section.parts.total,
+        location=(at.r * math.cos(at.angle), at.r * math.sin(at.angle), at.z),
+        governing=section.loads if links is None else links,
+        parts=section.parts,
+        interval=None,
+        verdict="converged" if known else "unconverged",
+        note=note.text,
+        reasons=note.codes,
+    )
+    if singular:  # stress at a clamp or a corner has no bound, whatever the section has
+        low, high = surface.interval or (surface.lower_end, surface.upper_end)
+        ends = max(low, section.lower_end), max(high, section.upper_end)
+        error = max(at.value - ends[0], ends[1] - at.value)
+        return replace(
+            row, verdict="singular", interval=ends, error_estimate=error, note=surface.note,
+            reasons=surface.reasons,
+        )  # fmt: skip
+    return _looser(row, surface.upper_end - at.value, tolerance)
+
+
+def with_contact(peak: Peak, contact: ContactPlace) -> Peak:
+    """With what only contact has."""
+    if peak.places is None:
+        return peak
+    return replace(peak, places=replace(peak.places, contact=contact))

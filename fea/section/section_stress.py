@@ -1,0 +1,212 @@
+"""The stress of a pin's sections by its section forces: sqrt(s^2 + 3 t^2), over every section.
+
+s is that of the axial force and of bending, t that of torsion and of shear, as Saint-Venant has
+them in a round section, solid or hollow, so that it is exact in elasticity a diameter away from
+loads and changes of shape. It is what stress analysts call membrane and bending: it has no local
+stress, and so depends on no mesh and on no distance from an edge.
+
+Source: fea.beam.round_section, for the shear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.error_model import between_clamps
+from fea.beam.line_load import acting, shares
+from fea.beam.plastic_interaction import plastic_use
+from fea.beam.round_section import Circle, weakest
+from fea.beam.stress import RZ, TZ, ZZ, section_stress
+from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
+from fea.core.material import Material
+from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
+from fea.core.solution import Picture
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.superposition import Circumference, Top
+from geometry import Pin
+from pinbase.arrays import Floats, Mask
+
+ALONG = 9  # sections between two stations, both ends included
+ACROSS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
+CLOSER = 33  # points between two of these, about the angle, and along the pin, near the largest
+SAME = 1e-9  # relative: a section must have so much more than another
+NEAR = np.radians(2.0)  # of that angle
+
+
+@dataclass(frozen=True)
+class AtSection:
+    """The largest stress of sections, Pa, at an instant (its number): z, radius (m) and angle (rad)
+    of the point, in a cell of the beam; axial and shear force (N), bending moment and torque (N m)
+    there.
+    """
+
+    value: float
+    instant: int
+    cell: int
+    z: float
+    r: float
+    angle: float
+    axial_force: float
+    shear_force: float
+    bending_moment: float
+    torque: float
+    section: Circle
+
+    def plastic_use(self, strength: float) -> float:
+        """Which part of what the fully plastic section carries is used, of a yield strength, Pa."""
+        forces = self.shear_force, self.bending_moment, abs(self.axial_force), abs(self.torque)
+        return plastic_use(self.section, *forces, strength)
+
+
+class SectionAnswer:
+    """Of a pin clamped at surfaces (by its own names), or in balance, under any loads made of the
+    unit loads of some cases (fea.core.solution: Answer).
+
+    Raises: as fea.beam.timoshenko.stepped_beam.
+    """
+
+    def __init__(
+        self, pin: Pin, material: Material, clamps: tuple[str, ...], cases: Sequence[AnyLoads]
+    ) -> None:
+        units = tuple(dict.fromkeys(load for case in cases for load in acting(case)))
+        self.forces, self.pin = stepped_beam(pin, material, units, clamps), pin
+        self.nu = material.poisson_ratio
+        stations = self.forces.stations
+        free = np.array(self.forces.free, dtype=np.intp)
+        self._cells = np.repeat(free, ALONG)
+        part = np.tile(np.linspace(0.0, 1.0, ALONG), len(free))
+        self._z = stations[self._cells] + part * np.diff(stations)[self._cells]
+
+    @cached_property
+    def fields(self) -> MeridianFields:
+        """Stress of each unit load at points of the sections, section by section."""
+        inside = self.forces.inside(self._cells, self._z)
+        sections = sections_at(self.pin, self.forces, self._cells, self._z)
+        each = {s: _at_radii(s, ACROSS, self.nu) for s in set(sections)}
+        radii = np.array([each[s][0] for s in sections])
+        per_force = np.array([each[s][1] for s in sections])
+        stress = np.einsum("srcq,sqk->srck", per_force, inside)
+        z = np.broadcast_to(self._z[:, None], radii.shape)
+        points = np.stack([radii, z], axis=2).reshape(-1, 2)
+        loads = self.forces.loads
+        return MeridianFields(
+            points,
+            loads,
+            stress.reshape(len(points), 6, len(loads)),
+            np.zeros((0, 3, len(loads))),
+            0,
+            0,
+        )
+
+    def _felt(self, loads: AnyLoads) -> Amounts:
+        """Loads without what no section notices."""
+        known = set(self.forces.loads)
+        found = {load: x for load, x in loads.coefficients().items() if load in known}
+        return Amounts(loads.case, found, len(loads))
+
+    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+        """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
+        return self.around(loads).maxima(self.all, least)
+
+    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+        """The largest of these (Pa), and the number of its instant."""
+        top = self._top(loads)
+        return top.value, top.instant
+
+    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+        """None: sections have no surface."""
+        return None
+
+    @property
+    def all(self) -> Mask:
+        """All points of the sections."""
+        return np.ones(len(self.fields.points), dtype=bool)
+
+    def around(self, loads: AnyLoads) -> Circumference:
+        """A case on these points."""
+        return Circumference(self.fields, self._felt(loads))
+
+    def _top(self, loads: AnyLoads) -> Top:
+        return self.around(loads).top(self.all)
+
+    def place(self, loads: AnyLoads) -> AtSection:
+        """Where and when the largest is, and what acts there."""
+        top = self._top(loads)
+        row = top.point // len(ACROSS)
+        cell = self._cells[row]
+        z = self._closer_z(row)
+        cells = np.full(len(z), cell)
+        sections = sections_at(self.pin, self.forces, cells, z)
+        inside = self.forces.inside(cells, z)
+        forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
+        both = zip(sections, forces, strict=True)
+        found = [self._closer(section, tuple(x), top) for section, x in both]
+        values = np.array([value for value, _, _ in found])
+        k = int(values.argmax()) if values.max() > (1.0 + SAME) * values[0] else 0
+        V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
+        value, r, angle = found[k]
+        return AtSection(
+            value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
+            float(np.hypot(*M)), float(T[1]), sections[k],
+        )  # fmt: skip
+
+    def held_twice(self, at: AtSection) -> float:
+        """The relative error of what acts there since it is between two clamps; else 0."""
+        spans = self.forces.spans
+        (span,) = (s for s in spans if s.first <= at.cell < s.last)
+        return between_clamps(self.forces, span)
+
+    def _closer_z(self, row: int) -> Floats:
+        """A section by its number, and others near it between the same stations, m."""
+        z, cell = float(self._z[row]), self._cells[row]
+        start, end = self.forces.stations[cell : cell + 2]
+        step = (end - start) / (ALONG - 1)
+        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER)
+        return np.concatenate([[z], near])
+
+    def _closer(
+        self, section: Circle, forces: tuple[Floats, ...], top: Top
+    ) -> tuple[float, float, float]:
+        """Value, radius and angle of the largest stress in a section, near a point of it."""
+        number = top.point % len(ACROSS)
+        ends = (ACROSS[max(number - 1, 0)], ACROSS[min(number + 1, len(ACROSS) - 1)])
+        radii, per_force = _at_radii(section, np.linspace(*ends, CLOSER), self.nu)
+        V, M, N, T = forces  # (2,) each: by phase, V and M of x and y
+        turns = top.angle + np.linspace(-NEAR, NEAR, CLOSER)
+        c, s = np.cos(turns), np.sin(turns)
+        square = np.zeros((len(radii), len(turns)))
+        for row, factor in ((ZZ, 1.0), (RZ, 3.0), (TZ, 3.0)):
+            first, second = (c, s) if row != TZ else (s, -c)
+            of_v, of_m, of_n, of_t = per_force[:, row].T
+            stress = np.outer(of_v, V[0] * first + V[1] * second)
+            stress += np.outer(of_m, M[0] * first + M[1] * second)
+            stress += (of_n * N[0] - of_t * T[1] * (row == TZ))[:, None]
+            square += factor * stress**2
+        i, j = np.unravel_index(square.argmax(), square.shape)
+        return float(np.sqrt(square[i, j])), float(radii[i]), float(turns[j])
+
+
+def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
+    """Radii (R,), m, at parts of the way from bore to outside, and stress there per V, M, N, T,
+    (R, 6, 4).
+    """
+    radii = section.inner + parts * (section.outer - section.inner)
+    return radii, np.array([section_stress(section, float(r), nu) for r in radii])
+
+
+def sections_at(
+    pin: Pin, forces: InternalForces, cells: NDArray[np.intp], z: Floats
+) -> list[Circle]:
+    """Of a pin at z (S,), m, each as seen from the cell (S,) of the beam that it is in; those of a
+    cone as they are there.
+    """
+    starts, stations = np.array(pin.stations), forces.stations
+    middle = 0.5 * (stations[cells] + stations[cells + 1])
+    which = np.clip(np.searchsorted(starts, middle) - 1, 0, len(pin.segments) - 1)
+    each = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
+    return [weakest(pin.segments[i], x, x) for i, x in each]

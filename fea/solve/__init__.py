@@ -1,0 +1,1 @@
+"""The ladder of meshes: which model, how fine, what verdict."""

@@ -1,0 +1,41 @@
+"""Contact pressure of one instant at points of a pin's surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.pin_loads import Floats
+from fea.support.contact.contact import Bands
+
+NEAR = 1e-6  # of the radius: how far off its ring a point may be by round-off
+
+
+@dataclass(frozen=True)
+class CellPressure:
+    """Pressure (R, M) Pa on the M sectors of the rings of all bands, the middle of the first at an
+    angle, rad, from x.
+    """
+
+    bands: Bands
+    pressure: Floats
+    angle: float = 0.0
+
+    def rings(self, points: Floats) -> NDArray[np.int64]:
+        """Numbers of the rings on which points (N, 3) m lie, (N,); -1 on none."""
+        near = NEAR * self.bands.radius
+        half = 0.5 * self.bands.length + near
+        r = np.hypot(points[:, 0], points[:, 1])[:, None]
+        on = (np.abs(r - self.bands.radius) < near) & (
+            np.abs(points[:, 2, None] - self.bands.z) < half
+        )
+        return np.where(on.any(axis=1), on.argmax(axis=1), -1)
+
+    def at(self, points: Floats) -> Floats:
+        """At points (N, 3) m, (N,) Pa; zero where nothing is in contact."""
+        rings, sectors = self.rings(points), self.pressure.shape[1]
+        turns = (np.arctan2(points[:, 1], points[:, 0]) - self.angle) / (2.0 * np.pi)
+        sector = np.rint(turns * sectors).astype(np.int64) % sectors
+        return np.where(rings < 0, 0.0, self.pressure[rings, sector])

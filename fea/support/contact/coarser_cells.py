@@ -1,0 +1,57 @@
+"""The same contact on cells twice as large: by how much cells change what is found of the pin."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.pin_loads import Floats
+from fea.support.contact.contact import Bands, ContactProblem
+from fea.support.contact.solve_joint import WAVES, JointModel
+from pinbase.arrays import Ints
+
+
+def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
+    """Contact with each two rings of a band as one and half the sectors, and the rings (R, C) of
+    which the coarse ones consist, 1 or 0.
+    """
+    fine = model.contact
+    group = _pairs(model)
+    belongs = (group[:, None] == np.arange(group.max() + 1)).astype(float)
+    length = fine.bands.length @ belongs
+    mean = belongs * fine.bands.length[:, None] / length  # over a coarse ring
+    first = np.array([np.flatnonzero(group == c)[0] for c in range(len(length))])
+    bands = Bands(
+        mean.T @ fine.bands.z,
+        length,
+        fine.bands.radius[first],
+        fine.bands.band[first],
+        mean.T @ fine.bands.gap,
+        fine.bands.link,
+    )
+    sectors = model.cells.sectors // 2
+    coarse = mean.T @ model.flexibility[: WAVES * sectors] @ belongs
+    tilt = [lug.tilt for lug in model.lugs]
+    problem = ContactProblem(bands, coarse, model.tail[first], tilt, sectors)
+    return problem, belongs
+
+
+def _pairs(model: JointModel) -> Ints:
+    """Numbers (R,) of the coarse rings: two of a band each, none both flat and rounded, where a
+    common gap would keep light loads off what is flat. One that is left over is alone where the
+    rounding ends, or the third of the last flat ones.
+    """
+    out: list[int] = []
+    for _, lug, ends in model.by_lug():
+        near = lug.edge_radius * (1.0 + 1e-9)
+        first, last = ends[1:] - ends[0] <= near, ends[-1] - ends[:-1] <= near
+        before, after = (int(part.sum()) for part in (first, last & ~first))
+        flat = len(ends) - 1 - before - after
+        middle = [*_twos(flat - 3), 3] if flat > 1 and flat % 2 else _twos(flat)
+        for size in (*_twos(before)[::-1], *middle, *_twos(after)):
+            out += [out[-1] + 1 if out else 0] * size
+    return np.array(out, dtype=np.int64)
+
+
+def _twos(count: int) -> list[int]:
+    """So many rings by two, one at the end if their number is odd."""
+    return [2] * (count // 2) + [1] * (count % 2)

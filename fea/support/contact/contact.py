@@ -1,0 +1,396 @@
+"""Frictionless contact of a pin with its lugs, on cells: rings of the bands times sectors.
+
+With pressure p >= 0 on the cells, the gap to the bore is, on the average of a cell,
+
+    g = clearance / 2 + edge rounding + C p + (shift of the lug + z turn of the pin) . e_r >= 0
+
+and p g = 0. C is the flexibility of pin and lugs together, harmonic by harmonic, the half-plane's
+beyond, under pressures that are even on every cell, and averaged over cells, so that it is
+symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
+turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its
+force, and the couples on the pin are in balance. It is a linear complementarity problem with a
+positive definite matrix; a primal-dual active set solves it, from any start, in few steps. As long
+as the same cells are in contact everything is linear in the loads: what a set of cells answers is
+found once and kept, so that neighbouring instants take next to nothing.
+
+Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
+Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Floats
+from pinbase.arrays import Ints
+
+Mask = NDArray[np.bool_]
+
+MOST_STEPS = 60
+LARGER, LARGEST = 16.0, 1e12  # times the loads, where contact does not settle under them
+SMALLER, LEAST = 2.0, 1.01  # factors by which they become smaller again
+BALANCE = 1e-9  # of the largest force
+ROUND_OFF = 1e-12  # of the forces that would close the gaps
+CLOSE = 1e-12  # of the largest pressure or gap: what is round-off
+SOFT = 1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
+WAVES = 40  # times the sectors: harmonics of the half-plane that are summed
+KEPT = 4_000_000  # numbers: of what sets of cells answer
+
+
+@dataclass(frozen=True)
+class Bands:
+    """The rings (R,) of all bands, in their order: z of the middle and length, m; radius, m; band:
+    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m. link:
+    (B,) the number of the link to which each band's lug belongs, each to its own by default; lugs
+    of one link shift together, and share its force as they can.
+    """
+
+    z: Floats
+    length: Floats
+    radius: Floats
+    band: NDArray[np.int64]
+    gap: Floats
+    link: NDArray[np.int64] | None = None
+
+    def __len__(self) -> int:
+        return int(self.band.max()) + 1
+
+    @cached_property
+    def links(self) -> NDArray[np.int64]:
+        """(B,) the number of each band's link."""
+        return np.arange(len(self)) if self.link is None else self.link
+
+    @cached_property
+    def middles(self) -> Floats:
+        """z of the bands' middles, (B,) m."""
+        ends = [
+            (self.z - self.length / 2.0)[self.band == b].min()
+            + (self.z + self.length / 2.0)[self.band == b].max()
+            for b in range(len(self))
+        ]
+        return 0.5 * np.array(ends)
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """Pressure (R, M) in Pa and gap (R, M) in m on the cells; shift (B, 2) m of the lugs against
+    the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set. angle:
+    of the first cells' middle from the x axis, rad.
+    """
+
+    pressure: Floats
+    gap: Floats
+    shift: Floats
+    turn: Floats
+    steps: int
+    angle: float = 0.0
+
+    @property
+    def active(self) -> Mask:
+        """Which cells are in contact."""
+        return self.gap <= 0.0
+
+    def times(self, factor: float) -> Pressed:
+        """Under so many times the loads, where contact without them has no gap to close."""
+        return Pressed(
+            factor * self.pressure,
+            factor * self.gap,
+            factor * self.shift,
+            factor * self.turn,
+            0,
+            self.angle,
+        )
+
+    def turned(self, angle: float) -> Pressed:
+        """All of it turned about the axis by an angle, rad."""
+        turn = rotation(angle).T
+        return replace(
+            self, shift=self.shift @ turn, turn=self.turn @ turn, angle=self.angle + angle
+        )
+
+
+def rotation(angle: float) -> Floats:
+    """By an angle, rad, of columns along x and y, (2, 2)."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+@dataclass(frozen=True)
+class Adjoined:
+    """Contact of some cells: forces (U,) N and rigid motions (Y,), and what a sum of the forces
+    loses by a gap at each of the cells (U,), and gains by what is asked of each motion (Y,).
+    """
+
+    force: Floats
+    motion: Floats
+    by_gap: Floats
+    by_asked: Floats
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """What the cells of one active set answer: forces (U,) N and gaps (U,) m without rigid motions,
+    how much each rigid motion takes off the forces and adds to the gaps, (U, Y), and the equations
+    (Y, Y), (Y,) of the motions but for what equilibrium asks; motions: (U, Y), of the gap.
+    """
+
+    force: Floats
+    yielding: Floats
+    gap: Floats
+    moving: Floats
+    system: Floats
+    right: Floats
+    motions: Floats
+
+    def under(self, asked: Floats) -> tuple[Floats, Floats, Floats]:
+        """Forces, gaps and rigid motions."""
+        motion, lost = np.zeros(len(asked)), self.right - asked
+        for _ in range(2):  # once more for round-off: forces are small where gaps are large
+            # what moves nothing is zero
+            motion += np.asarray(np.linalg.lstsq(self.system, lost)[0], dtype=np.float64)
+            force = self.force - self.yielding @ motion
+            lost = self.motions.T @ force - asked
+        return force, self.gap + self.moving @ motion, motion
+
+
+class ContactProblem:
+    """One pin in its lugs, ready for any loads.
+
+    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings;
+    tail: n u_n / p_n of both together for higher ones, m/Pa, (R,). tilt: (B,) N m/rad of the lugs'
+    tilt, inf where guided, 0 where free. sectors: M, of equal angles, the first about x.
+    """
+
+    def __init__(
+        self, bands: Bands, flexibility: Floats, tail: Floats, tilt: Sequence[float], sectors: int
+    ) -> None:
+        self.bands, self.sectors = bands, sectors
+        self.angles = 2.0 * np.pi * np.arange(sectors) / sectors
+        self.area = self.cells_area(bands)
+        mean = np.sinc(1.0 / sectors)  # of cos and sin over a sector
+        e_r = mean * np.stack([np.cos(self.angles), np.sin(self.angles)], axis=1)
+        self._e_r = np.tile(e_r, (len(bands.z), 1))  # (U, 2)
+        self._link = np.repeat(bands.links[bands.band], sectors)
+        self._count = int(bands.links.max()) + 1
+        self._fixed = self._of_cells(flexibility, tail)
+        self._fit(bands, tilt)
+
+    def cells_area(self, bands: Bands) -> Floats:
+        """Of all cells of bands with as many rings, (U,) m^2."""
+        return np.repeat(bands.length * bands.radius, self.sectors) * 2.0 * np.pi / self.sectors
+
+    def changed(self, gap: Floats, tilt: Sequence[float]) -> ContactProblem:
+        """The same with other gaps before any load (R,) m and tilts."""
+        other = copy.copy(self)
+        other._fit(replace(self.bands, gap=gap), tilt)
+        return other
+
+    def _fit(self, bands: Bands, tilt: Sequence[float]) -> None:
+        self.bands = bands
+        self._open = np.repeat(bands.gap, self.sectors)
+        self._motions, tilts = self.rigid(bands, tilt)
+        self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
+        self._soft = SOFT / np.abs(self._compliance).max()
+        # of the motions, (Y, Y): a turn counts as the shift at the far end
+        self._scale = np.diag(np.square(self._motions).max(axis=0))
+        self._answers: dict[bytes, _Answer] = {}
+
+    @property
+    def closed(self) -> bool:
+        """Whether pin and bores fit everywhere before any load."""
+        return not self.bands.gap.any()
+
+    def factors(self, n: Ints) -> Floats:
+        """Of harmonics in the mean over a cell under pressure on a cell, (N,)."""
+        return np.asarray(
+            np.where(n == 0, 1.0, 2.0) / self.sectors * np.sinc(n / self.sectors) ** 2
+        )
+
+    def tail_weights(self, first: int) -> Floats:
+        """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
+        n = np.arange(first, WAVES * self.sectors)
+        each = self.factors(n) / n
+        return np.asarray(np.bincount(n % self.sectors, each, self.sectors), dtype=np.float64)
+
+    def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
+        """Mean displacement of cells under forces on cells, (U, U) m/N."""
+        M, n = self.sectors, np.arange(len(flexibility))
+        waves = np.cos(np.outer(n, self.angles)) * self.factors(n)[:, None]  # (N + 1, M)
+        apart = np.tensordot(flexibility, waves, (0, 0))  # (R, R, M)
+        weights = self.tail_weights(len(flexibility))
+        near = weights @ np.cos(np.outer(np.arange(M), self.angles))  # the same a turn further on
+        apart[np.arange(len(tail)), np.arange(len(tail))] += tail[:, None] * near
+        turn = (np.arange(M)[:, None] - np.arange(M)) % M
+        rings = len(tail)
+        full = apart[:, :, turn].transpose(0, 2, 1, 3).reshape(rings * M, rings * M)
+        return np.asarray(full / self.area)
+
+    def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
+        """Changes of the gap on bands with as many rings by what has no stiffness, (U, Y): shifts
+        of the lugs, turn of the pin, tilts of the lugs that are free; and by the tilts of those
+        that have one, over its root, (U, S), whose products are their compliance.
+        """
+        columns = [self._e_r * (self._link == k)[:, None] for k in range(self._count)]
+        band, z = (np.repeat(x, self.sectors) for x in (bands.band, bands.z))
+        middle = 0.5 * (z.min() + z.max())
+        columns.append(self._e_r * (z - middle)[:, None])
+        elastic = [np.zeros((len(z), 0))]
+        for b, stiffness in enumerate(tilt):
+            arm = (z - bands.middles[b]) * (band == b)
+            column = self._e_r * arm[:, None]
+            if stiffness == 0.0:
+                columns.append(column)
+            elif np.isfinite(stiffness):
+                elastic.append(column / math.sqrt(stiffness))
+        return np.hstack(columns), np.hstack(elastic)
+
+    def solve(
+        self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
+    ) -> Pressed:
+        """Under forces (L, 2) N of the links on the pin, along x and y.
+
+        couple: N m, along x and y, on the pin by anything but forces across at the bands, moments
+        of links included. start: cells (R, M) in contact, of a neighbouring instant.
+
+        Raises: SolveError where the active set does not settle.
+        """
+        asked = self.asked(forces, couple)
+        facing = self._facing(forces)
+        found = self._settled(asked, facing if start is None else start.ravel().copy())
+        found = found or self._from_larger(asked, facing)
+        if found is None:
+            raise SolveError(f"contact does not settle in {MOST_STEPS} steps", "contact-unsettled")
+        return found
+
+    def _settled(self, asked: Floats, active: Mask) -> Pressed | None:
+        """From a set of cells in contact; None where the sets do not settle."""
+        seen: set[bytes] = set()
+        for step in range(1, MOST_STEPS + 1):
+            answer = self._answer(active)
+            force, gap, motion = answer.under(asked)
+            wrong_force = active & (force < -CLOSE * np.abs(force).max(initial=0.0))
+            wrong_gap = ~active & (gap < -CLOSE * np.abs(gap).max(initial=0.0))
+            if not (wrong_force | wrong_gap).any():
+                self._require_balance(force, asked, answer)
+                return self._found(force, gap, motion, step)
+            key = active.tobytes()
+            if key in seen:  # it goes in circles: one cell at a time, the first that is wrong
+                first = int(np.flatnonzero(wrong_force | wrong_gap)[0])
+                active[first] = not active[first]
+            else:
+                active = (active & ~wrong_force) | wrong_gap
+            seen.add(key)
+        return None
+
+    def _from_larger(self, asked: Floats, facing: Mask) -> Pressed | None:
+        """From loads so many times larger that contact settles, down to the given ones: with small
+        loads and large gaps few cells touch, far from the first guess.
+        """
+        times, found = 1.0, None
+        while found is None and times < LARGEST:
+            times *= LARGER
+            found = self._settled(times * asked, facing.copy())
+        factor = SMALLER
+        while found is not None and times > 1.0 and factor > LEAST:
+            less = max(1.0, times / factor)
+            closer = self._settled(less * asked, found.active.ravel().copy())
+            if closer is None:
+                factor = math.sqrt(factor)
+            else:
+                times, found = less, closer
+        return found if times == 1.0 else None
+
+    def _answer(self, active: Mask) -> _Answer:
+        """Of given cells in contact."""
+        key = np.packbits(active).tobytes()
+        if key not in self._answers:
+            if len(self._answers) * self._motions.size > KEPT:
+                self._answers.clear()
+            self._answers[key] = self._found_answer(active)
+        return self._answers[key]
+
+    def _found_answer(self, active: Mask) -> _Answer:
+        C, G = self._compliance, self._motions
+        rows = np.flatnonzero(active)
+        force, yielding = np.zeros(len(active)), np.zeros(G.shape)
+        system, right = self._soft * self._scale, np.zeros(G.shape[1])
+        C = C[rows]  # symmetric
+        if len(rows):
+            factor = cho_factor(C[:, rows], lower=True, check_finite=False)
+            given = np.column_stack([G[rows], -self._open[rows]])
+            solved = cho_solve(factor, given, check_finite=False)
+            yielding[rows], force[rows] = solved[:, :-1], solved[:, -1]
+            system, right = system + G[rows].T @ solved[:, :-1], G[rows].T @ solved[:, -1]
+        gap = self._open + C.T @ force[rows]
+        moving = G - C.T @ yielding[rows]
+        gap[rows], moving[rows] = 0.0, 0.0
+        return _Answer(force, yielding, gap, moving, system, right, G)
+
+    def asked(self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)) -> Floats:
+        """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
+        pin against e_r.
+        """
+        out = np.zeros(self._motions.shape[1])
+        count = self._count
+        out[: 2 * count] = -np.asarray(forces, dtype=float).ravel()
+        mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
+        out[2 * count : 2 * count + 2] = my, -mx
+        return out
+
+    def _require_balance(self, force: Floats, asked: Floats, answer: _Answer) -> None:
+        """Raises: SolveError where the cells' forces are not what equilibrium asks."""
+        arm = np.sqrt(np.diag(self._scale))  # of each motion
+        each = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
+        lost = each.max(initial=0.0)
+        if lost <= BALANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+            return
+        if lost <= ROUND_OFF * np.abs(answer.force).max():
+            raise SolveError(
+                "the loads are so small for the clearance that contact is lost in round-off",
+                "loads-too-small",
+            )
+        raise SolveError(
+            "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
+        )
+
+    def adjoint(self, active: Mask, wanted: Floats, asked: Floats) -> Adjoined:
+        """Of contact under what is asked of the rigid motions, with these cells (R, M) in contact:
+        how a sum of their forces, each (U,) times `wanted`, goes with gaps, motions and loads.
+        """
+        rows = np.flatnonzero(active)
+        answer = self._answer(active.ravel())
+        force, _, motion = answer.under(asked)
+        C, G = self._compliance[np.ix_(rows, rows)], self._motions[rows]
+        own = np.zeros(len(force))
+        own[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
+        of_motion, lost = np.zeros(len(asked)), G.T @ own[rows]
+        for _ in range(2):  # once more for round-off, as contact itself
+            of_motion += np.asarray(np.linalg.lstsq(answer.system, lost)[0], dtype=np.float64)
+            lost = G.T @ (own[rows] - answer.yielding[rows] @ of_motion)
+        return Adjoined(force, motion, own - answer.yielding @ of_motion, of_motion)
+
+    def _facing(self, forces: Floats) -> Mask:
+        """The cells that face the load of their band."""
+        towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._link])
+        size = np.linalg.norm(forces, axis=1)[self._link]
+        return np.asarray((towards > 0.3 * size) & (size > 0.0))
+
+    def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> Pressed:
+        shape = (len(self.bands.z), self.sectors)
+        count = self._count
+        return Pressed(
+            np.maximum(force / self.area, 0.0).reshape(shape),
+            np.maximum(gap, 0.0).reshape(shape),
+            motion[: 2 * count].reshape(count, 2)[self.bands.links],
+            motion[2 * count : 2 * count + 2],
+            steps,
+        )

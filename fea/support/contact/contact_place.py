@@ -1,0 +1,108 @@
+"""What only contact has, of a pin in its lugs: edges, mean pressures, and what lies beneath."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.core.places import BandPressure, ContactPlace, PressedCell
+from fea.cut.evaluate import CutAnswer
+from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.support.contact.edge_peak import contact_edges
+from fea.support.contact.solve_joint import JointContact
+from pinbase.arrays import Ints
+
+
+def contact_place(
+    contact: JointContact,
+    material: Material,
+    answer: HarmonicAnswer | CutAnswer,
+    loads: PinLoads,
+    required: float | None,
+    error: float,
+    row: float,
+) -> ContactPlace:
+    """contact: at the row's instant. loads: on the rings at all instants of the case; error: of
+    what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
+    outcome asks how far stress reaches.
+    """
+    under = answer if isinstance(answer, CutAnswer) else _Plain(answer)
+    found = under.beneath(loads)
+    limits = reached(material, required)
+    instants = dict.fromkeys((found.instant, _instant(loads, contact)))
+    least = min(row, *limits) if limits else row
+    each = [x for t in instants for x in under.depths(loads, t, least)]
+    known = stairs(*np.array(each).reshape(-1, 2).T)
+    place = ContactPlace(
+        found.value,
+        error * found.value,
+        found.location,
+        _time(loads, found),
+        None,
+        None,
+        contact_edges(contact, material),
+        tuple(_band(contact, b, material) for b in range(len(contact.lugs))),
+        known,
+    )
+    reach, required_too = (*(place.depth(x) for x in limits), None, None)[:2]
+    return replace(place, reach=reach, reach_required=required_too)
+
+
+@dataclass(frozen=True)
+class _Plain:
+    """A pin without cuts, asked as one with them is."""
+
+    answer: HarmonicAnswer
+
+    def beneath(self, loads: PinLoads) -> Beneath:
+        return beneath(self.answer.fields, loads, self.answer.singularities)
+
+    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
+        return depths(self.answer.fields, loads, instant, self.answer.singularities, least)
+
+
+def reached(material: Material, required: float | None) -> tuple[float, ...]:
+    """The stresses, Pa, whose reach from contact is stated."""
+    strength = material.yield_strength
+    if strength is None:
+        return ()
+    return (strength,) if required is None else (strength, strength / required)
+
+
+def _time(loads: PinLoads, found: Beneath) -> float | None:
+    return None if loads.times is None else float(loads.times[found.instant])
+
+
+def _instant(loads: PinLoads, contact: JointContact) -> int:
+    """The number of the row's instant."""
+    here = contact.loads.times
+    if loads.times is None or here is None:
+        return 0
+    return int(np.abs(loads.times - here[0]).argmin())
+
+
+def _band(contact: JointContact, b: int, material: Material) -> BandPressure:
+    lug, bands = contact.lugs[b], contact.bands
+    own = np.flatnonzero(bands.band == b)
+    force = np.linalg.norm(contact.line_load[0, own].T @ bands.length[own])
+    mean = float(force / (2.0 * bands.radius[own[0]] * bands.length[own].sum()))
+    strengths = [m.bearing_strength for m in (material, lug.bearing) if m.bearing_strength]
+    share = mean / min(strengths) if strengths else None
+    return BandPressure(lug.connection, mean, share, _cells(contact, own))
+
+
+def _cells(contact: JointContact, own: Ints) -> tuple[PressedCell, ...]:
+    (pressed,), bands = contact.contact, contact.bands
+    half = np.degrees(np.pi / pressed.pressure.shape[1])
+    out = []
+    for ring in own:
+        z0, z1 = (float(bands.z[ring] + s * bands.length[ring] / 2.0) for s in (-1.0, 1.0))
+        for sector in np.flatnonzero(pressed.pressure[ring] > 0.0):
+            angle = float(np.degrees(contact.angles[sector] + pressed.angle))
+            angle = (angle + 180.0) % 360.0 - 180.0
+            out.append((z0, z1, angle - half, angle + half))
+    return tuple(out)

@@ -1,0 +1,179 @@
+"""Pins with cuts in their lugs: what contact that is solved for the pin without cuts leaves out.
+
+Contact pressures are those of the pin without its cuts. What presses on a cut's mouth is taken by
+the rest of the band about it (fea.cut.lost_loads). Three things are neglected, which the error
+includes:
+
+compliance      Cuts make the pin softer, so that pressures move towards the faces of the lugs. By
+                how much its bending compliance grows follows from the turns of the ends of local
+                solids; by how much stress depends on it, from the variation of the lugs' stiffness,
+                since a softer pin is one in stiffer lugs.
+ovalisation     A hole makes the section that it crosses softer across the pin too, so that pressure
+                on it moves to both sides. At most the load on its length does so, in proportion to
+                its diameter over the pin's.
+redistribution  What presses on a mouth comes back as pressure near it, at most about as large as
+                that: stress there changes by so much, elsewhere as the part of the force that is
+                lost.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.peak import Note, Peak
+from fea.cut.evaluate import CutAnswer
+from fea.cut.region import zone
+from fea.solve.requirement import Asked
+from fea.support.contact.bending import stations
+from fea.support.contact.cell_pressure import CellPressure
+from fea.support.contact.error_parts import with_parts
+from fea.support.contact.records import Variation
+from fea.support.contact.solve_joint import JointContact
+from geometry import Cut, CutPin, Pin
+from pinbase.arrays import Floats
+
+ALONG, AROUND = 24, 720  # points of a band between the ends of a cut
+STIFFNESS = "stiffness of the lugs"
+TWICE = math.log(2.0)
+TELL = 5e-4  # of a lug's force: what is lost of it is reported
+
+
+@dataclass(frozen=True)
+class Neglected:
+    """softer: by how much, relative, cuts raise the pin's bending compliance; pressed: the largest
+    pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; moved: the
+    largest part that may move away from holes; bands: those on which cuts are, by their names.
+    """
+
+    softer: float
+    pressed: float
+    lost: float
+    moved: float
+    bands: dict[str, str]
+
+    @property
+    def note(self) -> Note:
+        """Of the cuts in lugs."""
+        if not self.bands:
+            return Note()
+        where = ", ".join(f"{cut} in lug {name}" for cut, name in self.bands.items())
+        it, its = ("it", "its") if len(self.bands) == 1 else ("them", "their")
+        lost = f" ({self.lost:.1%} of the force of a lug presses there)" * (self.lost >= TELL)
+        return Note(
+            f"; {where}: contact is that of the pin without {it}{lost}, and pressure at {its} "
+            "edges is not resolved",
+            ("cut-in-lug",),
+        )
+
+    def error(self, largest: float, at_cut: bool, over: tuple[Variation, ...]) -> float:
+        """Of a maximum, Pa, with the maxima of the joint varied."""
+        factors = [v.max_von_mises / largest for v in over if v.what == STIFFNESS]
+        most = max((abs(math.log(x)) for x in factors if x > 0.0), default=TWICE)
+        relative = self.softer * most / TWICE + max(self.lost, self.moved)
+        return relative * largest + at_cut * self.pressed
+
+
+def neglected(
+    cut: CutPin, material: Material, contact: JointContact, pressure: CellPressure, of: CutAnswer
+) -> Neglected:
+    """At the single instant of a contact."""
+    pressed, lost, bands = 0.0, dict[int, float](), dict[str, str]()
+    for name, one in cut.cuts.items():
+        for band, lug in enumerate(contact.lugs):
+            points, area = _mouth(cut, one, lug.connection)
+            if not len(points):
+                continue
+            found = pressure.at(points)
+            bands[name] = lug.connection
+            pressed = max(pressed, float(found.max()))
+            lost[band] = lost.get(band, 0.0) + float(found.sum()) * area
+    own, forces = contact.bands.band, contact.loads.forces[0, :, :2]
+    force = {b: float(np.linalg.norm(forces[own == b].sum(axis=0))) for b in lost}
+    share = max((part / force[b] for b, part in lost.items() if force[b] > 0.0), default=0.0)
+    softer, moved = _softer(cut, material, contact, of), _moved(cut, contact)
+    return Neglected(softer, pressed, share, moved, bands)
+
+
+def _moved(cut: CutPin, contact: JointContact) -> float:
+    """The largest part of a lug's force that acts where a hole is, times the hole's diameter over
+    the pin's.
+    """
+    bands, most = contact.bands, 0.0
+    force = np.linalg.norm(contact.loads.forces[0, :, :2], axis=1)
+    low, high = bands.z - 0.5 * bands.length, bands.z + 0.5 * bands.length
+    for hole in cut.holes:
+        start, end = hole.opens
+        there = np.maximum(np.minimum(high, end) - np.maximum(low, start), 0.0) / bands.length
+        across = np.minimum(0.5 * hole.diameter / bands.radius, 1.0)
+        for b in range(len(contact.lugs)):
+            own = bands.band == b
+            if whole := float(force[own].sum()):
+                most = max(most, float((force * there * across)[own].sum()) / whole)
+    return most
+
+
+def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
+    """Points (P, 3), m, of a band that a cut takes away, and the area that each stands for, m^2."""
+    on = cut.profile.band(band)
+    low, high = max(one.opens[0], on.z0), min(one.opens[1], on.z1)
+    if low >= high:
+        return np.zeros((0, 3)), 0.0
+    z = low + (np.arange(ALONG) + 0.5) * (high - low) / ALONG
+    angle = (np.arange(AROUND) + 0.5) * 2.0 * math.pi / AROUND
+    angle, z = (x.ravel() for x in np.meshgrid(angle, z))
+    points = np.stack([on.radius * np.cos(angle), on.radius * np.sin(angle), z], axis=1)
+    each = (high - low) / ALONG * on.radius * 2.0 * math.pi / AROUND
+    return points[one.takes(points, on.radius)], each
+
+
+def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutAnswer) -> float:
+    """The work of the bending moment at the cuts, where it is largest, on the turns that these add,
+    over that of the whole pin; of passages at least that on the net section.
+    """
+    z = stations(contact.pin)
+    moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
+    stiffness = np.array([_inertia(contact.pin, x) for x in z.tolist()]) * material.youngs_modulus
+    whole = float(np.trapezoid(moment**2 / stiffness, z))
+    turned = 0.0
+    for piece in of.solution.pieces:
+        turn = (piece.moved[1] - piece.moved[0])[3:5] @ piece.coefficients(contact.loads)[0]
+        low, high = zone(piece.piece)
+        middle = contact.bending_moment(np.array([0.5 * (low + high)]))[0, 0]
+        here = moment[(z >= low) & (z <= high)].max(initial=float(np.linalg.norm(middle)))
+        turned += float(here * np.linalg.norm(turn))
+    along = 0.0
+    for passage in cut.passages:
+        area, d = math.pi * passage.diameter**2 / 4.0, passage.diameter
+        gone = material.youngs_modulus * area * (passage.offset**2 + d**2 / 16.0)
+        on = (z >= passage.extent[0]) & (z <= passage.extent[1])
+        more = 1.0 / np.maximum(stiffness - gone, 0.1 * stiffness) - 1.0 / stiffness
+        along += float(np.trapezoid(moment**2 * more * on, z))
+    return max(turned, along) / whole if whole else 0.0
+
+
+def _inertia(pin: Pin, z: float) -> float:
+    bore, shaft = pin.radii(z)
+    return math.pi * (shaft**4 - bore**4) / 4.0
+
+
+def at_a_cut(peak: Peak, of: CutAnswer) -> bool:
+    """Whether a maximum is about a cut."""
+    ends = [zone(piece.piece) for piece in of.solution.pieces]
+    where = peak.location
+    return where is not None and any(low <= where[2] <= high for low, high in ends)
+
+
+def with_neglected(
+    peak: Peak, left: Neglected, of: CutAnswer, over: tuple[Variation, ...], asked: Asked
+) -> Peak:
+    """With what is neglected among the parts of its error, and a note about it."""
+    if not peak.max_von_mises or peak.parts is None:
+        return peak
+    more = left.error(peak.max_von_mises, at_a_cut(peak, of), over)
+    found = with_parts(peak, replace(peak.parts, model=more), asked)
+    note = left.note
+    return replace(found, note=found.note + note.text, reasons=found.reasons + note.codes)

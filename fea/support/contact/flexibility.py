@@ -1,0 +1,194 @@
+"""How far rings move, on the average round them, under uniform pressures on rings, by harmonic.
+
+A pressure p cos n theta on a ring moves the mean of u_r over each ring by C_n p cos n theta. By the
+theorem of Betti C_n times the rings' lengths is symmetric; it is made exactly so. Rigid motions are
+left open: the pin's by a support that is statically determinate, which balanced pressures do not
+feel; the lug's by a reaction on its outer surface, of constant direction and linear along z, and
+by measuring from the mean motion of that surface in the same weight, so that it is guided.
+
+Beyond the last harmonic that is computed so, pressures are felt no deeper than R / n, and rings
+have a half-space's answer to p(z) cos n theta: the convolution of p with 2 (1 - nu^2) / (pi E)
+times the Bessel function K0(n z / R); for a long ring that is u_n = 2 (1 - nu^2) R p_n / (E n), the
+half-plane's. In a lug it is mirrored at its faces, and with a bushing it is a layer's.
+
+Sources: Johnson, Contact Mechanics, sec. 13.2 (a wavy pressure on a half-space); Nogi & Kato, J.
+Tribol. 119 (1997) 493 (the layer).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.special import iti0k0, k1
+
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.core.tractions import ALONG_X, Traction
+from fea.harmonic.assembly import Section, around
+from fea.harmonic.boundary import Outline
+from fea.harmonic.model import HarmonicBody, generalised, rigid_motions
+from fea.support.lugs.eye_mesh import eye_mesh
+from fea.support.lugs.lug import Lug
+from geometry import Pin
+from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from geometry.mesh.sizing import Grade
+from pinbase.arrays import Ints
+
+NONE = np.zeros(3)
+OUTWARDS = np.array([1.0, 0.0, 0.0])
+
+
+@dataclass(frozen=True)
+class RingBody:
+    """A body on one mesh, rings of its surface (by name), and where pressure on them points.
+    guided: as a lug.
+    """
+
+    body: HarmonicBody
+    rings: tuple[str, ...]
+    pushed: Floats
+    guided: bool = False
+
+    @property
+    def area(self) -> Floats:
+        """Of the rings, (R,) m^2 per radian."""
+        bands = [self.body.pin.band(name) for name in self.rings]
+        return np.array([b.radius * b.length for b in bands])
+
+    def forces(self, n: int) -> Floats:
+        """On the unknowns, (unknowns, R), of pressures of one on the rings."""
+        return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NONE),) for r in self.rings])
+
+    def balanced(self, n: int, forces: Floats) -> Floats:
+        """With the reaction of what guides it."""
+        if self.guided and n == 1:
+            return self.reacted(self.body.outline, self.body.pin.length, forces)
+        return forces
+
+    def reacted(self, outline: Outline, length: float, forces: Floats) -> Floats:
+        """Forces of harmonic 1 (unknowns, K) on a lug like this one with the reaction on its outer
+        surface, of constant direction.
+        """
+        reactions = [
+            tuple(Traction(name, 0.5 * length, *parts) for name in self.body.pin.connections)
+            for parts in ((ALONG_X, NONE), (NONE, ALONG_X))
+        ]
+        against = np.stack([generalised(outline.forces(one, 1)) for one in reactions], axis=1)
+        modes = rigid_motions(outline.every_node, 1)
+        return np.asarray(forces - against @ np.linalg.solve(modes.T @ against, modes.T @ forces))
+
+    def flexibility(self, highest: int) -> Floats:
+        """C_n (highest + 1, R, R), m/Pa, towards where pressure points."""
+        out = []
+        for n in range(highest + 1):
+            forces = self.balanced(n, self.forces(n))
+            work = forces.T @ self.body.displace(n, forces) / around(n)
+            out.append(0.5 * (work + work.T) / self.area[:, None])
+        return np.stack(out)
+
+
+def pin_flexibility(
+    pin: Pin, rings: Sequence[str], material: Material, across: float, highest: int
+) -> Floats:
+    """C_n (highest + 1, R, R), m/Pa, inwards under pressure, of rings of a pin.
+
+    across: elements over the diameter. Raises: MeshError, SolveError.
+    """
+    return pin_rings(pin, rings, material, across).flexibility(highest)
+
+
+def pin_rings(pin: Pin, rings: Sequence[str], material: Material, across: float) -> RingBody:
+    """The rings of a pin, on a mesh."""
+    size = SectionSize(across)
+    mesh = meridian_mesh(pin, size, finer=_grades(pin, rings, size.growth))
+    return RingBody(HarmonicBody(pin, Section(mesh), material, pivot=0.5), tuple(rings), -OUTWARDS)
+
+
+def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
+    """Elements at a ring's ends no longer than half of it."""
+    bands = (pin.band(name) for name in rings)
+    return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
+
+
+def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
+    """The same of the rings of a lug's bore, outwards under pressure; its annulus is `eye`
+    (fea.support.lugs.rings). across: elements over the bore's diameter.
+    """
+    return lug_rings(eye, lug, across).flexibility(highest)
+
+
+def lug_rings(eye: Pin, lug: Lug, across: float) -> RingBody:
+    """The rings of a lug's bore, on a mesh."""
+    rings = tuple(f"bore {name}" for name in eye.connections)
+    bushing = lug.bushing
+    if bushing is None:
+        body = HarmonicBody(eye, Section(eye_mesh(eye, across)), lug.material, pivot=0.5)
+    else:
+        interface = eye.segments[0].bore / 2.0 + bushing.thickness
+        mesh = eye_mesh(eye, across, interface)
+        middles = mesh.nodes[mesh.elements[:, :3], 0].mean(axis=1)
+        parts = (middles > interface).astype(np.int64)
+        both = (bushing.material, lug.material)
+        body = HarmonicBody(eye, Section(mesh, parts), both, pivot=0.5)
+    return RingBody(body, rings, OUTWARDS, guided=True)
+
+
+def half_plane(material: Material, radius: float) -> float:
+    """n u_n / p_n of one body for high harmonics n, m/Pa."""
+    return 2.0 * radius * material.plane_compliance
+
+
+def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
+    """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
+    `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
+    """
+    on, beyond = _responses(tuple((ends / radius).tolist()), tuple(waves.tolist()))
+    n = waves[:, None, None]
+    layer = np.array([layered(lug, k / radius) for k in waves.tolist()])[:, None, None]
+    of_lug = half_plane(lug.bearing, radius) * layer * (on + beyond) / n
+    return np.stack([half_plane(pin, radius) * on / n, of_lug])
+
+
+@lru_cache(maxsize=4)
+def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Of a half-space on rings with such ends, over the radius, and what mirrors add to it."""
+    x = np.outer(waves, ends)
+    beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
+    return _half_space(x, x), beyond
+
+
+def _half_space(x: Floats, y: Floats) -> Floats:
+    """Mean over each ring of a pressure's response at wave number 1, over a plane's: (N, R, R), for
+    rings with ends x (N, R + 1), under pressure on rings with ends y.
+    """
+    twice = _integral_of_k0(np.abs(x[:, :, None] - y[:, None]))
+    both = twice[:, 1:, :-1] + twice[:, :-1, 1:] - twice[:, 1:, 1:] - twice[:, :-1, :-1]
+    return np.asarray(np.abs(both) / (np.pi * np.diff(x)[:, :, None]))
+
+
+def _integral_of_k0(x: Floats) -> Floats:
+    """From 0 to x of (x - t) K0(t)."""
+    positive = np.maximum(x, 1e-300)
+    return np.asarray(
+        np.where(x > 0.0, x * iti0k0(positive)[1] - 1.0 + positive * k1(positive), 0.0)
+    )
+
+
+def layered(lug: Lug, waves: float) -> float:
+    """What a wavy pressure does to a lug with a bushing, over what it does to a half-plane of the
+    bushing's material; waves: 2 pi / wavelength, 1/m.
+    """
+    if lug.bushing is None:
+        return 1.0
+    nu, below = lug.bearing.poisson_ratio, lug.material.poisson_ratio
+    stiffer = lug.bearing.lame[1] / lug.material.lame[1]
+    a = 1.0 - 4.0 * (1.0 - nu) / (1.0 + stiffer * (3.0 - 4.0 * below))
+    b = (stiffer - 1.0) / (stiffer + 3.0 - 4.0 * nu)
+    x = waves * lug.bushing.thickness
+    e = math.exp(-2.0 * x)
+    more, less = 1.0 + 4.0 * x * b * e, 1.0 - (a + b + 4.0 * b * x * x) * e
+    return (more - a * b * e * e) / (less + a * b * e * e)

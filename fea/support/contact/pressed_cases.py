@@ -1,0 +1,206 @@
+"""Contact of a pin with its lugs in several cases, at any of their instants, each solved once; and
+how far its stress depends on the cells and on what is not known of the joint.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.over_time import Between, knots
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.section.section_stress import SectionAnswer
+from fea.solve.requirement import Asked, decided
+from fea.solve.solve_pin import singularities_of
+from fea.support.contact.contact import Pressed
+from fea.support.contact.pressure_loads import (
+    NEGLIGIBLE,
+    ROUGH,
+    Patterns,
+    PressureLoads,
+    resultants,
+)
+from fea.support.contact.solve_joint import JointContact, JointModel
+from fea.support.contact.variations import CELLS, Comparison, compare
+
+MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
+STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with may be off its chord
+FEWEST = 16  # intervals to begin with
+
+
+@dataclass(frozen=True)
+class Near:
+    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
+    is known), and which (T,) are so near to it that they may govern.
+    """
+
+    instant: int
+    may: NDArray[np.bool_]
+    largest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Compared:
+    """Of a case, at the instants of the surface's largest stress and of the sections'."""
+
+    surface: Comparison
+    section: Comparison
+
+    @property
+    def row(self) -> Comparison:
+        """That of the larger one, of which the joint was varied."""
+        return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
+
+    def fine(self, material: Material, asked: Asked) -> bool:
+        """Whether finer cells would not help: they take little of the tolerance, or the required
+        factor is decided whatever they do, for what lies beneath the contact, too.
+        """
+        both = (self.surface, "surface"), (self.section, "section")
+        stress = {name: float(getattr(x.stress, name)) for x, name in both}
+        cells = {name: float(getattr(x.cells, name)) for x, name in both}
+        largest = max(stress.values()) or 1.0
+        own = cells[max(stress, key=lambda name: stress[name])]
+        most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
+        off = max(own, most)
+        if off <= CELLS * asked.tolerance:
+            return True
+        low, high = largest / (1.0 + off), largest * (1.0 + off)
+        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(asked, material, low, high) and (
+            decided(asked, material, below / error, below * error)
+            or decided(asked, material, low, math.inf)
+        )
+
+    def near(
+        self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
+    ) -> Compared:
+        """With the surface at another instant, if that is not near."""
+        if self.surface.is_at(contact.loads.links, case):
+            return self
+        return replace(self, surface=anew(contact))
+
+
+class PressedCases:
+    """The pressures of all cases at any time, each found once; those made of the same patterns act
+    on one mesh. instants: by case, those of which the patterns are made; failed: why a case has no
+    contact.
+    """
+
+    def __init__(
+        self,
+        model: JointModel,
+        cases: tuple[PinLoads, ...],
+        between: Mapping[str, Between],
+        besides: Mapping[str, PinLoads],
+        cut: bool,
+    ) -> None:
+        self.model, self.cut = model, cut
+        self.failed: dict[str, str] = {}
+        self.instants: dict[str, PinLoads] = {}
+        self._known: dict[tuple[str, float], Pressed] = {}
+        self._besides: dict[str, Floats] = {}
+        self.patterns: Patterns | None = None
+        self.sections: dict[str, SectionAnswer] = {}
+        for case in cases:
+            instants = _instants(case, between.get(case.case))
+            try:
+                self._at(instants)
+                if case.case in besides:
+                    found = model.pressed(besides[case.case])
+                    self._besides[case.case] = model.waves(found)
+            except SolveError as error:
+                self.failed[case.case] = str(error)
+                continue
+            self.instants[case.case] = instants
+            rings = [self.on_rings(instants)]
+            self.sections[case.case] = SectionAnswer(model.pin, model.material, (), rings)
+
+    def near(self, asked: Asked) -> dict[str, Near]:
+        """By the stress of all instants, roughly, on the first mesh."""
+        if all(len(links) == 1 for links in self.instants.values()):
+            return {case: Near(0, np.ones(1, dtype=bool)) for case in self.instants}
+        self.follow({case: Near(0, np.zeros(len(x), bool)) for case, x in self.instants.items()})
+        loads = [self.press(links) for links in self.instants.values()]
+        model, out = self.model, {}
+        own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
+        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
+        problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
+        section = harmonic_solution(problem, 0, 1.0)
+        for x, zones in zip(loads, own, strict=True):
+            answer = HarmonicAnswer(section, zones)
+            largest, instant = answer.largest(x)
+            may = answer.maxima(x, MAY * largest) > MAY * largest
+            if self.cut:  # any may govern where it is cut
+                may[:] = True
+            out[x.case] = Near(instant, may, largest)
+        return out
+
+    def follow(self, near: Mapping[str, Near]) -> None:
+        """Make the patterns: good ones of what may govern, rough ones of other instants."""
+        parts = [(waves, NEGLIGIBLE) for waves in self._besides.values()]
+        for case, links in self.instants.items():
+            waves, may = self.model.waves(self._at(links)), near[case].may
+            parts += [(waves[:, may], NEGLIGIBLE), (waves[:, ~may], ROUGH)]
+        if parts:
+            self.patterns = self.model.patterns(parts, self.patterns)
+
+    def _at(self, links: PinLoads) -> list[Pressed]:
+        """Contact at the loads' instants."""
+        if links.times is None:
+            return self.model.pressed(links)
+        keys = [(links.case, t) for t in links.times.tolist()]
+        new = [i for i, key in enumerate(keys) if key not in self._known]
+        if new:
+            found = self.model.pressed(links.at(np.array(new)))
+            self._known |= {keys[i]: x for i, x in zip(new, found, strict=True)}
+        return [self._known[key] for key in keys]
+
+    def press(self, links: PinLoads) -> PressureLoads:
+        """What presses on the pin under loads of its links."""
+        assert self.patterns is not None
+        found = self._at(links)
+        return self.patterns.loads(self.model.waves(found), links, self.model.arcs(found))
+
+    def on_rings(self, links: PinLoads) -> PinLoads:
+        """The resultants of what presses on the rings under loads of the links."""
+        found = self._at(links)
+        return resultants(self.model.pin, self.model.rings, self.model.waves(found), links)
+
+    def joined(self, links: PinLoads, instant: int) -> JointContact:
+        here = links.at(np.array([instant]))
+        return self.model.joined(self._at(here), self.press(here))
+
+    def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Compared]:
+        """By case, at the instants of the largest stress of the surface on the first mesh and of
+        sections.
+        """
+        at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
+        for case, links in self.instants.items():
+            stress, instant = self.sections[case].largest(self.on_rings(links))
+            both = near[case].instant, instant
+            each = dict.fromkeys(both)
+            first, second = (len(at) + list(each).index(t) for t in both)
+            which[case] = first, second
+            at += [self.joined(links, t) for t in each]
+            governs = both[stress > near[case].largest]
+            vary += [t == governs for t in each]
+        found = compare(self.model, at, asked, self.patterns, vary)
+        return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
+
+
+def _instants(case: PinLoads, between: Between | None) -> PinLoads:
+    """Those of a case; of a motion those between which its loads go straight, and those amid each
+    two. More are added where the maximum may be between them (fea.core.over_time).
+    """
+    if between is None or case.times is None or len(case) < 2:
+        return case
+    case = case.at(knots(case, STRAIGHT, FEWEST))
+    assert case.times is not None
+    return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))

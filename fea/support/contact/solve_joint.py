@@ -1,0 +1,374 @@
+"""A pin in its lugs under all loads of a case: contact at every instant, then stress by pressures.
+
+Flexibilities are found once, on a mesh of the pin and one of each lug; contact at an instant starts
+from that of the one before. The pressures are loads like any other of the harmonic model, so that
+stress, its error and verdict come from fea.solve.solve_pin, of a pin that nothing clamps.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fea.core.equilibrium import centre_of_volume
+from fea.core.material import Material
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.pressed import PressedArcs, Rings
+from fea.harmonic.kept_fields import FirstMesh
+from fea.singular.lug_edge import lug_edge_exponent
+from fea.support.contact.bending import bending_moment, mass_per_length
+from fea.support.contact.contact import Bands, ContactProblem, Pressed, rotation
+from fea.support.contact.flexibility import (
+    RingBody,
+    half_plane,
+    lug_rings,
+    pin_rings,
+    wavy_flexibility,
+)
+from fea.support.contact.pressure_loads import (
+    NEGLIGIBLE,
+    Patterns,
+    PressureLoads,
+    amplitudes,
+    patterns_of,
+)
+from fea.support.lugs.changes import softer
+from fea.support.lugs.fit import fitted, on_structure
+from fea.support.lugs.links import link_forces, link_numbers
+from fea.support.lugs.lug import Bushing, Lug
+from fea.support.lugs.rings import annulus, beside_fillets, ring_ends, ringed, rings
+from geometry import Pin
+from pinbase.arrays import Ints
+
+SAME = 1e-13  # relative: loads that differ by no more are the same
+SAME_SIZE = 12  # digits to which lugs of the same size agree
+LARGEST = 1.0 - 1e-6  # of the largest: a force that is as good as it
+WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
+Alike = tuple[float, Material, Bushing | None, bytes, Material]
+
+
+@dataclass(frozen=True)
+class Cells:
+    """How finely contact is resolved. rings: of a band with sharp edges (lugs.rings); sectors:
+    round it; highest: harmonic of elasticity that is computed; across: elements over the pin's
+    diameter where flexibilities are found; beside: of an edge's radius, the length of the rings
+    where rounding begins, if the peak of pressure there is to be resolved.
+
+    The usual ones give the moment and the stress at mid-span to 0.3 %
+    (benchmarks/joints/joint.py). They do not give the peak of pressure at rounded edges: contact
+    reaches only a few hundredths of the radius into the rounding, and the peak to 3 % takes rings
+    of a tenth of that: `beside` 0.004.
+    """
+
+    rings: int = 8
+    sectors: int = 36
+    highest: int = 12
+    across: float = 10.0
+    beside: float | None = None
+
+
+@dataclass(frozen=True)
+class JointContact:
+    """A case of a pin in its lugs. pin: its bands cut into rings; contact: by instant; loads: what
+    the rings do to it; mass: of its segments, kg/m.
+    """
+
+    pin: Pin
+    lugs: tuple[Lug, ...]
+    bands: Bands
+    angles: Floats
+    contact: tuple[Pressed, ...]
+    loads: PressureLoads
+    mass: Floats
+
+    @property
+    def line_load(self) -> Floats:
+        """Force per length of the lugs on the pin at each ring, along x and y, (T, R, 2) N/m."""
+        return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
+
+    def bending_moment(self, z: Floats) -> Floats:
+        """By contact and body force, of the part of the pin before z (Z,) m: (T, Z, 2) N m, the
+        integral of the shear along x and along y.
+        """
+        return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
+
+    @property
+    def contact_angle(self) -> Floats:
+        """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
+        sector = self.angles[1] - self.angles[0]
+        cells = np.stack([(found.pressure > 0.0).sum(axis=1) for found in self.contact])
+        half = 0.5 * sector * cells
+        return np.stack(
+            [half[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
+        )
+
+    @property
+    def largest_pressure(self) -> Floats:
+        """By band, (T, B) Pa, on any cell: at edges a matter of how fine these are."""
+        each = np.stack([found.pressure.max(axis=1) for found in self.contact])
+        return np.stack(
+            [each[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
+        )
+
+
+class JointModel:
+    """A pin in its lugs, with the flexibilities that serve all cases and clearances. first: its
+    first mesh for stress. on_pin, on_lugs: the meshes of the flexibilities; of equal lugs one.
+
+    Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
+    """
+
+    def __init__(
+        self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
+    ) -> None:
+        self.cells, self.first = cells, FirstMesh()
+        self._shape(pin, material, lugs)
+        self.on_pin = pin_rings(self.pin, self.rings, material, cells.across)
+        self.of_pin = self.on_pin.flexibility(cells.highest)
+        self.of_lugs = np.zeros_like(self.of_pin)
+        self.wavy = np.zeros((2, len(self.high), *self.of_pin.shape[1:]))  # of the pin, of the lugs
+        self.on_lugs: dict[Alike, RingBody] = {}
+        for key, equal in self.alike().items():
+            (_, lug, ends), *_ = equal
+            self.on_lugs[key] = lug_rings(self.eye(lug, ends), lug, cells.across)
+            low = self.on_lugs[key].flexibility(cells.highest)
+            wavy = self.wavy_of(lug, ends)
+            for own, *_ in equal:
+                self.of_lugs[:, own, own], self.wavy[:, :, own, own] = low, wavy
+
+    def _shape(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> None:
+        cells, before = self.cells, self.__dict__.get("_cut")
+        self.given, self.material = pin, material
+        self.whole = pin = on_structure(pin, lugs)
+        self.lugs = fitted(pin, material, lugs)
+        self.ends = {
+            name: ring_ends(
+                pin.band(name),
+                lug.edge_radius,
+                cells.rings,
+                cells.beside,
+                beside_fillets(pin, pin.band(name)),
+            )
+            for name, lug in zip(pin.connections, self.lugs, strict=True)
+        }
+        cut = pin, {name: ends.tolist() for name, ends in self.ends.items()}
+        if before != cut:
+            self._cut, self.pin = cut, ringed(pin, self.ends)
+        self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
+
+    def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> JointModel:
+        """Another pin in other lugs on such cells, of which no flexibility is found.
+
+        Raises: ArgumentError as for any.
+        """
+        other = copy.copy(self)
+        for known in ("contact", "flexibility", "bands", "on_shaft"):
+            other.__dict__.pop(known, None)
+        other._shape(pin, material, lugs)
+        return other
+
+    @property
+    def high(self) -> Ints:
+        """Harmonics that are felt by neighbouring rings alone."""
+        return np.arange(self.cells.highest + 1, WAVES * self.cells.sectors)
+
+    def eye(self, lug: Lug, ends: Floats) -> Pin:
+        """Of a lug, with its rings."""
+        return annulus(self.whole, lug.connection, lug.outer_diameter, ends)
+
+    def wavy_of(self, lug: Lug, ends: Floats) -> Floats:
+        """fea.support.contact.flexibility.wavy_flexibility of a lug's rings."""
+        radius = self.whole.band(lug.connection).radius
+        return wavy_flexibility(lug, self.material, radius, ends, self.high)
+
+    def likeness(self, lug: Lug, ends: Floats) -> Alike:
+        """What the flexibility of a lug's rings, and of the pin against them, depends on."""
+        bore = 2.0 * self.whole.band(lug.connection).radius
+        size = np.round(np.append(ends, bore) / lug.outer_diameter, SAME_SIZE)
+        return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
+
+    def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
+        """The lugs, as `by_lug`, by this."""
+        found: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
+        for own, lug, ends in self.by_lug():
+            found.setdefault(self.likeness(lug, ends), []).append((own, lug, ends))
+        return found
+
+    def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
+        """Which rings are its, each lug, and their ends along its band."""
+        first = 0
+        for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
+            own = slice(first, first + len(ends) - 1)
+            yield own, lug, ends
+            first = own.stop
+
+    @cached_property
+    def flexibility(self) -> Floats:
+        """Of pin and lugs on all rings, by harmonic, m/Pa; beyond `highest` of neighbouring rings
+        alone, as half-spaces.
+        """
+        return np.concatenate([self.of_pin + self.of_lugs, self.wavy.sum(axis=0)])
+
+    def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> JointModel:
+        """The same pin in lugs of other clearance, edge radius and tilt, each so many times softer:
+        with the flexibilities at hand.
+        """
+        softness = softness or (1.0,) * len(lugs)
+        other = copy.copy(self)
+        for known in ("contact", "flexibility", "bands", "on_shaft"):
+            other.__dict__.pop(known, None)
+        other.lugs = tuple(softer(*both) for both in zip(lugs, softness, strict=True))
+        if set(softness) == {1.0}:
+            tilts = [lug.tilt for lug in lugs]
+            other.__dict__["flexibility"] = self.flexibility
+            other.__dict__["contact"] = self.contact.changed(other.gap, tilts)
+            return other
+        soft = np.repeat(softness, self._rings_of_each)
+        other.of_lugs = self.of_lugs * soft
+        other.wavy = np.stack([self.wavy[0], self.wavy[1] * soft])
+        return other
+
+    @property
+    def _rings_of_each(self) -> list[int]:
+        """How many rings each lug has."""
+        return [len(ends) - 1 for ends in self.ends.values()]
+
+    @cached_property
+    def contact(self) -> ContactProblem:
+        """Ready for any loads."""
+        tilt = [lug.tilt for lug in self.lugs]
+        return ContactProblem(self.bands, self.flexibility, self.tail, tilt, self.cells.sectors)
+
+    @cached_property
+    def bands(self) -> Bands:
+        """With their rings."""
+        bands = [self.pin.band(name) for name in self.rings]
+        z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
+        radius = np.array([b.radius for b in bands])
+        number = np.repeat(np.arange(len(self.lugs)), self._rings_of_each)
+        links = link_numbers(self.whole.connections, self.given.connections)
+        return Bands(z, length, radius, number, self.gap, links)
+
+    @property
+    def gap(self) -> Floats:
+        """Clearance and rounding of the edges by ring, on the radius, m."""
+        return np.concatenate([lug.gap(self.ends[lug.connection]) for lug in self.lugs])
+
+    @property
+    def tail(self) -> Floats:
+        """n u_n / p_n of pin and lug together for high harmonics, m/Pa, by ring."""
+        each = []
+        for _, lug, ends in self.by_lug():
+            r = self.whole.band(lug.connection).radius
+            both = half_plane(self.material, r) + half_plane(lug.bearing, r)
+            each.append(np.full(len(ends) - 1, both))
+        return np.concatenate(each)
+
+    def solve(self, loads: PinLoads) -> JointContact:
+        """All instants of a case. loads: of links on all the lugs' bands or on some.
+
+        Raises: SolveError where contact does not settle, or forces are not in balance.
+        """
+        found = self.pressed(loads)
+        waves = self.waves(found)
+        patterns = self.patterns([(waves, NEGLIGIBLE)])
+        return self.joined(found, patterns.loads(waves, loads, self.arcs(found)))
+
+    def waves(self, found: Sequence[Pressed]) -> Floats:
+        """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
+        return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
+
+    def patterns(
+        self, parts: Sequence[tuple[Floats, float]], known: Patterns | None = None
+    ) -> Patterns:
+        """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, each
+        with what is negligible; the known ones first.
+        """
+        return patterns_of(self.pin, self.rings, parts, known)
+
+    @cached_property
+    def on_shaft(self) -> Rings:
+        """Where the rings are."""
+        bands, edge, exponent = self.bands, [], []
+        for _, lug, ends in self.by_lug():
+            middle, length = 0.5 * (ends[1:] + ends[:-1]), ends[-1]
+            edge.append(np.minimum(middle, length - middle) < lug.edge_radius)
+            exponent.append(np.full(len(middle), lug_edge_exponent(self.material, lug.bearing)))
+        half = 0.5 * bands.length
+        return Rings(
+            bands.z - half, bands.z + half, bands.radius, bands.band,
+            np.concatenate(edge), np.concatenate(exponent),
+        )  # fmt: skip
+
+    def arcs(self, found: Sequence[Pressed], rings: Rings | None = None) -> PressedArcs:
+        """Where contact presses at some instants. rings: of the cells, where they are others."""
+        cells, angles = [x.pressure > 0.0 for x in found], [x.angle for x in found]
+        return PressedArcs.of(rings or self.on_shaft, cells, angles)
+
+    def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
+        """Contact at the instants of some loads, with them."""
+        contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
+        cut, angles = contact.bands, contact.angles
+        return JointContact(self.pin, self.lugs, cut, angles, tuple(found), loads, mass)
+
+    def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[Pressed]:
+        """Contact at each of their instants, on cells that turn with the largest force of a link:
+        what turns as a whole is one solution. Each starts from that under the most similar loads;
+        without any gap to close, loads in proportion are one solution, too. problem: with other
+        cells than this model's.
+
+        Raises: SolveError as `solve`.
+        """
+        contact = problem or self.contact
+        forces, couples = self.forces(loads), self.couples(loads)
+        angles = _directions(forces)
+        turns = np.stack([rotation(angle) for angle in angles])
+        forces, couples = forces @ turns, np.einsum("ta,tab->tb", couples, turns)
+        sizes = np.abs(forces).max(axis=(1, 2))
+        sizes[sizes == 0.0] = 1.0
+        scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
+        arm = couples / self.pin.length
+        like = np.concatenate([forces.reshape(len(forces), -1), arm], axis=1) / scale[:, None]
+        found: list[Pressed] = []
+        for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
+            apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
+            near = int(apart.argmin()) if t else None
+            if near is not None and apart[near] <= SAME:
+                found.append(found[near].times(float(scale[t] / scale[near])))
+                continue
+            start = None if near is None else found[near].active
+            found.append(contact.solve(force, (couple[0], couple[1]), start))
+        return [x.turned(angle) for x, angle in zip(found, angles, strict=True)]
+
+    def forces(self, loads: PinLoads) -> Floats:
+        """Of the links along x and y, last of the structure, (T, L, 2) N."""
+        return link_forces(self.given, self._mass, loads, self.on_structure)
+
+    @property
+    def on_structure(self) -> bool:
+        """Whether some of the lugs are those of a structure."""
+        return len(self.lugs) > len(self.given.connections)
+
+    def couples(self, loads: PinLoads) -> Floats:
+        """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
+        z = self.bands.z
+        middle = 0.5 * (z.min() + z.max())
+        arm = centre_of_volume(self.whole) - middle
+        x, y = (loads.body[:, :2] * self._mass).T
+        return np.stack([-arm * y, arm * x], axis=1)
+
+    @property
+    def _mass(self) -> float:
+        return (self.material.density or 0.0) * self.whole.volume
+
+
+def _directions(forces: Floats) -> list[float]:
+    """Angles (T) in rad of the largest of forces (T, L, 2), the first of equal ones."""
+    size = np.linalg.norm(forces, axis=2)
+    first = (size >= LARGEST * size.max(axis=1, keepdims=True)).argmax(axis=1)
+    x, y = forces[np.arange(len(forces)), first].T
+    return [float(angle) for angle in np.arctan2(y, x)]

@@ -1,0 +1,229 @@
+"""By how much a pin's stress changes with its joint: with the cells of contact, and with what is
+seldom known of a joint, its clearance and how stiff its lugs are.
+
+Contact is solved again at the governing instants with the flexibilities at hand, and all pressures
+act on one mesh, the first: its error is in all maxima alike, so that their ratios are compared.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.beneath import beneath
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.section.section_stress import SectionAnswer
+from fea.solve.requirement import Asked
+from fea.solve.solve_pin import singularities_of
+from fea.support.contact.coarser_cells import on_coarser_cells
+from fea.support.contact.contact import ContactProblem, Pressed
+from fea.support.contact.pressure_loads import NEGLIGIBLE, Patterns, PressureLoads, stacked
+from fea.support.contact.records import JointRange, Variation
+from fea.support.contact.solve_joint import JointContact, JointModel
+from fea.support.lugs.changes import changes
+from fea.support.lugs.rings import USUAL
+
+CELLS = 0.6  # of the tolerance: what the cells may take
+# Orders of the error in the length of cells, on the surface and beneath, and in sections: what is
+# off is 0.52, 0.66 and 0.25 at most of the change by cells twice as large, where that is noticed
+# (benchmarks/joints/cells.py).
+ORDER, IN_SECTIONS = 1.4, 2.0
+# Relative, of the usual number of rings, and less of more: by so much the stress beside the edges
+# of lugs goes up and down with where rings happen to end, whatever two sets of cells tell.
+SCATTER = 0.01
+CHANCE = 0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
+# of the landing gear to 2 %, while both are 4 to 5 % off)
+ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
+
+
+@dataclass(frozen=True)
+class AtPlaces:
+    """Stress of the surface, of sections and beneath the contact, Pa; or their errors, relative."""
+
+    surface: float
+    section: float
+    beneath: float
+
+    @property
+    def row(self) -> float:
+        """The larger of surface and section."""
+        return max(self.surface, self.section)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """At one instant, on the first mesh: stress there, and by how much, relative, it may differ for
+    the cells. links: the loads. over: what is changed of the joint, the larger of surface and
+    section and what lies beneath contact relative to those of the joint as given; left_out: what
+    could not be, and why.
+    """
+
+    stress: AtPlaces
+    cells: AtPlaces
+    links: PinLoads
+    over: tuple[Variation, ...]
+    left_out: str = ""
+
+    def range(self, largest: float, below: float = 0.0) -> JointRange:
+        """Over the joint, of a maximum and of what lies beneath contact, Pa."""
+        over = tuple(
+            replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
+            for x in self.over
+        )
+        ends = [largest, *(x.max_von_mises for x in over)]
+        return JointRange((min(ends), max(ends)), over)
+
+    def is_at(self, links: PinLoads, case: PinLoads) -> bool:
+        """Whether an instant is this one, or no farther from it than two of the case's are."""
+        if links.times is None or self.links.times is None or case.times is None:
+            return np.array_equal(links.forces, self.links.forces)
+        apart = float(np.abs(links.times - self.links.times)[0])
+        return apart <= float(np.diff(case.times).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """Contact at an instant with something changed: the harmonics of its pressures, and the
+    cells.
+    """
+
+    waves: Floats
+    found: list[Pressed]
+
+
+def compare(
+    model: JointModel,
+    at: Sequence[JointContact],
+    asked: Asked,
+    known: Patterns | None = None,
+    vary: Sequence[bool] | None = None,
+) -> tuple[Comparison, ...]:
+    """Joints in contact, each at one instant. known: patterns of the pressures on them; vary: by
+    instant, whether joints with something changed are looked at, by default all.
+    """
+    if not at:
+        return ()
+    vary = (True,) * len(at) if vary is None else vary
+    few = model.cells.rings < USUAL  # twice as large cells are too large to tell changes apart
+    exact = _on_both_cells(model, at)
+    over, varied, missing = _varied(model, at, few, vary)
+    parts = [(one.waves, NEGLIGIBLE) for both in exact for one in both]
+    parts += [(one.waves, ROUGHLY) for one in itertools.chain(*varied)]
+    patterns = model.patterns(parts, known)
+    out = []
+    every = [
+        [_loads(model, patterns, one, contact) for one in (*both, *others)]
+        for contact, both, others in zip(at, exact, varied, strict=True)
+    ]
+    stress = _at_places(model, asked, every)
+    for contact, names, loads, why in zip(at, over, every, missing, strict=True):
+        first, twice, *others = (stress.pop(0) for _ in loads)
+        like = first if few else twice  # on the same cells as the others
+        ratios = tuple(
+            replace(
+                x,
+                max_von_mises=y.row / (like.row or 1.0),
+                beneath=y.beneath / (like.beneath or 1.0),
+            )
+            for x, y in zip(names, others, strict=True)
+        )
+        cells = _by_cells(first, twice, model.cells.rings)
+        left_out = f"not included: {'; '.join(why)}" if why else ""
+        out.append(Comparison(first, cells, contact.loads.links, ratios, left_out))
+    return tuple(out)
+
+
+def _by_cells(own: AtPlaces, twice: AtPlaces, rings: int) -> AtPlaces:
+    """The error of cells, relative, by the stress on them and on cells twice as large."""
+    chance = CHANCE * (rings < USUAL)
+    beside = max(SCATTER * USUAL / rings, chance)
+
+    def error(name: str, order: float, least: float) -> float:
+        x, y = getattr(own, name), getattr(twice, name)
+        return max(abs(y / x - 1.0) / (2.0**order - 1.0), least) if x and y else 0.0
+
+    return AtPlaces(
+        error("surface", ORDER, beside),
+        error("section", IN_SECTIONS, chance),
+        error("beneath", ORDER, beside),
+    )
+
+
+def _loads(
+    model: JointModel, patterns: Patterns, one: _Joint, contact: JointContact
+) -> PressureLoads:
+    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.found))
+
+
+def _at_places(
+    model: JointModel, asked: Asked, every: Sequence[Sequence[PressureLoads]]
+) -> list[AtPlaces]:
+    """On the first mesh, of loads of one instant each."""
+    each = list(itertools.chain(*every))
+    whole = stacked(each)
+    singular = singularities_of(model.pin, model.material, (), (whole,), asked.distance)
+    problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
+    section = harmonic_solution(problem, 0, 1.0)
+    answer = HarmonicAnswer(section, singular)
+    on_rings = [one.on_rings for one in each]
+    sections = SectionAnswer(model.pin, model.material, (), on_rings)
+    return [
+        AtPlaces(
+            answer.largest(one)[0],
+            sections.largest(other)[0],
+            beneath(section.fields, one, singular).value,
+        )
+        for one, other in zip(each, on_rings, strict=True)
+    ]
+
+
+def _on_both_cells(model: JointModel, at: Sequence[JointContact]) -> list[tuple[_Joint, _Joint]]:
+    """Each contact, and the same on cells twice as large."""
+    cells = on_coarser_cells(model)
+    return [
+        (
+            _Joint(model.waves(contact.contact), list(contact.contact)),
+            _coarse(model, contact.loads.links, *cells),
+        )
+        for contact in at
+    ]
+
+
+def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs: Floats) -> _Joint:
+    found = model.pressed(links, problem)
+    found = [replace(x, pressure=belongs @ x.pressure) for x in found]
+    return _Joint(model.waves(found), found)
+
+
+def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
+    return model.contact, np.eye(len(model.rings))
+
+
+def _varied(
+    model: JointModel, at: Sequence[JointContact], own: bool, vary: Sequence[bool]
+) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
+    """Of each contact, what is changed of the joint, contact then, and what could not be changed:
+    lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
+    clearance. own: on the model's own cells, instead of cells twice as large; vary: which.
+    """
+    names: list[list[Variation]] = [[] for _ in at]
+    found: list[list[_Joint]] = [[] for _ in at]
+    missing: list[list[str]] = [[] for _ in at]
+    for change in changes(model.whole, model.lugs):
+        other = model.varied(change.lugs, change.softness)
+        cells = _own_cells(other) if own else on_coarser_cells(other)
+        for contact, over, changed, why, so in zip(at, names, found, missing, vary, strict=True):
+            if not so:
+                continue
+            try:
+                changed.append(_coarse(other, contact.loads.links, *cells))
+            except SolveError as error:
+                why.append(f"{change.what} {change.value} ({error})")
+                continue
+            over.append(Variation(change.what, change.value, 1.0, change.length))
+    return names, found, missing

@@ -1,0 +1,57 @@
+"""Load per length, moments and contact of a pin's bands at one instant, as results show them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.pin_loads import PinLoads
+from fea.support.contact.bending import joint_forces, stations
+from fea.support.contact.records import BandContact, JointRange, JointResult
+from fea.support.contact.solve_joint import JointContact
+
+
+def joint_result(
+    contact: JointContact,
+    over: JointRange | None,
+    case: PinLoads,
+    remark: str = "",
+) -> JointResult:
+    """Of a contact at a single instant. case: what the rings do to the pin at
+    all instants; remark: what the range leaves out.
+    """
+    z = stations(contact.pin)
+    moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
+    return JointResult(
+        model="contact",
+        bands=tuple(_band(contact, b) for b in range(len(contact.lugs))),
+        bending_moment=float(moment.max()),
+        bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
+        range=over,
+        remark=remark,
+        along=joint_forces(contact.pin, contact.mass, contact.bands, case, contact.lugs),
+    )
+
+
+def _band(contact: JointContact, b: int) -> BandContact:
+    lug, bands = contact.lugs[b], contact.bands
+    own = bands.band == b
+    line = contact.line_load[0, own]
+    force = bands.length[own] @ line
+    size = float(np.linalg.norm(force))
+    along = force / size if size else np.array([1.0, 0.0])
+    arm = bands.z[own] - bands.middles[b]
+    couple = np.linalg.norm((bands.length[own] * arm) @ line)
+    half = bands.length[own] / 2.0
+    ends = [*(bands.z[own] - half).tolist(), float((bands.z[own] + half)[-1])]
+    pairs = zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)
+    return BandContact(
+        name=lug.connection,
+        force=size,
+        contact_angle=float(np.degrees(contact.contact_angle[0, b])),
+        mean_pressure=size / (2.0 * float(bands.radius[own][0]) * float(bands.length[own].sum())),
+        line_load=tuple(pairs),
+        couple=float(couple),
+        clearance=lug.clearance,
+        outer_diameter=lug.outer_diameter,
+        ends=tuple(ends),
+    )

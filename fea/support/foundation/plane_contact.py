@@ -1,0 +1,157 @@
+"""Contact of a pin with the eye of a lug in plane strain: how far it sinks in per force.
+
+Both are annuli. Displacements and stresses of harmonic n are those of Michell's solution; C_n is
+the displacement along r, in the direction of the pressure p cos n theta that makes it, per
+pressure. For n = 1 a lug is held by a traction of constant direction on its outer surface and
+measured from the mean motion of that surface, as in fea.support.contact.flexibility; a pin is held
+by what the shear of a beam leaves over, taken as even over the section, and measured from the mean
+motion of the section, as Timoshenko's beam is.
+
+Source: J. R. Barber, Elasticity, tables 8.1 and 9.1 (Michell's solution); G. R. Cowper,
+J. Appl. Mech. 33 (1966) 335 (the mean motion).
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import brentq
+
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.support.contact.contact import Bands, ContactProblem
+from fea.support.contact.flexibility import half_plane
+
+HIGHEST, SECTORS = 16, 60
+_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(8)  # exact for the powers of r, near for 1 / r
+
+
+@lru_cache(maxsize=512)  # eyes of a study are much alike
+def plane_stiffness(
+    radii: tuple[float, float], pin: Material, outer: float, lug: Material
+) -> float:
+    """Force per length over displacement of the lug's outer surface against the pin's section,
+    N/m^2, without friction and clearance.
+
+    radii: of the pin's bore, 0 if solid, and of its surface, m; outer: the lug's outer radius, m.
+    """
+    inner, r = radii
+    flexible = pin_harmonics(inner, r, pin) + lug_harmonics(r, outer, lug)
+    bands = Bands(np.zeros(1), np.ones(1), np.array([r]), np.zeros(1, dtype=np.int64), np.zeros(1))
+    tail = np.array([half_plane(pin, r) + half_plane(lug, r)])
+    problem = ContactProblem(bands, flexible[:, None, None], tail, (math.inf,), SECTORS)
+    return 1.0 / abs(float(problem.solve(np.array([[1.0, 0.0]])).shift[0, 0]))
+
+
+def largest_pressure(gap: float) -> float:
+    """p0 R / Q of a disc in a plate of its material: the largest pressure p0 under a load per
+    length Q; gap: E / (1 - nu^2) times the radial clearance over Q.
+
+    Source: Persson 1964; Ciavarella & Decuzzi, Int. J. Solids Struct. 38 (2001) 4507.
+    """
+    b = math.tan(half_angle(gap) / 2.0)
+    even = b * b + 1.0
+    tight = math.log(math.sqrt(even) + b) / (math.pi * b * b * even)
+    return 2.0 / math.pi * b / math.sqrt(even) + tight
+
+
+def half_angle(gap: float) -> float:
+    """Of contact, rad, by the same."""
+
+    def off(angle: float) -> float:
+        b2 = math.tan(angle / 2.0) ** 2
+        return 2.0 - math.log(b2 + 1.0) - 2.0 * b2 * b2 - gap * math.pi * b2 * (b2 + 1.0)
+
+    return float(brentq(off, 1e-6, 0.5 * math.pi, xtol=1e-12))
+
+
+def pin_harmonics(inner: float, outer: float, material: Material) -> Floats:
+    """C_n (HIGHEST + 1,), m/Pa, inwards under pressure on a pin's surface."""
+    hole = inner / outer  # lengths over the loaded radius, so that powers stay within range
+    high = [-_many(n, hole, material) for n in range(2, HIGHEST + 1)]
+    return outer * np.array([_even(hole, material), _section(hole, material), *high])
+
+
+def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
+    """C_n (HIGHEST + 1,), m/Pa, outwards under pressure in a lug's bore."""
+    wide = outer / inner
+    high = [_many(n, wide, material) for n in range(2, HIGHEST + 1)]
+    return inner * np.array([_even(wide, material), _eye(wide, material), *high])
+
+
+def _even(other: float, material: Material) -> float:
+    """n = 0: Lame's tube."""
+    E, nu = material.youngs_modulus, material.poisson_ratio
+    return (1.0 + nu) / E * (1.0 - 2.0 * nu + other**2) / abs(1.0 - other**2)
+
+
+def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
+    """Of Michell's powers of r: 2 mu u_r, 2 mu u_theta, s_rr, s_rt, (4, 4 or 2 for a solid); for
+    n = 1 without those that are rigid or have a resultant.
+    """
+    up = [
+        (-n, n, -n * (n - 1), n * (n - 1)),  # r^n
+        (kappa - n - 1, kappa + n + 1, -(n + 1) * (n - 2), n * (n + 1)),  # r^(n + 2)
+    ]
+    down = [
+        (n, n, -n * (n + 1), -n * (n + 1)),  # r^-n
+        (kappa + n - 1, n - 1 - kappa, -(n + 2) * (n - 1), -n * (n - 1)),  # r^(2 - n)
+    ]
+    rows, powers = [*up, *down], [n, n + 2, -n, 2 - n]
+    kept = [1, 2] if n == 1 else [0, 1, 2, 3]
+    kept = [i for i in kept if i < 2 or not solid]
+    columns = [np.array(rows[i]) * r ** (powers[i] - np.array([1.0, 1.0, 2.0, 2.0])) for i in kept]
+    return np.stack(columns, axis=1)
+
+
+def _many(n: int, other: float, material: Material) -> float:
+    """n > 1, along r."""
+    kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
+    solid = other == 0.0
+    here = _powers(n, 1.0, kappa, solid)
+    rows = here[2:] if solid else np.vstack([here[2:], _powers(n, other, kappa)[2:]])
+    scale, load = np.abs(rows).max(axis=0), -np.eye(len(rows))[0]
+    found = np.linalg.solve(rows / scale, load) / scale
+    return float(here[0] @ found) / (2.0 * mu)
+
+
+def _section(hole: float, material: Material) -> float:
+    """n = 1 of a pin; the pressure along -x is held by a force per volume along x."""
+    (lam, mu), kappa, solid = material.lame, 3.0 - 4.0 * material.poisson_ratio, hole == 0.0
+    alpha = -3.0 / (8.0 * (lam + 2.0 * mu) * (1.0 - hole**2))
+    beta = -alpha / 3.0
+    stress = np.array([2.0 * alpha * (lam + 2.0 * mu) + lam * (alpha + beta), mu * (beta - alpha)])
+    ends = (1.0,) if solid else (1.0, hole)
+    rows = np.vstack([_powers(1, r, kappa, solid)[2:] for r in ends])
+    load = np.concatenate([-stress * r for r in ends])
+    load[0] -= 1.0
+    found = np.linalg.lstsq(rows, load)[0]  # one row follows from the others, by equilibrium
+
+    def moved(r: float) -> Floats:
+        own = np.array([alpha, beta]) * r**2
+        return np.asarray(_powers(1, r, kappa, solid)[:2] @ found / (2.0 * mu) + own)
+
+    at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS
+    along = np.array([0.5 * (u - v) for u, v in map(moved, at.tolist())])
+    mean = (_WEIGHT * at) @ along / (_WEIGHT @ at)
+    return float(mean - moved(1.0)[0])
+
+
+def _eye(wide: float, material: Material) -> float:
+    """n = 1 of a lug."""
+    kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
+
+    def terms(r: float) -> Floats:
+        """As _powers, with the pair that has a resultant, in proportions that have one value."""
+        k, ln = kappa, math.log(r)
+        first = np.array([(k + 1.0) * ln - 1.0, -(k + 1.0) * ln - 1.0, 4.0 / r, 0.0]) / 2.0
+        second = np.array([(k - 1.0) * ln - 1.0, -(k - 1.0) * ln - 1.0, 2.0 / r, 2.0 / r]) / 2.0
+        return np.column_stack([_powers(1, r, k), first - (k - 1.0) / (k + 1.0) * second])
+
+    held = 0.5 / wide  # of constant direction: s_rr = -held cos, s_rt = held sin
+    rows = np.vstack([terms(1.0)[2:], terms(wide)[2:]])
+    found = np.linalg.lstsq(rows, np.array([-1.0, 0.0, -held, held]))[0]
+    here, there = (terms(r)[:2] @ found / (2.0 * mu) for r in (1.0, wide))
+    return float(here[0] - 0.5 * (there[0] - there[1]))

@@ -1,0 +1,153 @@
+"""Von Mises stress of a pin on foundations, from its section forces at points of its sections.
+
+Points nearer to sharp corners than the excluded distance are left out, as for other models.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fea.beam.error_model import SHOULDER
+from fea.beam.maximum import Highest, highest
+from fea.beam.round_section import circle
+from fea.beam.stress import TZ, ZZ, notch_stress, section_stress
+from fea.beam.stress_concentration import Notch, notches
+from fea.beam.timoshenko import AXIAL, MOMENT
+from fea.core.pin_loads import Floats
+from fea.singular.singularities import Singularity, find_singularities, outside
+from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
+from geometry import Pin
+
+NEAR = 0.5  # of the diameter: so far a sharp shoulder is felt
+BESIDE = 0.15  # of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3
+# times the bound at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
+NEGLIGIBLE = 1e-6  # of the largest
+EACH = 17  # points of a segment at a radius, besides the ends of rings
+
+
+@dataclass(frozen=True)
+class FoundationStress:
+    """What serves all loads of a pin. r, z: of the points (S,), m. per_force: (S, 6, 4), amplitudes
+    there per V, M, N, T. near: (S,) what shoulders may add, relative. notches: those that are not
+    left out, whose points are the last.
+    """
+
+    model: FoundationModel
+    r: Floats
+    z: Floats
+    per_force: Floats
+    near: Floats
+    notches: tuple[Notch, ...]
+
+    @classmethod
+    def of(cls, model: FoundationModel, distance: float = 0.1) -> Self:
+        """distance: of the local diameter, that is left out at sharp corners."""
+        pin, nu = model.whole, model.material.poisson_ratio
+        corners = find_singularities(pin, (), (), nu, distance)
+        every = notches(pin)
+        shaft = list(_shaft(pin, np.array(model.pin.stations), nu))
+        local = [_at(pin, notch, nu) for notch in every]
+        r, z, per_force = (np.concatenate(parts) for parts in zip(*shaft, *local, strict=True))
+        near = _near(corners, r, z)
+        near[len(r) - len(local) :] = SHOULDER
+        keep = outside(corners, r, z)
+        free = keep[len(r) - len(local) :]
+        left = tuple(n for n, out in zip(every, free, strict=True) if out)
+        return cls(model, r[keep], z[keep], per_force[keep], near[keep], left)
+
+    def in_lugs(self, model: FoundationModel) -> FoundationStress:
+        """Of the same pin in other lugs."""
+        return replace(self, model=model)
+
+    @cached_property
+    def on_surface(self) -> FoundationStress:
+        """Without what is on the axis."""
+        out = self.r > 0.0
+        return replace(
+            self, r=self.r[out], z=self.z[out], per_force=self.per_force[out], near=self.near[out]
+        )
+
+    @property
+    def bending(self) -> Floats:
+        """Stress along the axis per bending moment, (S,) 1/m^3."""
+        return np.abs(self.per_force[:, ZZ, MOMENT])
+
+    def von_mises(self, found: JointFoundation) -> Highest:
+        """At all points and instants, the largest over the circumference."""
+        return highest(self.harmonics(found))
+
+    def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
+        """Of the notches that loads reach, why there is no factor, or none that holds. von_mises:
+        (S, T) Pa.
+        """
+        first = len(self.z) - len(self.notches)
+        torque = np.abs(found.along(self.z[first:])[1]).max(axis=0)
+        turned = torque > NEGLIGIBLE * np.abs(found.loads.moments).max(initial=0.0)
+        reached = von_mises[first:].max(axis=1) > NEGLIGIBLE * von_mises.max()
+        pin, edges = self.model.whole, _edges(self.model)
+        return [
+            f"{n.why}, nearer than {BESIDE:g} diameters to the edge of a lug" if beside else n.why
+            for n, t, any_ in zip(self.notches, turned, reached, strict=True)
+            if (beside := any_ and _distance(pin, n, edges) < BESIDE * pin.segments[n.on].diameter)
+            or (any_ and n.bending is None)
+            or (t and n.torsion is None)
+        ]
+
+    def harmonics(self, found: JointFoundation) -> Floats:
+        """(3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has them."""
+        across = np.stack([-found.shear_force(self.z), found.bending_moment(self.z)], axis=-1)
+        first, second = np.einsum("siq,tsaq->asit", self.per_force[:, :, :AXIAL], across)
+        rest = -np.stack(found.along(self.z), axis=-1)
+        even = np.einsum("siq,tsq->sit", self.per_force[:, :, AXIAL:], rest)
+        even[:, TZ] *= -1.0
+        cosine, sine = first.copy(), second.copy()
+        cosine[:, TZ], sine[:, TZ] = -second[:, TZ], first[:, TZ]
+        return np.stack([even, cosine, sine])
+
+
+Points = tuple[Floats, Floats, Floats]  # r, z and per_force
+
+
+def _shaft(pin: Pin, cuts: Floats, nu: float) -> Iterator[Points]:
+    """Along every segment, at its surface and its bore or axis."""
+    for (a, b), segment in zip(pairwise(pin.stations), pin.segments, strict=True):
+        z = np.union1d(np.linspace(a, b, EACH), cuts[(cuts >= a) & (cuts <= b)])
+        for r in (segment.diameter / 2.0, segment.bore / 2.0):
+            amplitudes = section_stress(circle(segment), r, nu)
+            yield np.full(len(z), r), z, np.broadcast_to(amplitudes, (len(z), 6, 4))
+
+
+def _at(pin: Pin, notch: Notch, nu: float) -> Points:
+    section = circle(pin.segments[notch.on])
+    stress = notch_stress(notch, section, nu)
+    return np.array([section.outer]), np.array([notch.z]), stress[None]
+
+
+def _edges(model: FoundationModel) -> Floats:
+    """Of all lugs, z in m."""
+    bands = [model.whole.band(lug.connection) for lug in model.lugs]
+    return np.array([z for band in bands for z in (band.z0, band.z1)])
+
+
+def _distance(pin: Pin, notch: Notch, edges: Floats) -> float:
+    """Of a shoulder's fillet, from where it begins to where it ends, from the nearest edge, m."""
+    corner = min(pin.stations, key=lambda z: abs(z - notch.z))
+    radius = pin.fillet_at(pin.stations.index(corner) - 1)
+    ends = corner, corner + math.copysign(radius, notch.z - corner)
+    away = np.maximum(np.maximum(min(ends) - edges, edges - max(ends)), 0.0)
+    return float(away.min())
+
+
+def _near(corners: tuple[Singularity, ...], r: Floats, z: Floats) -> NDArray[np.float64]:
+    out = np.zeros(len(r))
+    for corner in corners:
+        out[np.hypot(r - corner.r, z - corner.z) <= 2.0 * NEAR * corner.r] = SHOULDER
+    return out

@@ -1,0 +1,124 @@
+"""The range of a pin's maximum over uncertain properties of its joint, by beams on foundations.
+
+At one instant, as fea.support.contact.variations has it by contact: other clearances, lugs half
+and twice as stiff, tilt free and guided, all in milliseconds. A beam's maximum is only as good as
+its bounds, so that the range reaches from the least lower to the largest upper one. Of clearance
+the beam knows no more than these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.support.contact.records import JointRange, JointResult, Variation
+from fea.support.foundation.bounds import Bounded, bounded
+from fea.support.foundation.foundation_model import FoundationModel
+from fea.support.foundation.stress import FoundationStress
+from fea.support.lugs.changes import changes, softer
+from fea.support.lugs.fit import beyond_foundations
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError, Pin
+
+
+@dataclass(frozen=True)
+class Varied:
+    """A joint with something changed: what, to what in words, and as a length, m, if it is one."""
+
+    what: str
+    value: str
+    length: float | None
+    stress: FoundationStress
+
+
+class FoundationRange:
+    """Of one pin, for all cases. assumed: whether its lugs are.
+
+    Raises: ValueError for lugs that do not fit; SolveError for lugs that it cannot answer.
+    """
+
+    def __init__(
+        self, pin: Pin, material: Material, lugs: Sequence[Lug], distance: float, assumed: bool
+    ) -> None:
+        if reason := beyond_foundations(pin, lugs):
+            raise SolveError(reason, "beyond-foundations")
+        self.assumed = assumed
+        self.own = FoundationStress.of(FoundationModel(pin, material, lugs), distance)
+        self.varied = tuple(_varied(self.own))
+
+    def at(self, loads: PinLoads) -> tuple[JointRange | None, str]:
+        """At a single instant; and what is left out, or why all is.
+
+        Raises: SolveError as FoundationModel.solve.
+        """
+        own = bounded(self.own, self.own.model.solve(loads))
+        if own.bounds is None:
+            return None, own.why
+        over, left_out = [], []
+        for joint in self.varied:
+            found = _tried(joint.stress, loads)
+            if found is None:
+                continue
+            if found.bounds is None:
+                left_out.append(f"{joint.what} {joint.value}")
+                continue
+            size = found.maximum
+            over.append(Variation(joint.what, joint.value, size, joint.length, found.bounds))
+        bounds = [own.bounds, *(v.interval for v in over if v.interval)]
+        ends = min(low for low, _ in bounds), max(high for _, high in bounds)
+        beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
+        whole = JointRange(ends, tuple(over), "foundation", self.assumed)
+        return whole, beyond if left_out else ""
+
+
+def prescribed_ranges(
+    pin: Pin,
+    material: Material,
+    lugs: Sequence[Lug],
+    loads: Sequence[PinLoads | None],
+    how: tuple[float, bool],
+) -> tuple[JointResult | None, ...]:
+    """Of a pin that is supported otherwise, if it sat in these lugs. loads: at the governing
+    instants of its cases, None where there is none. how: distance and assumed, as of
+    FoundationRange.
+    """
+    try:
+        over = FoundationRange(pin, material, lugs, *how)
+    except (ArgumentError, SolveError) as error:
+        none = JointResult("prescribed", remark=str(error))
+        return tuple(None if here is None else none for here in loads)
+    return tuple(None if here is None else _prescribed(over, here) for here in loads)
+
+
+def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
+    if np.any(loads.moments[:, :, :2]):
+        return JointResult("prescribed", remark="its links exert moments across its axis")
+    try:
+        found, remark = over.at(loads)
+    except SolveError as error:
+        return JointResult("prescribed", remark=str(error))
+    return JointResult("prescribed", range=found, remark=remark)
+
+
+def _tried(stress: FoundationStress, loads: PinLoads) -> Bounded | None:
+    """None where lugs that are free to tilt leave a couple on the pin."""
+    try:
+        return bounded(stress, stress.model.solve(loads))
+    except SolveError:
+        return None
+
+
+def _varied(own: FoundationStress) -> Iterator[Varied]:
+    model = own.model
+    for change in changes(model.whole, model.lugs):
+        if change.length is not None:
+            other = model.with_clearances(list(change.lugs))
+        else:
+            both = zip(change.lugs, change.softness, strict=True)
+            other = FoundationModel(model.given, model.material, [softer(*x) for x in both])
+        yield Varied(change.what, change.value, change.length, own.in_lugs(other))

@@ -1,0 +1,89 @@
+"""What is seldom known of a joint, and how far it is changed to see what depends on it.
+
+By default a clearance goes from none to twice the given one (to a free running fit where none is
+given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
+of its own. Of everything both ends are tried, for all lugs at once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from fea.core.material import Material
+from fea.support.lugs.lug import Lug
+from geometry import Pin
+
+FIT = 0.002  # of the diameter: a free running fit, where no clearance is given
+SOFTER = 2.0
+LOW, HIGH = "low end of its range", "high end of its range"
+ENDS = (0, 1)
+
+
+@dataclass(frozen=True)
+class JointChange:
+    """A joint with something changed: what, to what in words, the lugs, and by how much each is
+    softer. length: the value, m, where it is one, the largest of all lugs.
+    """
+
+    what: str
+    value: str
+    lugs: tuple[Lug, ...]
+    softness: tuple[float, ...]
+    length: float | None = None
+
+
+def changes(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
+    """Of the lugs on a pin's bands, one thing at a time; not what changes nothing."""
+    same = (1.0,) * len(lugs)
+    found = []
+    for end in ENDS:
+        loose, words = zip(*(_loose(pin, lug, end) for lug in lugs), strict=True)
+        size = max(lug.clearance for lug in loose)
+        found.append(JointChange("clearance", _in_words(words), loose, same, size))
+    for end in ENDS:
+        stiff, words = zip(*(_stiffness(lug, end) for lug in lugs), strict=True)
+        by = tuple(1.0 / times for times in stiff)
+        found.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
+    for end in ENDS:
+        tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
+        found.append(JointChange("tilt", _in_words(words), tilted, same))
+    unchanged = (tuple(lugs), same)
+    return (change for change in found if (change.lugs, change.softness) != unchanged)
+
+
+def softer(lug: Lug, times: float) -> Lug:
+    """Also its bushing."""
+
+    def made(material: Material) -> Material:
+        return replace(material, youngs_modulus=material.youngs_modulus / times)
+
+    bushing = lug.bushing and replace(lug.bushing, material=made(lug.bushing.material))
+    return replace(lug, material=made(lug.material), bushing=bushing)
+
+
+def _loose(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:
+    if lug.range.clearance is not None:
+        return replace(lug, clearance=lug.range.clearance[end]), (LOW, HIGH)[end]
+    if end == 0:
+        return replace(lug, clearance=0.0), "none"
+    if lug.clearance:
+        return replace(lug, clearance=2.0 * lug.clearance), "twice the given"
+    fit = FIT * 2.0 * pin.band(lug.connection).radius
+    return replace(lug, clearance=fit), f"{FIT:g} of the diameter"
+
+
+def _stiffness(lug: Lug, end: int) -> tuple[float, str]:
+    times = (lug.range.stiffness or (1.0 / SOFTER, SOFTER))[end]
+    return times, f"times {times:g}"
+
+
+def _tilted(lug: Lug, end: int) -> tuple[Lug, str]:
+    if lug.range.tilt is not None:
+        return replace(lug, tilt=lug.range.tilt[end]), (LOW, HIGH)[end]
+    return replace(lug, tilt=(0.0, math.inf)[end]), ("free", "guided")[end]
+
+
+def _in_words(words: Sequence[str]) -> str:
+    return " or ".join(sorted(set(words), reverse=True))

@@ -1,0 +1,187 @@
+"""Whether lugs fit a pin: what is refused before anything is computed.
+
+Interference presses pin and eye as tubes one in the other, of which every wall follows Lame with
+free ends: u = r / E (s_tt - nu s_rr), s = A -+ B / r^2. Beyond a few times what yields one of them
+linear elasticity says nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fea.core.equilibrium import Carried
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError, Band, Pin, PinLike
+
+MOST_CLEARANCE = 0.1  # of the pin's diameter
+MOST_INTERFERENCE = 5.0  # times what yields pin, bushing or lug
+LEAST_WALL = 1e-3  # of an eye or a bushing, of the pin's diameter
+
+Wall = tuple[float, float, Material]  # inner and outer radius, m
+
+
+def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
+    """The same pin, its bands in lugs of the structure (by the segments' names) among its
+    connections.
+    """
+    held = {lug.connection for lug in lugs} - set(pin.connections)
+    if not held:
+        return pin
+    segments = tuple(
+        replace(s, connection=s.name) if s.connection is None and s.name in held else s
+        for s in pin.segments
+    )
+    return replace(pin, segments=segments)
+
+
+def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Carried:
+    """What the lugs of a pin carry of what its links leave over; foundations: by a beam on these,
+    on which a structure carries what is along the axis too.
+    """
+    structure = sum(lug.connection not in pin.connections for lug in lugs)
+    tilts = any(lug.tilt > 0.0 for lug in lugs)
+    return Carried(structure > 0, tilts or structure > 1, foundations and structure > 0, bool(lugs))
+
+
+def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]:
+    """The lugs in the order of the pin's bands.
+
+    Raises: ArgumentError for a lug where no link bears, a band without one, or a lug that does not
+    fit its band.
+    """
+    named = {lug.connection: lug for lug in lugs}
+    if len(named) < len(lugs) or set(named) != set(pin.connections):
+        raise ArgumentError(
+            f"pin {pin.name} needs one lug for each of {', '.join(pin.connections)}",
+            "lugs-unlike-bands",
+        )
+    bores = {s.connection: max(s.bores) for s in pin.segments}
+    for lug in lugs:
+        band = pin.band(lug.connection)
+        _require_walls(lug, band)
+        _require_gap(lug, band)
+        _require_elastic(lug, band, bores[lug.connection] / 2.0, material)
+    return tuple(named[connection] for connection in pin.connections)
+
+
+def _require_walls(lug: Lug, band: Band) -> None:
+    d, what = 2.0 * band.radius, f"lug {lug.connection}"
+    wall = (lug.outer_diameter - d) / 2.0
+    if wall < LEAST_WALL * d:
+        raise ArgumentError(
+            f"{what}: its outer diameter is {lug.outer_diameter / d:.4g} of the pin's; it must be "
+            "wider than the pin",
+            "lug-too-narrow",
+        )
+    if lug.bushing is None:
+        return
+    if lug.bushing.thickness < LEAST_WALL * d:
+        raise ArgumentError(
+            f"{what}: its bushing's thickness is {lug.bushing.thickness / d:.2g} of the pin's "
+            "diameter, too thin to model; leave it out",
+            "bushing-too-thin",
+        )
+    if wall - lug.bushing.thickness < LEAST_WALL * d:
+        raise ArgumentError(
+            f"{what}: its bushing is {lug.bushing.thickness / wall:.4g} times as thick as the wall "
+            "between the pin and the outer diameter; make it thinner or the lug wider",
+            "bushing-too-thick",
+        )
+
+
+def _require_gap(lug: Lug, band: Band) -> None:
+    what, d = f"lug {lug.connection}", 2.0 * band.radius
+    if lug.clearance > MOST_CLEARANCE * d:
+        raise ArgumentError(
+            f"{what}: its clearance is {lug.clearance / d:.3g} of the pin's diameter; at most "
+            f"{MOST_CLEARANCE:g} is a joint",
+            "clearance-too-large",
+        )
+    if lug.edge_radius > band.length / 2.0:
+        raise ArgumentError(
+            f"{what}: the radius of its edges is {lug.edge_radius / band.length:.3g} of the length "
+            "on which it bears; edge_radius may be at most half of that",
+            "edge-radius-too-large",
+        )
+
+
+def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> None:
+    interference = -lug.clearance
+    most = MOST_INTERFERENCE * yielding_interference(lug, band.radius, bore, material)
+    if interference > most:
+        times = MOST_INTERFERENCE * interference / most
+        raise ArgumentError(
+            f"lug {lug.connection}: its interference is {times:.3g} times what makes pin, "
+            f"bushing or lug yield; linear elasticity ends at {MOST_INTERFERENCE:g} times",
+            "interference-too-large",
+        )
+
+
+def yielding_interference(lug: Lug, radius: float, bore: float, material: Material) -> float:
+    """Interference of the diameters, m, at which a wall begins to yield (von Mises), free of other
+    loads; inf where no material has a yield strength. radius, bore: of the pin, both radii, m.
+    """
+    walls: list[Wall] = [(bore, radius, material), (radius, lug.outer_diameter / 2.0, lug.material)]
+    if lug.bushing is not None:
+        between = radius + lug.bushing.thickness
+        walls[1:] = [(radius, between, lug.bushing.material), (between, walls[1][1], lug.material)]
+    fields = _press_fit(walls)
+    return min(_reserve(walls, fields))
+
+
+def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
+    """By wall, yield strength over von Mises stress under an interference of 1 m."""
+    yield math.inf
+    for (inner, outer, material), (a, b) in zip(walls, fields, strict=True):
+        if material.yield_strength is not None:
+            r = np.array([inner if inner > 0.0 else outer, outer])
+            radial, hoop = a - b / r**2, a + b / r**2
+            stress = np.sqrt(radial**2 - radial * hoop + hoop**2).max()
+            yield float(material.yield_strength / stress)
+
+
+def _press_fit(walls: Sequence[Wall]) -> Floats:
+    """A and B (walls, 2) of s_rr, s_tt = A -+ B / r^2 in tubes one in the other, the first pressed
+    into the second by 1 m of the diameters, Pa and Pa m^2; the others are bonded.
+    """
+    size = 2 * len(walls)
+    system, right = np.zeros((size, size)), np.zeros(size)
+    inner, outer = walls[0][0], walls[-1][1]
+    system[0, :2] = (0.0, 1.0) if inner == 0.0 else (1.0, -1.0 / inner**2)
+    system[1, -2:] = 1.0, -1.0 / outer**2
+    for k in range(len(walls) - 1):
+        r, here = walls[k][1], slice(2 * k, 2 * k + 2)
+        there = slice(2 * k + 2, 2 * k + 4)
+        system[2 * k + 2, here], system[2 * k + 2, there] = (1.0, -1.0 / r**2), (-1.0, 1.0 / r**2)
+        system[2 * k + 3, here] = -_widening(r, walls[k][2])
+        system[2 * k + 3, there] = _widening(r, walls[k + 1][2])
+    right[3] = 0.5
+    scale = np.abs(system).max(axis=0)
+    found = np.linalg.solve(system / scale, right) / scale
+    return np.asarray(found.reshape(-1, 2))
+
+
+def _widening(r: float, material: Material) -> Floats:
+    """u_r by A and by B."""
+    E, nu = material.youngs_modulus, material.poisson_ratio
+    return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
+
+
+def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
+    """What of pin and lugs a beam on foundations cannot answer (fea.joint.foundation), if
+    anything.
+    """
+    if not pin.stepped:
+        return f"pin {pin.name} has cones or rounded edges, and its beams have only cylinders"
+    for lug in lugs:
+        if lug.clearance < 0.0:
+            return f"lug {lug.connection} has an interference, whose stress it does not include"
+        if lug.bushing is not None:
+            return f"lug {lug.connection} has a bushing, for which it has no stiffness"
+    return ""

@@ -1,0 +1,113 @@
+"""What surrounds a band of a pin: the eye of a link, with a bushing or without."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.pin_loads import Floats
+from geometry import ArgumentError
+
+
+@dataclass(frozen=True)
+class Bushing:
+    """A ring of its own material, bonded in an eye; thickness in m.
+
+    Raises: ArgumentError for a thickness that is not positive.
+    """
+
+    thickness: float
+    material: Material
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.thickness) and self.thickness > 0.0):
+            raise ArgumentError("the thickness of a bushing must be positive", "not-positive")
+
+
+@dataclass(frozen=True)
+class LugRange:
+    """Between what values something of a lug may lie, None where the usual ones are tried
+    (fea.support.lugs.changes): clearance, m; stiffness, times that of the lug; tilt, N m/rad.
+
+    Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
+    """
+
+    clearance: tuple[float, float] | None = None
+    stiffness: tuple[float, float] | None = None
+    tilt: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("clearance", "stiffness", "tilt"):
+            ends = getattr(self, name)
+            if ends is not None and not ends[0] <= ends[1]:
+                raise ArgumentError(
+                    f"range of the {name}: give the smaller value first, then the larger one",
+                    "range-order",
+                )
+        if self.stiffness is not None and not self.stiffness[0] > 0.0:
+            raise ArgumentError("range of the stiffness: it must be positive", "not-positive")
+
+
+@dataclass(frozen=True)
+class Lug:
+    """The eye of the link at a connection, as an annulus; m.
+
+    clearance: of the diameters, negative for interference. edge_radius: of the bore's edges. tilt:
+    N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
+    The pin bears on the bushing, if there is one. range: of what is not known of it.
+
+    Raises: ArgumentError for what cannot be; fea.support.lugs.fit has what depends on the pin.
+    """
+
+    connection: str
+    outer_diameter: float
+    material: Material
+    clearance: float = 0.0
+    edge_radius: float = 0.0
+    tilt: float = math.inf
+    bushing: Bushing | None = None
+    range: LugRange = LugRange()
+
+    def __post_init__(self) -> None:
+        what = f"lug {self.connection}"
+        if not (math.isfinite(self.outer_diameter) and self.outer_diameter > 0.0):
+            raise ArgumentError(f"{what}: its outer diameter must be positive", "not-positive")
+        if not math.isfinite(self.clearance):
+            raise ArgumentError(f"{what}: its clearance must be a number", "not-a-number")
+        if not (math.isfinite(self.edge_radius) and self.edge_radius >= 0.0):
+            raise ArgumentError(f"{what}: its edge radius must not be negative", "negative")
+        if not self.tilt >= 0.0:
+            raise ArgumentError(
+                f"{what}: the stiffness of its tilt must not be negative", "negative"
+            )
+
+    @property
+    def bearing(self) -> Material:
+        """What the pin bears on: the bushing's material or the lug's."""
+        return self.material if self.bushing is None else self.bushing.material
+
+    def gap(self, ends: Floats) -> Floats:
+        """Gap on the radius, (R,) m, on the mean over each ring with `ends` (R + 1,) m along z,
+        before anything moves: half of the clearance, and what the edges are rounded by.
+        """
+        return 0.5 * self.clearance + np.diff(self._rounded(ends)) / np.diff(ends)
+
+    def _rounded(self, z: Floats) -> Floats:
+        """Integral of what the rounding of both edges takes from the bore, from its start to z."""
+        first, last = z[0], z[-1]
+        return _segment(self.edge_radius, z - first) - _segment(self.edge_radius, last - z)
+
+
+def _segment(radius: float, x: Floats) -> Floats:
+    """Integral from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t < r from
+    the edge, m^2.
+    """
+    if radius == 0.0:
+        return np.zeros_like(x)
+    s = 1.0 - np.minimum(x / radius, 1.0)  # of the way that is left
+    total = 1.0 - np.pi / 4.0
+    rest = s - 0.5 * (s * np.sqrt(1.0 - s * s) + np.arcsin(s))
+    return np.asarray(radius**2 * (total - rest))

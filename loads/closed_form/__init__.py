@@ -1,1 +1,0 @@
-"""Closed forms, which checks and tests compare with."""

@@ -1,0 +1,376 @@
+"""Newton-Euler for every body and pin, at all instants at once.
+
+By virtual work the few multipliers of the loop and drive equations balance what the bodies need,
+J^T f = partials . (m a - weight - applied); the forces in all members follow from them. With more
+equations than coordinates the forces along the null vectors of J^T are not determined by rigid-body
+statics; the linkage's sharing rule does it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from loads.forces.acting import Load, balance
+from loads.forces.holding import holding, require_closed
+from loads.forces.reactions import Reactions
+from loads.forces.sharing import shares
+from loads.linkage.friction import MOST_CONTACTS, JammingError, contact_sizes
+from loads.linkage.linkage import GROUND, LinkageError, Point, Slider, Turn
+from loads.motion.joint_forces import connection_members, slider_couple, slider_members
+from loads.motion.loop_equations import cross, number, pairs
+from loads.motion.motion import Motion
+from pinbase.arrays import Complex, Floats
+
+STANDS = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
+
+
+@dataclass(frozen=True)
+class SliderForces:
+    """Of the base on the moving body of every slider, (T, S): normal (N, left of the axis), couple
+    (N m) about the slider's end, friction (N, along the axis).
+    """
+
+    normal: Floats
+    couple: Floats
+    friction: Floats
+
+
+@dataclass(frozen=True)
+class Dynamics:
+    """Reactions, with the forces of the drives and the loads.
+
+    actuators: A that hold the linkage, its drives first. drive: (T, A) their forces, N, positive if
+    it extends a slider, or N m, positive counter-clockwise. needed,
+    couples: (T, items) forces (complex, N) and couples (N m) that joints and drives bring to each
+    item. applied: the loads. pin_friction: couple (T, C) N m of every pin on the body that turns on
+    it. shared: connections whose forces follow the sharing rule.
+    """
+
+    reactions: Reactions
+    actuators: tuple[Slider | Turn, ...]
+    drive: Floats
+    motion: Motion
+    applied: tuple[Load, ...]
+    sliders: SliderForces
+    pin_friction: Floats
+    needed: Complex
+    couples: Floats
+    shared: tuple[str, ...]
+
+    @property
+    def power(self) -> Floats:
+        """Power of every actuator, (T, A) W."""
+        return self.drive * self.course[1]
+
+    @property
+    def course(self) -> tuple[Floats, Floats, Floats]:
+        """Position (m or rad) of every actuator and its rates, (T, A) each."""
+        each = [self.motion.coordinate(a) for a in self.actuators]
+        position, speed, rate = (np.stack([c[k] for c in each], axis=1) for k in range(3))
+        return position, speed, rate
+
+    def shaking(self, about: Point) -> tuple[Floats, Floats]:
+        """Force (T, 2) N and moment (T,) N m about a point (m) of the linkage on its ground."""
+        centres, _, _ = self.motion.centres
+        moment = self.couples + cross(centres - number(about), self.needed)
+        return -pairs(self.needed.sum(axis=1)), -moment.sum(axis=1)
+
+
+def motion_reactions(
+    case: str,
+    motion: Motion,
+    applied: Sequence[Load] = (),
+    timed: bool = True,
+    hold: Sequence[str] = (),
+    friction: bool = True,
+) -> Dynamics:
+    """Reactions of a driven motion under gravity, applied loads and friction.
+
+    timed: whether its instants follow each other in time. hold: names of the sliders and turns that
+    hold the linkage, by default its drives. friction: whether anything rubs. Raises: LinkageError
+    when connections share forces without a rule or the linkage is not held, JammingError.
+    """
+    loads = tuple(applied)
+    solved = (_Balance(part, loads, hold, friction).dynamics(case, timed) for part in motion.parts)
+    # Each part's motion is let go with its matrices, before the next is made.
+    parts = [replace(found, motion=motion) for found in solved]
+    return parts[0] if len(parts) == 1 else _joined(parts)
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """One result of those of its parts in time: arrays one after the other, as are those of the
+    dataclasses among its fields; else the first.
+    """
+    first: Any = parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, (Reactions, SliderForces, Dynamics)):
+        keys = [field.name for field in fields(first)]
+        return replace(first, **{key: _joined([getattr(p, key) for p in parts]) for key in keys})
+    return first
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A force (couple) in proportion to the size of a contact force: friction of a slider or a pin,
+    or what pushes teeth apart. which: its number. share: (T,) of the contact force, m of a pin. f,
+    couples, spread: multipliers, couples that items need, and forces between teeth, of one newton
+    (newton metre).
+    """
+
+    name: str
+    kind: Literal["slider", "pin", "teeth"]
+    which: int
+    share: Floats
+    f: Floats
+    couples: Floats
+    spread: Floats
+
+
+class _Balance:
+    """The balance of forces of one motion: linear in what the bodies need."""
+
+    def __init__(
+        self, motion: Motion, applied: tuple[Load, ...], hold: Sequence[str], rubs: bool
+    ) -> None:
+        self.motion, self.applied, self.loops = motion, applied, motion.loops
+        self.rubs = rubs
+        self.held = holding(motion, hold)
+        self.connections = connection_members(self.loops)
+        self.slides = slider_members(self.loops)
+        self.shared = motion.found.shared
+        self.needed, self.couples = self._needs()
+        self.nothing, self.none = np.zeros_like(self.needed), np.zeros_like(self.couples)
+        self.apart = np.zeros((len(motion), len(motion.linkage.teeth)))
+
+    def dynamics(self, case: str, timed: bool) -> Dynamics:
+        linkage = self.motion.linkage
+        f = self._multipliers(self._generalised(self.needed, self.couples), self.needed)
+        sizes = (len(linkage.sliders), len(linkage.connections), len(linkage.teeth))
+        friction, on_pins, spread = (np.zeros((len(f), n)) for n in sizes)
+        of = {"slider": friction, "pin": on_pins, "teeth": spread}
+        couples = self.couples
+        if sources := self._sources():
+            amounts, f = self._with_contacts(f, sources)
+            for i, s in enumerate(sources):
+                of[s.kind][:, s.which] = amounts[:, i]
+                couples = couples + amounts[:, i, None] * s.couples
+        drive = self._drives(f)
+        require_closed(self.held, drive)
+        normal, couple = self._slider_forces(self._closing(f, spread), f, self.needed, couples)
+        return Dynamics(
+            reactions=self._reactions(case, self._closing(f, spread), timed),
+            actuators=self.held.actuators,
+            drive=drive,
+            motion=self.motion,
+            applied=self.applied,
+            sliders=SliderForces(normal, couple, friction),
+            pin_friction=on_pins,
+            needed=self.needed,
+            couples=self.couples,
+            shared=self.shared,
+        )
+
+    def _needs(self) -> tuple[Complex, Floats]:
+        """m a - weight - applied force, and the couples about the centres, (T, items) each."""
+        motion = self.motion
+        _, _, acceleration = motion.centres
+        needed = motion.masses * (acceleration - number(motion.linkage.gravity))
+        couples = motion.inertias * motion.spin_rate
+        for i, force, couple in balance(motion, self.applied):
+            needed[:, i] -= force
+            couples[:, i] -= couple
+        return needed, couples
+
+    def _generalised(self, needed: Complex, couples: Floats) -> Floats:
+        """What the bodies need as forces along the coordinates, (T, n) N (N m for angles)."""
+        loops = self.loops
+        out = loops.along_coordinates(self.motion.pose, needed, loops.centres)
+        for i in range(len(loops.linkage.items)):
+            if f := loops.frame[i]:
+                out[:, f - 1] += couples[:, i]
+        return out
+
+    def _closing(self, f: Floats, spread: Floats | None = None) -> Complex:
+        return self.loops.closing_forces(self.motion.pose, f, spread)
+
+    def _drives(self, f: Floats) -> Floats:
+        """(T, A) forces and torques of the actuators."""
+        return self.held.forces(f[:, f.shape[1] - self.held.weights.shape[2] :])
+
+    def _multipliers(
+        self, generalised: Floats, needed: Complex, spread: Floats | None = None
+    ) -> Floats:
+        """Multipliers (T, rows) that balance forces along the coordinates, shared by the given
+        rules.
+        """
+        factors = self.held.factors
+        f = factors.solve_transposed(generalised / self.loops.scale)
+        if not self.shared:
+            return f
+        null = factors.null
+        nothing = np.zeros((1, needed.shape[1]), dtype=complex)
+        ways = [self._closing(null[:, :, i]) for i in range(null.shape[2])]
+        loose = np.stack([self._everywhere(nothing, way) for way in ways], axis=2)
+        found = self._everywhere(needed, self._closing(f, spread))
+        amounts = shares(self.loops.linkage, found, loose, self.shared)
+        return f + (null @ amounts[..., None])[..., 0]
+
+    def _everywhere(self, needed: Complex, closing: Complex) -> Complex:
+        """(T, connections and teeth) forces on the bodies."""
+        teeth = closing[:, len(self.loops.closing) :]
+        return np.concatenate([self.connections.forces(needed, closing), teeth], axis=1)
+
+    def _slider_forces(
+        self, closing: Complex, f: Floats, needed: Complex, couples: Floats
+    ) -> tuple[Floats, Floats]:
+        """Normal force and couple at every slider, (T, S)."""
+        loops, pose = self.loops, self.motion.pose
+        sliders = loops.linkage.sliders
+        if not sliders:
+            return np.zeros((len(f), 0)), np.zeros((len(f), 0))
+        force = self.slides.forces(needed, closing)
+        normal = np.real(np.conj(1j * pose.axis) * force)
+        centres, _, _ = self.motion.centres
+        closing_at = loops.place(pose, loops.closing_points)
+        forces = zip(self.held.actuators, self._drives(f).T, strict=True)
+        torques = [(a, force) for a, force in forces if isinstance(a, Turn)]
+        couple = np.stack(
+            [
+                slider_couple(
+                    loops, k, self._end(s), centres, needed, couples, closing_at, closing, torques
+                )
+                for k, s in enumerate(sliders)
+            ],
+            axis=1,
+        )
+        return normal, couple
+
+    def _end(self, slider: Slider) -> Complex:
+        index = self.loops.linkage.index
+        item, at = np.array([index[slider.moving]]), np.array([number(slider.end)])
+        return self.loops.place(self.motion.pose, self.loops.points(item, at))[:, 0]
+
+    def _sources(self) -> list[_Source]:
+        """What a contact force brings about in proportion to its size."""
+        rubbing = [*self._rubbing_sliders(), *self._rubbing_pins()] if self.rubs else []
+        return [*rubbing, *self._teeth()]
+
+    def _opposing(self, speed: Floats) -> Floats:
+        """(T,) direction of friction at a speed, m/s: 0 at rest."""
+        return np.where(np.abs(speed) > STANDS * self.motion.pace, -np.sign(speed), 0.0)
+
+    def _rubbing_sliders(self) -> Iterator[_Source]:
+        motion, first = self.motion, self.loops.frames - 1
+        for k, s in enumerate(motion.linkage.sliders):
+            if s.friction:
+                push = np.zeros_like(motion.q)
+                push[:, first + k] = -1.0
+                share = s.friction * self._opposing(motion.v[:, first + k])
+                f = self._multipliers(push, self.nothing)
+                yield _Source(f"slider {s.name}", "slider", k, share, f, self.none, self.apart)
+
+    def _rubbing_pins(self) -> Iterator[_Source]:
+        linkage, motion = self.motion.linkage, self.motion
+        for c, (joint, connection) in enumerate(linkage.connections):
+            if connection.friction:
+                couples = self.none.copy()
+                couples[:, linkage.index[connection.body]] = -1.0
+                if (carrier := linkage.index[linkage.carrier(joint)]) < couples.shape[1]:
+                    couples[:, carrier] = 1.0
+                f = self._multipliers(self._generalised(self.nothing, couples), self.nothing)
+                speed = motion.turning(joint, connection) * linkage.length_scale
+                share = connection.friction * self._opposing(speed)
+                name = f"pin {joint.name} at {connection.name}"
+                yield _Source(name, "pin", c, share, f, couples, self.apart)
+
+    def _teeth(self) -> Iterator[_Source]:
+        for g, teeth in enumerate(self.motion.linkage.teeth):
+            spread = self.apart.copy()
+            spread[:, g] = 1.0
+            f = self._multipliers(np.zeros_like(self.motion.q), self.nothing, spread)
+            share = np.full(len(f), np.tan(teeth.pressure_angle))
+            yield _Source(f"teeth {teeth.name}", "teeth", g, share, f, self.none, spread)
+
+    def _pressed(
+        self, sources: list[_Source], f: Floats, needed: Complex, of: _Source | None = None
+    ) -> list[Complex]:
+        """Of every source its contact forces, (T, contacts): of pads along their normal, of pins in
+        the plane, of teeth along the pitch circle. of: the source that brings them about, by
+        default what bodies need.
+        """
+        couples, spread = (of.couples, of.spread) if of else (self.couples, None)
+        closing = self._closing(f, spread)
+        slides = any(s.kind == "slider" for s in sources)
+        normal, couple = self._slider_forces(closing, f, needed, couples) if slides else (f, f)
+        pins = self.connections.forces(needed, closing)
+        tangential = f[:, 2 * len(self.loops.closing) : self.loops.guides]
+        out = []
+        for s in sources:
+            if s.kind == "pin":
+                out.append(pins[:, [s.which]])
+            elif s.kind == "teeth":
+                out.append(tangential[:, [s.which]].astype(complex))
+            else:
+                n, bearing = normal[:, s.which], self.loops.linkage.sliders[s.which].bearing
+                pads = [n]
+                if bearing is not None:
+                    pads = [n / 2 + sign * couple[:, s.which] / bearing for sign in (1.0, -1.0)]
+                out.append(np.stack(pads, axis=1).astype(complex))
+        return out
+
+    def _with_contacts(self, f: Floats, sources: list[_Source]) -> tuple[Floats, Floats]:
+        """Forces (couples) of the sources, (T, sources), and the multipliers with them."""
+        free = self._pressed(sources, f, self.needed)
+        owner = [i for i, contacts in enumerate(free) for _ in range(contacts.shape[1])]
+        rubbing = sum(sources[i].kind != "teeth" for i in owner)
+        if rubbing > MOST_CONTACTS:
+            raise LinkageError(
+                f"{rubbing} contacts have friction; at most {MOST_CONTACTS} can be solved",
+                "too-many-contacts",
+            )
+        unit = [np.concatenate(self._pressed(sources, s.f, self.nothing, s), 1) for s in sources]
+        response = np.stack([unit[i] * sources[i].share[:, None] for i in owner], axis=2)
+        try:
+            sizes = contact_sizes(np.concatenate(free, axis=1), response)
+        except JammingError as error:
+            raise self._named(error, response, [sources[i].name for i in owner]) from None
+        amounts = np.zeros((len(f), len(sources)))
+        for k, i in enumerate(owner):
+            amounts[:, i] += sources[i].share * sizes[:, k]
+        for i, s in enumerate(sources):
+            f = f + amounts[:, i, None] * s.f
+        return amounts, f
+
+    def _named(self, error: JammingError, response: Complex, names: list[str]) -> JammingError:
+        """The same with what rubs named and the time."""
+        t = int(error.instants[0])
+        grips = np.abs(np.diagonal(response[t]))
+        when = f"t = {self.motion.times[t]:.6g} s" if len(self.motion) > 1 else ""
+        return JammingError(
+            error.instants, error.none, error.grip, when, names[int(grips.argmax())]
+        )
+
+    def _reactions(self, case: str, closing: Complex, timed: bool) -> Reactions:
+        motion, linkage = self.motion, self.motion.linkage
+        on_body = self._everywhere(self.needed, closing)
+        on_pin = np.zeros((*on_body.shape, 3))
+        on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
+        # A pin's own axes turn with what it is fixed in; those of a floating pin are the world's.
+        own = [j.fixed_in or GROUND for j, _ in linkage.connections]
+        own += [t.carrier for t in linkage.teeth]
+        turn = np.stack([motion.angle(item) for item in own], axis=1)
+        names, bodies = zip(*linkage.forces, strict=True)
+        return Reactions(
+            case=case,
+            times=motion.times if timed else None,
+            connections=names,
+            bodies=bodies,
+            forces=on_pin,
+            moments=np.zeros_like(on_pin),
+            turn=turn,
+        )

@@ -1,0 +1,291 @@
+"""Extremes, means and work over the time of a motion, resolved between its samples."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.forces.corners import corners as kinks
+from loads.forces.inverse_dynamics import Dynamics
+from loads.forces.power_balance import ledger
+from loads.forces.reactions import Reactions
+from loads.motion.motion import Course, Motion
+from loads.motion.refine import Resolved, resolved
+from loads.motion.transmission_angles import transmission_angles
+from pinbase.arrays import Floats
+
+NOTHING = 1e-9  # of the largest force, by length and speed: a drive that gives less gives nothing
+ROUNDING = 1e-8  # of the largest: a mean below it is zero
+AGREES = (
+    1e-5  # of a maximum: closer than this to its limit, the value at the instant itself is reported
+)
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """A maximum or minimum over time, and its time, s."""
+
+    value: float
+    time: float
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Force (N) or torque (N m) of a drive over a time: the largest magnitude, the mean and the
+    root of the mean square; power: largest magnitude, W; stroke: between its extreme positions, m
+    or rad; work (T,) J done up to each sample.
+    """
+
+    largest: Extreme
+    mean: float
+    rms: float
+    power: Extreme
+    stroke: float
+    work: Floats
+
+
+@dataclass(frozen=True)
+class PeakForces:
+    """Of every connection its largest force (N) and moment (N m) over a time, and the force (3,)
+    then. unresolved: (J, 2) s, where they are not certain.
+    """
+
+    force: dict[str, Extreme]
+    moment: dict[str, Extreme]
+    vector: dict[str, Floats]
+    unresolved: Floats
+
+
+@dataclass(frozen=True)
+class OverTime:
+    """Results for a motion as a whole.
+
+    drives: in the linkage's order. transmission: smallest angle (rad) by link and joint.
+    condition: largest. violation: largest relative violation of the power balance at any solved
+    instant. corners: times at which something may jump, s.
+    """
+
+    peaks: PeakForces
+    drives: tuple[Effort, ...]
+    transmission: dict[tuple[str, str], Extreme]
+    condition: Extreme
+    violation: float
+    corners: Floats
+
+
+def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForces:
+    """The largest force and moment of every connection from the first to the last of the samples.
+
+    at: reactions at times (T,) s of the same motion, which jump nowhere.
+    """
+    first = at(samples)
+    forces = [(np.abs(first.forces).max() or 1.0), (np.abs(first.moments).max() or 1.0)]
+
+    def columns(times: Floats) -> Floats:
+        found = at(times)
+        parts = (found.forces / forces[0], found.moments / forces[1])
+        return np.concatenate([p.reshape(len(times), -1) for p in parts], axis=1)
+
+    count = len(first.connections)
+    groups = np.repeat(np.arange(2 * count), 3)
+    return _peaks(resolved(samples, columns, groups=groups.tolist()), at, forces)
+
+
+def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:
+    """From columns fx, fy, fz of every connection, then mx, my, mz, over their units; with one
+    unit there are no moments.
+    """
+    names = at(found.ends[:1]).connections
+    count = len(names)
+    width = 3 * count * len(unit)
+
+    def sizes(values: Floats) -> Floats:
+        return np.asarray(np.linalg.norm(values[:, :width].reshape(len(values), -1, 3), axis=2))
+
+    best, when = found.largest(sizes)
+    there = at(when)
+    both = zip((there.forces, there.moments), unit, strict=False)
+    vectors = np.concatenate([vector / size for vector, size in both], axis=1)
+    rows = np.arange(len(when))
+    exact = vectors[rows, rows]
+    limit = found.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
+    size = np.linalg.norm(exact, axis=1)
+    agrees = np.abs(size - best) <= AGREES * best
+    value = np.where(agrees, size, best) * np.repeat(unit, count)
+    vector = np.where(agrees[:, None], exact, limit) * unit[0]
+
+    def named(first: int) -> dict[str, Extreme]:
+        found = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
+        return {name: Extreme(*peak) for name, peak in zip(names, found, strict=False)}
+
+    nothing = dict.fromkeys(names, Extreme(0.0, float(found.ends[0])))
+    return PeakForces(
+        named(0),
+        named(count) if len(unit) > 1 else nothing,
+        dict(zip(names, vector, strict=False)),
+        found.unresolved,
+    )
+
+
+@dataclass(frozen=True)
+class _Dense:
+    """A motion at instants so dense that the polynomials `found` give the rest. forces (N), effort
+    and power (D,): what forces, drives' forces or torques and their powers are divided by.
+    """
+
+    found: Resolved
+    forces: float
+    effort: Floats
+    power: Floats
+    corners: Floats
+
+
+def require_possible(
+    course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics
+) -> None:
+    """Raises: as `solve`, also where it fails between the samples."""
+    solve(_dense(course, solve, samples).found.nodes)
+
+
+def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> OverTime:
+    """Extremes and means of a motion over the time of its samples.
+
+    solve: the dynamics at times (T,) s of that course. Raises: as `solve`, also where it fails
+    between the samples.
+    """
+    d = _dense(course, solve, samples)
+    peaks = _peaks(d.found, lambda times: solve(times).reactions, [d.forces])
+    between = solve(d.found.nodes)
+    angles, condition = _postures(course, between.motion.times)
+    positions = np.concatenate([samples.course[0], between.course[0]])
+    strokes = np.ptp(positions, axis=0)
+    return OverTime(
+        peaks,
+        _efforts(d, solve, samples.motion.times, strokes),
+        angles,
+        condition,
+        max(ledger(samples).violation, ledger(between).violation),
+        d.corners,
+    )
+
+
+def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> _Dense:
+    first = (samples, solve(course.path.nodes))
+    forces = max(float(np.abs(d.reactions.forces).max()) for d in first) or 1.0
+    scale = course.loops.linkage.length_scale
+    drive, power = (
+        np.max([np.abs(getattr(d, key)).max(axis=0) for d in first], axis=0)
+        for key in ("drive", "power")
+    )
+    effort = np.maximum(drive, NOTHING * forces * max(scale, 1.0))
+    power = np.maximum(power, NOTHING * forces * course.pace)
+    power = np.where(power > 0.0, power, 1.0)
+    connections, drives = len(samples.reactions.connections), len(effort)
+
+    def columns(found: Dynamics) -> Floats:
+        r = found.reactions
+        parts = (r.forces / forces, found.drive / effort, found.power / power)
+        return np.concatenate([p.reshape(len(found.motion), -1) for p in parts], axis=1)
+
+    groups = np.concatenate(
+        [np.repeat(np.arange(connections), 3), connections + np.arange(2 * drives)]
+    )
+    asked = np.concatenate([d.motion.times for d in first])
+    start, once = np.unique(asked, return_index=True)
+    known = np.concatenate([columns(d) for d in first])[once]
+    corners = np.concatenate(
+        [course.corners, _reversals(course, start), kinks(course, samples.applied, start)]
+    )
+    found = resolved(
+        start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
+    )
+    return _Dense(found, forces, effort, power, corners)
+
+
+def _efforts(
+    dense: _Dense, solve: Callable[[Floats], Dynamics], samples: Floats, strokes: Floats
+) -> tuple[Effort, ...]:
+    """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
+    found, effort, power = dense.found, dense.effort, dense.power
+    D = len(effort)
+    found = found.quantities(slice(-2 * D, None))
+
+    def efforts(values: Floats) -> Floats:
+        return values[:, :D] * effort
+
+    best, when = found.largest(lambda values: np.abs(efforts(values)))
+    exact = np.abs(np.diagonal(solve(when).drive))
+    best = np.where(np.abs(exact - best) <= AGREES * best, exact, best)
+    mean = found.mean(efforts)
+    mean = np.where(np.abs(mean) > ROUNDING * best, mean, 0.0)
+    rms = np.sqrt(found.mean(lambda values: efforts(values) ** 2))
+    work = found.integral(samples, lambda values: values[:, -D:] * power)
+    most, at = found.largest(lambda values: np.abs(values[:, -D:] * power))
+    return tuple(
+        Effort(
+            Extreme(float(best[k]), float(when[k])),
+            float(mean[k]),
+            float(rms[k]),
+            Extreme(float(most[k]), float(at[k])),
+            float(strokes[k]),
+            work[:, k],
+        )
+        for k in range(D)
+    )
+
+
+def _reversals(course: Course, samples: Floats) -> Floats:
+    """Times (s) at which a slider or pin with friction reverses: its friction jumps there."""
+    linkage = course.loops.linkage
+    first = course.loops.frames - 1
+    slides = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
+    rubbing = [(j, c) for j, c in linkage.connections if c.friction]
+    if not (slides or rubbing) or not course.pace:
+        return np.empty(0)
+
+    def speeds(times: Floats) -> Floats:
+        motion = course.at(times)
+        spins = [motion.turning(j, c)[:, None] * linkage.length_scale for j, c in rubbing]
+        return np.concatenate([motion.v[:, slides], *spins], axis=1) / course.pace
+
+    found = resolved(samples, speeds, course.corners)
+    low, high = found.times[:-1], found.times[1:]
+    out = []
+    for k in range(len(slides) + len(rubbing)):
+        v = found.values[:, k]
+        turns = np.flatnonzero(v[:-1] * v[1:] < 0.0)
+        a, b, sign = low[turns], high[turns], np.sign(v[turns])
+        for _ in range(60):
+            middle = 0.5 * (a + b)
+            same = np.sign(found.interpolate(middle)[:, k]) == sign
+            a, b = np.where(same, middle, a), np.where(same, b, middle)
+        out += [0.5 * (a + b), found.times[v == 0.0]]
+    return np.unique(np.concatenate(out))
+
+
+def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extreme], Extreme]:
+    """Smallest transmission angles, and the largest condition number, over times (T,) s that lie
+    as densely as the forces need.
+    """
+    dense = course.at(times)
+    keys = [k for k, v in transmission_angles(dense).items() if np.isfinite(v).any()]
+
+    def columns(motion: Motion) -> Floats:
+        """Squared sines, which have no kinks, and the reciprocal of the condition number."""
+        angles = transmission_angles(motion)
+        none = np.full(len(motion), 0.5 * np.pi)
+        sines = [np.sin(np.nan_to_num(angles.get(k, none), nan=0.5 * np.pi)) ** 2 for k in keys]
+        return np.stack([*sines, 1.0 / motion.condition], axis=1)
+
+    found = resolved(
+        times, lambda few: columns(course.at(few)), course.corners, known=columns(dense)
+    )
+    when = found.largest(np.negative)[1]
+    values = np.diagonal(columns(course.at(when)))
+    angles = {
+        key: Extreme(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))
+        for key, value, time in zip(keys, values, when, strict=False)
+    }
+    return angles, Extreme(float(1.0 / values[-1]), float(when[-1]))

@@ -1,0 +1,1 @@
+"""Bodies, joints and drives of a mechanism."""

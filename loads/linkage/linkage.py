@@ -1,0 +1,379 @@
+"""A planar linkage as data: rigid bodies, pins, sliders, drives, and how connections share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from pinbase.errors import Coded, Place
+
+Point = tuple[float, float]
+Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageError
+
+GROUND = "ground"
+
+
+class LinkageError(Coded, ValueError):
+    """The linkage as described cannot be analysed; the message says why and what would be right."""
+
+    several: tuple[LinkageError, ...] = ()
+
+    @classmethod
+    def all(cls, wrong: Sequence[LinkageError]) -> LinkageError:
+        """One error for everything that is wrong."""
+        error = LinkageError("; ".join(map(str, wrong)), wrong[0].code, wrong[0].at)
+        error.several = tuple(wrong)
+        return error
+
+    @property
+    def each(self) -> tuple[LinkageError, ...]:
+        """Everything that is wrong, one by one."""
+        return self.several or (self,)
+
+    @property
+    def codes(self) -> tuple[str, ...]:
+        """Their codes."""
+        return tuple(error.code for error in self.each)
+
+
+@dataclass(frozen=True)
+class Body:
+    """A rigid body in the drawn position.
+
+    mass: kg. centre: centre of mass in world axes, m. inertia: about the centre, kg m^2; a body
+    without inertia is a particle, with a single connection at `centre`, or slides on the ground.
+    """
+
+    name: str
+    mass: float
+    centre: Point
+    inertia: float | None = None
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A body that turns on a pin; `name` labels the force between them. friction: radius of the
+    friction circle, m: r mu / sqrt(1 + mu^2) of a pin of radius r.
+    """
+
+    name: str
+    body: str
+    friction: float = 0.0
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A pin and the bodies that turn on it.
+
+    at: world position as drawn, m. fixed_in: GROUND or the body of which the pin is a part; None
+    for a floating pin, which is then a particle of the given mass (kg).
+    """
+
+    name: str
+    at: Point
+    connections: tuple[Connection, ...]
+    fixed_in: str | None = None
+    mass: float = 0.0
+
+
+@dataclass(frozen=True)
+class Slider:
+    """A prismatic joint: `moving` slides on `base`, a body or GROUND.
+
+    start, end: a point of the base and one of the moving body, in world axes as drawn, m; the
+    slider's length is their distance along `direction` (by default from start to end), which turns
+    with the base. friction: Coulomb's coefficient. bearing: distance of the two pads, centred on
+    `end`, that carry the couple, m; None when the couple is carried without friction.
+    """
+
+    name: str
+    base: str
+    moving: str
+    start: Point
+    end: Point
+    direction: Point | None = None
+    friction: float = 0.0
+    bearing: float | None = None
+
+    @property
+    def axis(self) -> Point:
+        """Unit vector of the sliding direction, as drawn; zero when the points coincide."""
+        x, y = self.direction or (self.end[0] - self.start[0], self.end[1] - self.start[1])
+        size = float(np.hypot(x, y)) or 1.0
+        return x / size, y / size
+
+    @property
+    def drawn(self) -> float:
+        """Length as drawn, m."""
+        ex, ey = self.axis
+        return (self.end[0] - self.start[0]) * ex + (self.end[1] - self.start[1]) * ey
+
+
+@dataclass(frozen=True)
+class Turn:
+    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad.
+    carries: of a stop, the sign of the couples on the body that it can carry.
+    """
+
+    name: str
+    body: str
+    drawn: float
+    base: str = GROUND
+    carries: Literal["both", "positive", "negative"] = "both"
+
+
+@dataclass(frozen=True)
+class Gear:
+    """A body with teeth about the joint at which its carrier has it."""
+
+    body: str
+    joint: str
+
+
+@dataclass(frozen=True)
+class Rack:
+    """A body with teeth along the slider that guides it on its carrier, or its carrier on it."""
+
+    body: str
+    slider: str
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """Teeth of two bodies that meet at the pitch point, which is fixed in a third, the carrier.
+
+    at: pitch point as drawn, m. normal: unit vector there as drawn, out of the first body into the
+    second. pressure_angle: rad.
+    """
+
+    name: str
+    sides: tuple[Gear | Rack, Gear | Rack]
+    carrier: str
+    at: Point
+    normal: Point
+    pressure_angle: float
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The two that mesh."""
+        return self.sides[0].body, self.sides[1].body
+
+
+@dataclass(frozen=True)
+class Sharing:
+    """How redundant connections and teeth share their load: as springs of these stiffnesses (in any
+    unit).
+    """
+
+    connections: tuple[str, ...]
+    stiffness: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Parallel:
+    """Drives in parallel, one of which moves the others: how they divide the force, by areas under
+    the same pressure or by stiffness (in any unit).
+    """
+
+    members: tuple[str, ...]
+    shares: tuple[float, ...]
+    by: Literal["areas", "stiffness"]
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """Bodies, joints, sliders and turns in the position in which they are drawn.
+
+    driven: names of the sliders and turns that drives prescribe. gravity: acceleration of free
+    fall, world axes, m/s^2.
+    """
+
+    bodies: tuple[Body, ...]
+    joints: tuple[Joint, ...]
+    driven: tuple[str, ...]
+    sliders: tuple[Slider, ...] = ()
+    turns: tuple[Turn, ...] = ()
+    gravity: Point = (0.0, 0.0)
+    sharing: tuple[Sharing, ...] = ()
+    parallel: tuple[Parallel, ...] = ()
+    teeth: tuple[Teeth, ...] = ()
+
+    def __post_init__(self) -> None:
+        if wrong := [LinkageError(*each) for each in _contradictions(self)]:
+            raise LinkageError.all(wrong)
+
+    @cached_property
+    def connections(self) -> tuple[tuple[Joint, Connection], ...]:
+        """Every connection with its joint, in the order of the joints."""
+        return tuple((j, c) for j in self.joints for c in j.connections)
+
+    @cached_property
+    def forces(self) -> tuple[tuple[str, str], ...]:
+        """Names of all forces between bodies, of connections, then of teeth, with the body that
+        exerts each.
+        """
+        teeth = tuple((t.name, t.bodies[0]) for t in self.teeth)
+        return tuple((c.name, c.body) for _, c in self.connections) + teeth
+
+    @property
+    def rubs(self) -> bool:
+        """Whether anything has friction."""
+        return any(s.friction for s in self.sliders) or any(c.friction for _, c in self.connections)
+
+    @cached_property
+    def drives(self) -> tuple[Slider | Turn, ...]:
+        """What the drives prescribe, in the order of `driven`."""
+        known: dict[str, Slider | Turn] = {s.name: s for s in self.sliders}
+        known |= {t.name: t for t in self.turns}
+        return tuple(known[name] for name in self.driven)
+
+    @cached_property
+    def items(self) -> tuple[Body, ...]:
+        """All that moves: the bodies, then each floating pin as a particle."""
+        pins = (Body(_pin_item(j), j.mass, j.at) for j in self.joints if j.fixed_in is None)
+        return self.bodies + tuple(pins)
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """Number of each item; the ground comes after the last."""
+        rows = {item.name: i for i, item in enumerate(self.items)}
+        return rows | {GROUND: len(rows)}
+
+    def joint(self, name: str) -> Joint:
+        """The joint of this name."""
+        return next(j for j in self.joints if j.name == name)
+
+    def carrier(self, joint: Joint) -> str:
+        """The item of which the pin is a part: a body, the ground, or itself when it floats."""
+        return _pin_item(joint) if joint.fixed_in is None else joint.fixed_in
+
+    def joints_on(self, body: str) -> tuple[Joint, ...]:
+        """The joints at which a body (or the ground) turns or carries the pin."""
+        return tuple(
+            j
+            for j in self.joints
+            if j.fixed_in == body or any(c.body == body for c in j.connections)
+        )
+
+    @cached_property
+    def length_scale(self) -> float:
+        """A typical distance between joints, m: turns angles into lengths of like size."""
+        ends = [p for s in self.sliders for p in (s.start, s.end)]
+        at = np.array([j.at for j in self.joints] + ends)
+        return float(np.linalg.norm(at - at.mean(axis=0), axis=1).mean()) or 1.0
+
+
+def _pin_item(joint: Joint) -> str:
+    return f"pin {joint.name}"
+
+
+def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
+    if not linkage.joints:
+        yield "the linkage has no joints", "no-joints", ()
+    bodies = {b.name: b for b in linkage.bodies}
+    names = [c.name for j in linkage.joints for c in j.connections]
+    names += [t.name for t in linkage.teeth]
+    coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
+    for what, seen in (
+        ("body", [b.name for b in linkage.bodies]),
+        ("joint", [j.name for j in linkage.joints]),
+        ("connection or gear" if linkage.teeth else "connection", names),
+        ("slider or turn", coordinates),
+        ("drive", list(linkage.driven)),
+    ):
+        for name in sorted({n for n in seen if seen.count(n) > 1}):
+            yield f"{what} {name!r} is named twice; names must be unique", "duplicate-name", ()
+    if GROUND in bodies:
+        text = f"body {GROUND!r}: this name is reserved for the fixed frame; rename the body"
+        yield text, "reserved-name", ("body", GROUND)
+    yield from _of_joints(linkage, bodies)
+    yield from _of_sliders(linkage, bodies)
+    for teeth in linkage.teeth:
+        for gear in (side.body for side in teeth.sides if isinstance(side, Gear)):
+            if gear in bodies and bodies[gear].inertia is None:
+                text = f"body {gear}: a gear turns; give its inertia (0 is allowed)"
+                yield text, "missing-inertia", ("body", gear)
+    for name in linkage.driven:
+        if name not in coordinates:
+            text = f"drive {name!r}: there is no slider or turn of this name"
+            yield text, "unknown-drive", ("drive", name)
+    for share in linkage.sharing:
+        for name in share.connections:
+            if name not in names:
+                text = f"sharing: there is no connection, gear or rack {name!r}"
+                yield text, "unknown-connection", ("sharing",)
+    for rule in linkage.parallel:
+        yield from _of_parallel(linkage, rule, coordinates)
+    for body in linkage.bodies:
+        if body.inertia is None:
+            yield from _of_particle(linkage, body)
+
+
+def _of_parallel(linkage: Linkage, rule: Parallel, known: list[str]) -> Iterator[Contradiction]:
+    names, at = ", ".join(rule.members), ("sharing",)
+    for name in rule.members:
+        if name not in known:
+            yield f"sharing: there is no slider or turn {name!r}", "unknown-drive", at
+        if sum(name in other.members for other in linkage.parallel) > 1:
+            yield f"sharing: {name} is in two rules; keep one", "shared-twice", at
+    driven = [name for name in rule.members if name in linkage.driven]
+    if len(driven) != 1:
+        text = f"sharing over {names}: exactly one of them must be driven, not {len(driven)}"
+        yield f"{text}; the others follow it", "one-must-drive", at
+
+
+def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    for joint in linkage.joints:
+        at = ("joint", joint.name)
+        for c in joint.connections:
+            key, what = (*at, "connections", c.name), f"connection {c.name}"
+            if c.body not in (GROUND, *bodies):
+                yield f"{what}: there is no body {c.body!r}", "unknown-body", key
+            if c.body == joint.fixed_in:
+                text = f"pin {joint.name} is fixed in {c.body}, so {c.body} cannot also turn on it"
+                yield f"{what}: {text}", "fixed-and-turning", key
+        what = f"joint {joint.name}"
+        if joint.fixed_in not in (None, GROUND, *bodies):
+            text = f"{what}: there is no body {joint.fixed_in!r}"
+            yield text, "unknown-body", (*at, "fixed_in")
+        if joint.fixed_in is None and any(c.friction for c in joint.connections):
+            text = f"{what}: friction needs fixed_in, the body that carries the pin"
+            yield f"{text}; a floating pin may turn with either", "friction-floats", at
+        if joint.fixed_in is None and len(joint.connections) < 2:
+            text = f"{what}: a floating pin needs at least two connections"
+            yield text, "too-few-connections", at
+
+
+def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    pairs = [("slider", s.name, (s.base, s.moving)) for s in linkage.sliders]
+    pairs += [("drive", t.name, (t.base, t.body)) for t in linkage.turns]
+    for kind, name, pair in pairs:
+        for body in pair:
+            if body not in (GROUND, *bodies):
+                yield f"{kind} {name}: there is no body {body!r}", "unknown-body", (kind, name)
+        if pair[0] == pair[1]:
+            text = f"{kind} {name}: {pair[0]} cannot move relative to itself; name two bodies"
+            yield text, "same-body", (kind, name)
+    for slider in linkage.sliders:
+        if slider.axis == (0.0, 0.0):
+            text = "its two points coincide, so they define no direction; give direction = [x, y]"
+            yield f"slider {slider.name}: {text}", "no-direction", ("slider", slider.name)
+
+
+def _of_particle(linkage: Linkage, body: Body) -> Iterator[Contradiction]:
+    slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
+    if any(GROUND in (s.base, s.moving) for s in slides):
+        return
+    joined = [j for j in linkage.joints for c in j.connections if c.body == body.name]
+    carries = any(j.fixed_in == body.name for j in linkage.joints)
+    alone = len(joined) == 1 and not slides and not carries
+    if not alone or not np.allclose(joined[0].at, body.centre, atol=1e-9):
+        text = (
+            f"body {body.name}: a body without inertia is a particle, which must have exactly one "
+            "connection, at its centre; give its inertia, or place its centre at that joint"
+        )
+        yield text, "particle", ("body", body.name)

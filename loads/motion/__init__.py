@@ -1,0 +1,1 @@
+"""Positions, velocities, accelerations and mobility of a linkage."""

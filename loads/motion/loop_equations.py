@@ -1,0 +1,351 @@
+"""The loop equations of a planar linkage, assembled from its data, for all instants at once.
+
+Bodies hang on the ground in a tree of connections and sliders; every connection or slider beyond
+the tree closes a loop. Bodies that slide on each other turn together: they share one frame. With
+u = exp(i angle) of each frame and x = extension of each slider since the drawing, every point of
+the linkage is, in complex numbers, a sum of fixed vectors that turn with frames and slide along
+axes,
+
+    z = sum over frames of u A + sum over sliders of x u_f e B,
+
+so a loop equation is a vanishing sum of the same kind (the vector loop of the textbooks, e.g.
+Norton, Design of Machinery, ch. 4 and 6), and its derivatives are written down at once. The
+coordinates are the frames' angles and the sliders' extensions: a few per linkage, however many
+bodies and pins it has. Angles are scaled by a typical length, so that all columns are lengths.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from loads.linkage.gears import gap_weights, row
+from loads.linkage.linkage import Linkage, Point, Slider, Turn
+from loads.motion.least_squares import Factors, Step, elimination
+from loads.motion.spanning_tree import ROUNDING, ends_of, frames, shortest, spanning_tree
+from pinbase.arrays import Complex, Floats, Ints
+
+AT_ONCE = 2**20  # entries of the matrices of a batch of instants: 8 MB
+
+
+def number(point: Point) -> complex:
+    """A point or vector as a complex number."""
+    return complex(point[0], point[1])
+
+
+def pairs(z: Complex) -> Floats:
+    """Complex numbers (...) as x, y (..., 2)."""
+    return np.stack([z.real, z.imag], axis=-1)
+
+
+def cross(a: Complex, b: Complex) -> Floats:
+    """Moment of forces b at arms a."""
+    return np.asarray(a.real * b.imag - a.imag * b.real)
+
+
+@dataclass(frozen=True)
+class Points:
+    """N points (or closures) as sums: turning (F, N) complex, m; sliding (S, N), 0 or +-1."""
+
+    turning: Complex
+    sliding: Floats
+
+    def __sub__(self, other: Points) -> Points:
+        return Points(self.turning - other.turning, self.sliding - other.sliding)
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Coordinates at T instants. turn: (T, F) u of every frame, the ground's first. axis: (T, S)
+    directions of the sliders. extension: (T, S) m since the drawing.
+    """
+
+    turn: Complex
+    axis: Complex
+    extension: Floats
+
+    def __getitem__(self, chosen: slice | Ints) -> Pose:
+        return Pose(self.turn[chosen], self.axis[chosen], self.extension[chosen])
+
+
+class Loops:
+    """The loop and drive equations of one linkage.
+
+    Coordinates q (T, n): angles (rad) of the frames but the ground's, then extensions (m). Rows:
+    two per closure (x, then y, of all closures), one per pair of teeth, then one per drive. The
+    multiplier of a closure is the force of the pin on the body (of the base on the moving body) in
+    N; that of teeth the force on the first body along the pitch circle; that of a drive's row is
+    its force, or its torque over the length scale.
+    """
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage = linkage
+        self.frames, self.frame = frames(linkage)
+        self.tree, self.closing = spanning_tree(linkage)
+        self._root, self._slid = self._chains()
+        self.gaps = self._gaps()
+        self._combined = shortest(np.concatenate([self.gaps.turning[1:], self.gaps.sliding]))
+        self.drawn_drives = np.array([d.drawn for d in linkage.drives])
+        fixed = [row(self.linkage, self.frame, t) for t in linkage.teeth]
+        fixed += [self.along(d) for d in linkage.drives]
+        self._fixed_rows = np.array(fixed).reshape(-1, self.columns)
+
+    @property
+    def columns(self) -> int:
+        """Number of coordinates."""
+        return self.frames - 1 + len(self.linkage.sliders)
+
+    @property
+    def rows(self) -> int:
+        """Number of equations."""
+        return self.guides + len(self.linkage.driven)
+
+    @property
+    def guides(self) -> int:
+        """Number of equations but the drives'."""
+        return 2 * len(self.closing) + len(self.linkage.teeth)
+
+    def parts(self, count: int) -> list[slice]:
+        """Slices of so many instants that matrices of all instants of one take little memory."""
+        each = max(1, AT_ONCE // max(1, self.rows * self.columns))
+        return [slice(k, min(k + each, count)) for k in range(0, max(count, 1), each)]
+
+    @cached_property
+    def scale(self) -> Floats:
+        """(n,) length per unit of each coordinate: m for an angle, 1 for an extension."""
+        out = np.ones(self.columns)
+        out[: self.frames - 1] = self.linkage.length_scale
+        return out
+
+    @cached_property
+    def slider_frame(self) -> Ints:
+        """(S,) frame with which each slider turns."""
+        index = self.linkage.index
+        return np.array([self.frame[index[s.base]] for s in self.linkage.sliders], dtype=np.int64)
+
+    def along(self, drive: Slider | Turn) -> Floats:
+        """(n,) how a drive's value depends on the coordinates, angles times the length scale."""
+        row = np.zeros(self.columns)
+        if isinstance(drive, Slider):
+            row[self.frames - 1 + self.linkage.sliders.index(drive)] = 1.0
+            return row
+        for body, sign in ((drive.body, 1.0), (drive.base, -1.0)):
+            f = self.frame[self.linkage.index[body]]
+            if f:
+                row[f - 1] += sign
+        return row
+
+    def unit(self, drive: Slider | Turn) -> float:
+        """Length per unit of a drive: 1 for a slider, m per rad for a turn."""
+        return 1.0 if isinstance(drive, Slider) else self.linkage.length_scale
+
+    def drive_scale(self, k: int) -> float:
+        """Length per unit of drive k."""
+        return self.unit(self.linkage.drives[k])
+
+    def points(self, items: Ints, drawn: Complex) -> Points:
+        """Points of items at their drawn places (N,)."""
+        turning = self._root[:, items].copy()
+        turning[self.frame[items], np.arange(len(items))] += drawn
+        return Points(turning, self._slid[:, items])
+
+    @cached_property
+    def centres(self) -> Points:
+        """Centres of mass of all items."""
+        at = np.array([number(item.centre) for item in self.linkage.items])
+        return self.points(np.arange(len(at)), at)
+
+    # --- kinematics -------------------------------------------------------------------------------
+
+    def pose(self, q: Floats) -> Pose:
+        """The pose of coordinates (T, n)."""
+        angles = self.frames - 1
+        turn = np.ones((len(q), self.frames), dtype=complex)
+        np.exp(1j * q[:, :angles], out=turn[:, 1:])
+        drawn = np.array([number(s.axis) for s in self.linkage.sliders], dtype=complex)
+        return Pose(turn, turn[:, self.slider_frame] * drawn, q[:, angles:])
+
+    def place(self, pose: Pose, points: Points) -> Complex:
+        """Positions (T, N)."""
+        return np.asarray(
+            pose.turn @ points.turning + (pose.axis * pose.extension) @ points.sliding
+        )
+
+    def partials(self, pose: Pose, points: Points) -> Complex:
+        """Derivatives of the positions by the coordinates, (T, n, N)."""
+        angles = self.frames - 1
+        out = np.empty((len(pose.turn), self.columns, points.turning.shape[1]), dtype=complex)
+        out[:, :angles] = pose.turn[:, 1:, None] * (1j * points.turning[1:])
+        out[:, angles:] = pose.axis[:, :, None] * points.sliding
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                out[:, f - 1] += (1j * pose.extension[:, s, None]) * out[:, angles + s]
+        return out
+
+    def velocities(self, pose: Pose, rates: Floats, points: Points) -> Complex:
+        """Velocities (T, N) of points at rates (T, n): `partials` times the rates."""
+        angles = self.frames - 1
+        omega = np.zeros((len(rates), self.frames))
+        omega[:, 1:] = rates[:, :angles]
+        slide = rates[:, angles:] + 1j * omega[:, self.slider_frame] * pose.extension
+        turned = (1j * omega * pose.turn) @ points.turning
+        return np.asarray(turned + (pose.axis * slide) @ points.sliding)
+
+    def along_coordinates(self, pose: Pose, forces: Complex, points: Points) -> Floats:
+        """Forces along the coordinates (T, n) that do the work of forces (T, N) on points."""
+        turned = np.conj(1j * pose.turn) * (forces @ np.conj(points.turning).T)
+        slid = np.conj(pose.axis) * (forces @ points.sliding.T)
+        out = np.concatenate([turned.real[:, 1:], slid.real], axis=1)
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                out[:, f - 1] += pose.extension[:, s] * slid.imag[:, s]
+        return out
+
+    def bends(self, pose: Pose, rates: Floats, points: Points) -> Complex:
+        """The part of the accelerations that is quadratic in the rates, (T, N)."""
+        angles = self.frames - 1
+        omega = np.zeros((len(rates), self.frames))
+        omega[:, 1:] = rates[:, :angles]
+        spin = omega[:, self.slider_frame]
+        slide = pose.axis * (2j * spin * rates[:, angles:] - spin**2 * pose.extension)
+        return np.asarray(-(omega**2 * pose.turn) @ points.turning + slide @ points.sliding)
+
+    # --- the equations ----------------------------------------------------------------------------
+
+    def residual(self, q: Floats, pose: Pose, drives: Floats) -> Floats:
+        """Violation of every equation, (T, rows), m; drives (T, D) their values."""
+        gap = self.place(pose, self.closures)
+        lag = (q * self.scale) @ self._fixed_rows.T
+        for k in range(drives.shape[1]):
+            lag[:, len(self.linkage.teeth) + k] -= self.drive_scale(k) * (
+                drives[:, k] - self.drawn_drives[k]
+            )
+        return np.concatenate([gap.real, gap.imag, lag], axis=1)
+
+    def jacobian(self, pose: Pose) -> Floats:
+        """Derivative of the residual by the scaled coordinates, (T, rows, n), no unit."""
+        angles, count = self.frames - 1, len(self.closing)
+        J = np.zeros((self.rows, self.columns, len(pose.turn)))  # instants last: few are not zero
+
+        def add(rows: Ints, columns: Ints | int, slopes: Complex) -> None:
+            J[rows, columns] += slopes.real
+            J[count + rows, columns] += slopes.imag
+
+        turning, sliding = self.closures.turning[1:], self.closures.sliding
+        f, k = np.nonzero(turning)
+        add(k, f, (1j / self.scale[f] * turning[f, k])[:, None] * pose.turn.T[1 + f])
+        for s, frame in enumerate(self.slider_frame):
+            k = np.flatnonzero(sliding[s])
+            along = sliding[s, k, None] * pose.axis[:, s]
+            add(k, angles + s, along)
+            if frame:
+                add(k, frame - 1, 1j / self.scale[frame - 1] * pose.extension[:, s] * along)
+        J[2 * count :] = self._fixed_rows[:, :, None]
+        return np.moveaxis(J, -1, 0)
+
+    def factors(self, pose: Pose) -> Factors:
+        """Of the Jacobian at T instants."""
+        return Factors(self._elimination, self.jacobian(pose))
+
+    @cached_property
+    def _elimination(self) -> tuple[Step, ...]:
+        turns, slides = self.closures.turning[1:] != 0.0, self.closures.sliding != 0.0
+        for s, f in enumerate(self.slider_frame):
+            if f:
+                turns[f - 1] |= slides[s]
+        closing = np.concatenate([turns, slides]).T
+        pattern = np.concatenate([closing, closing, self._fixed_rows != 0.0])
+        return elimination(pattern)
+
+    def drive_side(self, values: Floats) -> Floats:
+        """Right-hand side (T, rows) that gives the drives these rates (T, D)."""
+        out = np.zeros((len(values), self.rows))
+        for k in range(values.shape[1]):
+            out[:, self.guides + k] = self.drive_scale(k) * values[:, k]
+        return out
+
+    def bend_side(self, pose: Pose, rates: Floats) -> Floats:
+        """(T, rows) what accelerations must make up for; nothing in the rows of teeth and drives,
+        which are linear in the coordinates.
+        """
+        bend = self.bends(pose, rates, self.closures)
+        nothing = np.zeros((len(rates), len(self._fixed_rows)))
+        return -np.concatenate([bend.real, bend.imag, nothing], axis=1)
+
+    # --- assembly ---------------------------------------------------------------------------------
+
+    def _chains(self) -> tuple[Complex, Floats]:
+        """Where each item's drawn origin is: turning (F, items + ground), sliding (S, ...)."""
+        linkage = self.linkage
+        count = len(linkage.index)
+        turning = np.zeros((self.frames, count), dtype=complex)
+        sliding = np.zeros((len(linkage.sliders), count))
+        # Edges come from the ground outwards, so each adds to what lies nearer to the ground.
+        for edge in self.tree:
+            ends = ends_of(linkage, edge.slides, edge.which)
+            outer, inner = ends if edge.forward else ends[::-1]
+            away = list(edge.away)
+            if edge.slides:
+                sliding[edge.which, away] += 1.0 if edge.forward else -1.0
+                continue
+            at = number(linkage.connections[edge.which][0].at)
+            turning[self.frame[inner], away] += at
+            turning[self.frame[outer], away] -= at
+        return turning, sliding
+
+    @cached_property
+    def closing_ends(self) -> tuple[Ints, Ints, Complex]:
+        """Of every closure, then of all teeth, the items on which its force acts (the body) and
+        reacts (the carrier), and its drawn place.
+        """
+        linkage, index = self.linkage, self.linkage.index
+        ends = [ends_of(linkage, *c) for c in self.closing]
+        ends += [(index[t.bodies[0]], index[t.bodies[1]]) for t in linkage.teeth]
+        sliders, connections = linkage.sliders, linkage.connections
+        at = [number(sliders[k].end if s else connections[k][0].at) for s, k in self.closing]
+        at += [number(t.at) for t in linkage.teeth]
+        acts, reacts = np.array(ends, dtype=np.int64).reshape(-1, 2).T
+        return acts, reacts, np.array(at, dtype=complex)
+
+    @cached_property
+    def closing_points(self) -> Points:
+        """Where the forces at closures and teeth act: a pitch point is fixed in its carrier."""
+        acts, _, at = self.closing_ends
+        carriers = [self.linkage.index[t.carrier] for t in self.linkage.teeth]
+        return self.points(np.array([*acts[: len(self.closing)], *carriers], dtype=np.int64), at)
+
+    def closing_forces(self, pose: Pose, f: Floats, spread: Floats | None = None) -> Complex:
+        """(T, closing and teeth) forces at the members that close loops and at teeth, from
+        multipliers (T, rows). spread: (T, teeth) N by which teeth push each other apart.
+        """
+        k = len(self.closing)
+        closing = (f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T
+        if not self.linkage.teeth:
+            return np.asarray(closing)
+        frames = [self.frame[self.linkage.index[t.carrier]] for t in self.linkage.teeth]
+        normal = pose.turn[:, frames] * np.array([number(t.normal) for t in self.linkage.teeth])
+        tooth = normal * (1j * f[:, 2 * k : self.guides] - (0.0 if spread is None else spread))
+        return np.concatenate([closing - tooth @ self._gap_weights, tooth], axis=1)
+
+    @cached_property
+    def _gap_weights(self) -> Floats:
+        return gap_weights(self.linkage, self.closing)
+
+    @cached_property
+    def closures(self) -> Points:
+        """The loops' equations: sums and differences of the gaps, with few nonzeros."""
+        turning, sliding = self.gaps.turning @ self._combined, self.gaps.sliding @ self._combined
+        turning[np.abs(turning) < ROUNDING * self.linkage.length_scale] = 0.0
+        return Points(turning, sliding)
+
+    def _gaps(self) -> Points:
+        """By how much each member that closes a loop leaves it open."""
+        body, carrier, at = self.closing_ends
+        own = slice(len(self.closing))
+        gap = self.points(body[own], at[own]) - self.points(carrier[own], at[own])
+        for k, (slides, which) in enumerate(self.closing):
+            if slides:
+                gap.sliding[which, k] -= 1.0
+        return gap

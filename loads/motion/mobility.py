@@ -1,0 +1,182 @@
+"""Rank of the loop equations: is every body constrained, which connections are redundant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.linkage.linkage import GROUND, Linkage, LinkageError
+from loads.motion.as_drawn import rank, singular_as_drawn
+from loads.motion.joint_forces import connection_members
+from loads.motion.loop_equations import Loops, Pose
+from pinbase.arrays import Floats
+
+TAKES_PART = 1e-6  # of the largest part in a null vector
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """Degrees of freedom and redundancy in the drawn position.
+
+    kutzbach: degrees of freedom by counting links and joints. degrees: by rank, without drives.
+    free: motions that remain with the drives locked (0 when the position is determined). loose:
+    bodies that move in them. redundant: number of redundant equations. shared: connections
+    whose force rigid-body statics does not determine.
+    """
+
+    kutzbach: int
+    degrees: int
+    free: int
+    loose: tuple[str, ...]
+    redundant: int
+    shared: tuple[str, ...]
+
+
+def mobility(linkage: Linkage) -> Mobility:
+    """Mobility and redundancy as drawn. Raises: LinkageError for bodies joined to nothing."""
+    loops = Loops(linkage)
+    pose = loops.pose(np.zeros((1, loops.columns)))
+    J = loops.jacobian(pose)[0]
+    left, singular, right = np.linalg.svd(J)
+    found = rank(singular)
+    guided = J[: loops.guides]
+    free = right[found:]
+    return Mobility(
+        kutzbach=kutzbach(linkage),
+        degrees=loops.columns - rank(np.linalg.svd(guided, compute_uv=False)),
+        free=len(free),
+        loose=moving_bodies(loops, pose, free / loops.scale),
+        redundant=len(J) - found,
+        shared=stressed_connections(loops, pose, left[:, found:]),
+    )
+
+
+def kutzbach(linkage: Linkage) -> int:
+    """Degrees of freedom by count: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
+
+    A pin on which k links meet counts k - 1 times; particles do not count.
+    """
+    links = {b.name for b in linkage.bodies if not is_particle(linkage, b.name)} | {GROUND}
+    pins = 0
+    for joint in linkage.joints:
+        meeting = {c.body for c in joint.connections} | {joint.fixed_in}
+        pins += max(len(meeting & links) - 1, 0)
+    return 3 * (len(links) - 1) - 2 * (pins + len(linkage.sliders)) - len(linkage.teeth)
+
+
+def is_particle(linkage: Linkage, name: str) -> bool:
+    """Whether a body hangs on its connection as a particle."""
+    body = next(b for b in linkage.bodies if b.name == name)
+    slides = any(name in (s.base, s.moving) for s in linkage.sliders)
+    return body.inertia is None and not slides
+
+
+def moving_bodies(
+    loops: Loops, pose: Pose, rates: Floats, least: float = TAKES_PART
+) -> tuple[str, ...]:
+    """Bodies that take part in motions given as rates (k, n) at one pose; `least`: how fast, of
+    the fastest.
+    """
+    if not len(rates):
+        return ()
+    linkage, angles = loops.linkage, loops.frames - 1
+    slopes = loops.partials(pose, loops.centres)[0]
+    speed = np.abs(rates @ slopes)[:, : len(linkage.bodies)]
+    for i, body in enumerate(linkage.bodies):
+        f = loops.frame[i]
+        if f and body.inertia is not None and f <= angles:
+            speed[:, i] += linkage.length_scale * np.abs(rates[:, f - 1])
+    largest = speed.max(axis=0)
+    return tuple(
+        b.name for b, v in zip(linkage.bodies, largest, strict=True) if v > least * largest.max()
+    )
+
+
+def stressed_connections(loops: Loops, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
+    """Connections and teeth that take part in self-equilibrated forces at one pose: multipliers
+    (rows, k).
+    """
+    closing = loops.closing_forces(pose, multipliers.T)
+    if not closing.size:
+        return ()
+    nothing = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
+    forces = connection_members(loops).forces(nothing, closing)
+    size = np.abs(np.hstack([forces, closing[:, len(loops.closing) :]])).max(axis=0)
+    names = [name for name, _ in loops.linkage.forces]
+    return tuple(n for n, f in zip(names, size, strict=True) if f > TAKES_PART * size.max())
+
+
+def require_determined(linkage: Linkage) -> Mobility:
+    """The mobility, provided that the drives determine every position.
+
+    Raises: LinkageError naming the bodies that can still move.
+    """
+    found = mobility(linkage)
+    if 0 < found.degrees < len(linkage.driven):
+        raise LinkageError(
+            f"{len(linkage.driven)} drives ({', '.join(linkage.driven)}) for {found.degrees} "
+            "degree(s) of freedom: remove one",
+            "too-many-drives",
+            ("drive",),
+        )
+    if found.free:
+        raise _unguided(linkage, found)
+    if wrong := list(_idle_sharing(linkage, found)):
+        raise LinkageError.all(wrong)
+    return found
+
+
+def _unguided(linkage: Linkage, found: Mobility) -> LinkageError:
+    """Why bodies can move with the drives locked: the position as drawn, or a missing part."""
+    loose = ", ".join(found.loose)
+    match singular_as_drawn(Loops(linkage)):
+        case "change point":
+            return LinkageError(
+                f"as drawn the linkage is at a change point, where {loose} can move in either of "
+                "two ways; draw it in another position, on the intended branch",
+                "change-point",
+            )
+        case "dead point":
+            return LinkageError(
+                f"as drawn the linkage is at a dead point, where {', '.join(linkage.driven)} "
+                f"cannot move it and {loose} can move with the drive locked; draw it in another "
+                "position, on the intended side of the dead point, or drive another body",
+                "dead-point",
+            )
+    return LinkageError(
+        f"with the drives locked the linkage still has {found.free} degree(s) of freedom: {loose} "
+        "can move; add the missing connection or drive",
+        "underconstrained",
+    )
+
+
+def _idle_sharing(linkage: Linkage, found: Mobility) -> Iterator[LinkageError]:
+    """Errors of sharing rules none of whose connections is statically indeterminate."""
+    for share in linkage.sharing:
+        if set(share.connections) & set(found.shared):
+            continue
+        right = f"name some of {', '.join(found.shared)} instead" if found.shared else "remove it"
+        yield LinkageError(
+            f"sharing over {', '.join(share.connections)} has no effect: rigid-body statics "
+            f"determines the forces there; {right}{_undriven(linkage, share.connections)}",
+            "sharing-idle",
+            ("sharing",),
+        )
+
+
+def _undriven(linkage: Linkage, idle: tuple[str, ...]) -> str:
+    """Advice for cylinders that should share the load when only one of them is driven."""
+    bodies = {c.body for _, c in linkage.connections if c.name in idle}
+    free = [
+        s.name
+        for s in linkage.sliders
+        if s.name not in linkage.driven and bodies & {s.base, s.moving}
+    ]
+    if not free:
+        return ""
+    return (
+        f". Slider {', '.join(free)} has no drive and so carries no axial force to share; describe "
+        "how parallel cylinders share their force by parallel = [...] instead of connections"
+    )

@@ -1,0 +1,253 @@
+"""Motion of a linkage: exact positions, velocities, accelerations and energies at every instant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from loads.linkage.drives import Law, StateDrive
+from loads.linkage.linkage import Connection, Joint, Linkage, LinkageError, Point, Slider, Turn
+from loads.motion.as_drawn import RANK_TOLERANCE
+from loads.motion.least_squares import Factors
+from loads.motion.loop_equations import Loops, Points, Pose, number, pairs
+from loads.motion.mobility import Mobility, require_determined
+from loads.motion.positions import Path
+from loads.motion.singular_positions import impasse
+from pinbase.arrays import Complex, Floats
+
+GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
+STANDS = 1e-9  # of the fastest coordinate of the course: a point this slow has no direction
+DENSE = 30  # coordinates up to which condition numbers come from singular values
+SAME = 1e-12  # of the whole time: this close to a corner is at it
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Coordinates of a linkage and their rates, (T, n), in rad and m.
+
+    times: (T,) s. drives, speeds, rates: (T, D) values of the drives (m or rad) and their rates.
+    pace: largest rate of all coordinates along the whole course, m/s (of angles times the
+    length scale).
+    """
+
+    loops: Loops
+    found: Mobility
+    times: Floats
+    drives: Floats
+    speeds: Floats
+    rates: Floats
+    q: Floats
+    v: Floats
+    a: Floats
+    pace: float
+
+    def __len__(self) -> int:
+        return len(self.times)
+
+    def __getitem__(self, part: slice) -> Motion:
+        """The same at some of its instants."""
+        arrays = ("times", "drives", "speeds", "rates", "q", "v", "a")
+        return replace(self, **{key: getattr(self, key)[part] for key in arrays})
+
+    @property
+    def parts(self) -> Iterator[Motion]:
+        """The same in batches of instants that take little memory."""
+        slices = self.loops.parts(len(self))
+        return (self[part] if len(slices) > 1 else self for part in slices)
+
+    @cached_property
+    def factors(self) -> Factors:
+        """Of the derivatives of the equations, at all instants: for one batch at a time."""
+        return self.loops.factors(self.pose)
+
+    def solve(self, side: Floats) -> Floats:
+        """Rates (T, n) of the coordinates that give the equations these rates (T, rows)."""
+        slices = self.loops.parts(len(self))
+        found = [m.factors.solve(side[k]) for m, k in zip(self.parts, slices, strict=True)]
+        return np.concatenate(found) / self.loops.scale
+
+    @property
+    def linkage(self) -> Linkage:
+        """The linkage that moves."""
+        return self.loops.linkage
+
+    @cached_property
+    def pose(self) -> Pose:
+        """Where everything is."""
+        return self.loops.pose(self.q)
+
+    def follow(self, points: Points) -> tuple[Complex, Complex, Complex]:
+        """Positions, velocities, accelerations (T, N) of points."""
+        loops, pose = self.loops, self.pose
+        return (
+            loops.place(pose, points),
+            loops.velocities(pose, self.v, points),
+            loops.velocities(pose, self.a, points) + loops.bends(pose, self.v, points),
+        )
+
+    @cached_property
+    def centres(self) -> tuple[Complex, Complex, Complex]:
+        """Position, velocity, acceleration (T, items) of the centres of mass."""
+        return self.follow(self.loops.centres)
+
+    def point(self, item: str, drawn: Point) -> tuple[Floats, Floats, Floats]:
+        """Position, velocity, acceleration (T, 2) of the item's point at `drawn` (m, as drawn)."""
+        number_of = np.array([self.linkage.index[item]])
+        found = self.follow(self.loops.points(number_of, np.array([number(drawn)])))
+        return tuple(pairs(z[:, 0]) for z in found)  # type: ignore[return-value]
+
+    def curvature(self, item: str, drawn: Point) -> Floats:
+        """(T,) 1/m of the path of an item's point, positive to the left; NaN where it stands."""
+        _, v, a = self.point(item, drawn)
+        speed = np.linalg.norm(v, axis=1)
+        speed = np.where(speed > STANDS * self.pace, speed, np.nan)
+        return np.asarray((v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]) / speed**3)
+
+    def joint(self, name: str) -> tuple[Floats, Floats, Floats]:
+        """Position, velocity, acceleration (T, 2) of the pin of joint `name`."""
+        joint = self.linkage.joint(name)
+        return self.point(self.linkage.carrier(joint), joint.at)
+
+    def coordinate(self, of: Slider | Turn) -> tuple[Floats, Floats, Floats]:
+        """Length (m) of a slider or angle (rad) of a turn, with its rates, (T,) each."""
+        row = self.loops.along(of) * self.loops.scale / self.loops.unit(of)
+        return of.drawn + self.q @ row, self.v @ row, self.a @ row
+
+    def turning(self, joint: Joint, connection: Connection) -> Floats:
+        """(T,) rad/s of the body at a connection against what carries its pin."""
+        carrier = self.linkage.carrier(joint)
+        return self.angular_velocity(connection.body) - self.angular_velocity(carrier)
+
+    def _angular(self, coordinates: Floats, item: str) -> Floats:
+        f = self.loops.frame[self.linkage.index[item]]
+        return coordinates[:, f - 1] if f else np.zeros(len(coordinates))
+
+    def angle(self, item: str) -> Floats:
+        """Rotation of an item from the drawn position, (T,), rad."""
+        return self._angular(self.q, item)
+
+    def angular_velocity(self, item: str) -> Floats:
+        """(T,) rad/s."""
+        return self._angular(self.v, item)
+
+    def angular_acceleration(self, item: str) -> Floats:
+        """(T,) rad/s^2."""
+        return self._angular(self.a, item)
+
+    @cached_property
+    def masses(self) -> Floats:
+        """(items,) kg."""
+        return np.array([item.mass for item in self.linkage.items])
+
+    @cached_property
+    def inertias(self) -> Floats:
+        """(items,) kg m^2, 0 for a particle."""
+        return np.array([item.inertia or 0.0 for item in self.linkage.items])
+
+    @cached_property
+    def spin(self) -> Floats:
+        """Angular velocities (T, items) rad/s."""
+        return np.stack([self.angular_velocity(i.name) for i in self.linkage.items], axis=1)
+
+    @cached_property
+    def spin_rate(self) -> Floats:
+        """Angular accelerations (T, items) rad/s^2."""
+        return np.stack([self.angular_acceleration(i.name) for i in self.linkage.items], axis=1)
+
+    @cached_property
+    def condition(self) -> Floats:
+        """(T,) condition number of the loop and drive equations."""
+        return np.concatenate([_condition(part) for part in self.parts])
+
+
+def _condition(part: Motion) -> Floats:
+    """Of small systems by singular values, which of large ones take longer than the motion."""
+    found = np.full(len(part), np.nan)
+    if part.loops.columns > DENSE:
+        found = part.loops.factors(part.pose).condition()
+    unknown = np.flatnonzero(np.isnan(found))
+    found[unknown] = np.linalg.cond(part.loops.jacobian(part.pose[unknown]))
+    return found
+
+
+class Course:
+    """The motion of a linkage under one law per drive, from a first to a last time (s).
+
+    Its path is followed once; every instant between belongs to it, whatever others are requested.
+    Velocities and accelerations follow from the differentiated loop equations, not from
+    differences.
+
+    Raises: LinkageError when the linkage is not determined or cannot follow (Impasse).
+    """
+
+    def __init__(self, linkage: Linkage, laws: Sequence[Law], first: float, last: float) -> None:
+        if len(laws) != len(linkage.driven):
+            raise LinkageError(
+                f"{len(linkage.driven)} drives need as many laws, not {len(laws)}", "laws-mismatch"
+            )
+        self.found = require_determined(linkage)
+        self.loops, self.laws = Loops(linkage), tuple(laws)
+        self.first, self.last = first, last
+        self.corners = self._inside(t for law in laws for t in law.corners)
+        grid = [*np.linspace(first, last, GRID), *self._inside(t for x in laws for t in x.pieces)]
+        self.path = Path(self.loops, self._drives, np.unique(grid))
+        self.pace = 0.0
+        self.pace = float(np.abs(self.at(self.path.nodes).v * self.loops.scale).max(initial=0.0))
+
+    def _inside(self, times: Iterable[float]) -> Floats:
+        """Those of the times (s) inside the course, rising."""
+        return np.unique([t for t in times if self.first < t < self.last])
+
+    def _drives(self, times: Floats) -> Floats:
+        """Values of the drives, (T, D)."""
+        return self._values(times)[0]
+
+    def _values(self, times: Floats) -> tuple[Floats, Floats, Floats]:
+        """Values of the drives and their rates, (T, D) each. Where one drive may end and another
+        begin, they are those just before.
+        """
+        if len(self.laws) > 1 and len(self.corners):
+            same = SAME * (self.last - self.first)
+            k = np.clip(np.searchsorted(self.corners, times - same), 0, len(self.corners) - 1)
+            times = np.where(np.abs(times - self.corners[k]) <= same, times - 3.0 * same, times)
+        course = [law(times) for law in self.laws]
+        values, speeds, rates = (np.stack([c[k] for c in course], axis=1) for k in range(3))
+        return values, speeds, rates
+
+    def at(self, times: Floats) -> Motion:
+        """The motion at times (T,) s, in any order. Raises: Impasse."""
+        loops = self.loops
+        drives, speeds, rates = self._values(times)
+        q = self.path.at(times)
+        v, a, weakest = np.empty_like(q), np.empty_like(q), np.empty(len(q))
+        for part in loops.parts(len(q)):
+            pose = loops.pose(q[part])
+            factors = loops.factors(pose)
+            weakest[part] = factors.weakest
+            if weakest[part].min(initial=1.0) < RANK_TOLERANCE:
+                continue
+            v[part] = factors.solve(loops.drive_side(speeds[part])) / loops.scale
+            side = loops.drive_side(rates[part]) + loops.bend_side(pose, v[part])
+            a[part] = factors.solve(side) / loops.scale
+        weak = int(weakest.argmin())
+        if weakest[weak] < RANK_TOLERANCE:
+            raise impasse(loops, q[weak], drives[weak], drives[int(times.argmax())])
+        return Motion(loops, self.found, times, drives, speeds, rates, q, v, a, self.pace)
+
+
+def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
+    """The motion under one law per drive at `times` (T,) s, followed from the first of them.
+
+    Raises: LinkageError when the linkage is not determined or cannot follow (Impasse).
+    """
+    return Course(linkage, laws, float(times.min()), float(times.max())).at(times)
+
+
+def at_rest(linkage: Linkage, drives: Sequence[float]) -> Motion:
+    """The linkage at rest with its drives at these values (m or rad): one instant without
+    motion.
+    """
+    return move(linkage, [StateDrive(value) for value in drives], np.zeros(1))

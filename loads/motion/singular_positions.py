@@ -1,0 +1,129 @@
+"""Positions in which a linkage cannot follow its drives: dead points, change points, open loops.
+
+In such a position the loop equations lose rank. The right null vector shows which bodies can still
+move while the drives are locked; the left one, which forces are unbounded, and whether the drive
+takes part distinguishes a dead point, past which the drive cannot go, from a change point, where
+two branches cross.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from loads.linkage.linkage import Linkage, LinkageError, Slider
+from loads.motion.loop_equations import Loops
+from loads.motion.mobility import moving_bodies, stressed_connections
+from pinbase.arrays import Floats
+
+Kind = Literal["dead point", "change point", "open"]
+CODES: dict[Kind, str] = {
+    "dead point": "dead-point",
+    "change point": "change-point",
+    "open": "does-not-close",
+}
+SNAPS = 1e-2  # of the fastest: a body this slow near a dead point is still at it
+MOST_NAMES = 6  # in a message
+Show = Callable[[float, bool], str]
+
+
+def in_si(value: float, slides: bool) -> str:
+    """A drive's value as text, SI."""
+    return f"{value:.6g} m" if slides else f"{np.degrees(value):.6g} deg"
+
+
+def _some(names: tuple[str, ...]) -> str:
+    """The names, or the first of many."""
+    if len(names) <= MOST_NAMES:
+        return ", ".join(names)
+    return f"{', '.join(names[: MOST_NAMES - 1])} and {len(names) - MOST_NAMES + 1} more"
+
+
+class Impasse(LinkageError):
+    """The linkage cannot follow its drives.
+
+    kind: what prevents it. reached, wanted: (D,) values of the drives, m or rad. bodies: those
+    that can move there with the drives locked. connections: those whose forces have no bound there
+    (or, for loops that stay open, those that do not meet).
+    """
+
+    def __init__(
+        self,
+        linkage: Linkage,
+        kind: Kind,
+        reached: Floats,
+        wanted: Floats,
+        bodies: tuple[str, ...],
+        connections: tuple[str, ...],
+    ) -> None:
+        self.linkage, self.kind = linkage, kind
+        self.reached, self.wanted = reached, wanted
+        self.bodies, self.connections = bodies, connections
+        super().__init__(self.message(), CODES[kind])
+
+    def message(self, show: Show = in_si) -> str:
+        """What is wrong and what to do; `show` formats a drive's value."""
+        slides = [isinstance(d, Slider) for d in self.linkage.drives]
+
+        def at(values: Floats) -> str:
+            named = zip(self.linkage.driven, values, slides, strict=True)
+            return ", ".join(f"{name} = {show(float(v), s)}" for name, v, s in named)
+
+        bodies, connections = _some(self.bodies), _some(self.connections)
+        if self.kind == "open":
+            toothed = bool(self.linkage.teeth)
+            return (
+                f"the linkage does not close beyond {at(self.reached)} (requested: "
+                f"{at(self.wanted)}): {connections} do not meet, because the lengths of its "
+                f"redundant links{' or the ratios of its gears' * toothed} are inconsistent; check "
+                f"the coordinates of the joints{' and the gears' * toothed}"
+            )
+        unbounded = f"the forces at {connections} are unbounded"
+        if self.kind == "change point":
+            return (
+                f"change point at {at(self.reached)}: there {bodies} can move either way with the "
+                f"drive locked, and {unbounded}; keep the drive on one side of it, or add the link "
+                "that guides them"
+            )
+        return (
+            f"dead point at {at(self.reached)} (requested: {at(self.wanted)}; as drawn: "
+            f"{at(np.array([d.drawn for d in self.linkage.drives]))}): the linkage cannot be "
+            f"driven further, {bodies} would snap through, and {unbounded}; stop the drive before "
+            "it, drive another body, or check the coordinates of the joints"
+        )
+
+
+def impasse(
+    loops: Loops, q: Floats, reached: Floats, wanted: Floats, opened: Floats | None = None
+) -> Impasse:
+    """What prevents the motion near coordinates q (n,). opened: coordinates with open loops."""
+    if opened is not None:
+        pose = loops.pose(opened[None])
+        lag = loops.residual(opened[None], pose, reached[None])[0, 2 * len(loops.closing) :]
+        teeth = loops.linkage.teeth
+        gap = np.abs([*loops.place(pose, loops.gaps)[0], *lag[: len(teeth)]])
+        members = [
+            loops.linkage.sliders[k].name if slides else loops.linkage.connections[k][1].name
+            for slides, k in loops.closing
+        ]
+        members += [t.name for t in teeth]
+        names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
+        return Impasse(loops.linkage, "open", reached, wanted, (), names)
+    pose = loops.pose(q[None])
+    left, _, right = np.linalg.svd(loops.jacobian(pose)[0])
+    last = loops.columns - 1
+    force, motion = left[:, last], right[last]
+    drives = len(loops.linkage.driven)
+    # At a dead point the drive force is unbounded too; at a change point it is not.
+    blocked = float(np.abs(force[len(force) - drives :]).max()) > 1e-3
+    kind: Kind = "dead point" if blocked else "change point"
+    return Impasse(
+        loops.linkage,
+        kind,
+        reached,
+        wanted,
+        moving_bodies(loops, pose, motion[None] / loops.scale, SNAPS),
+        stressed_connections(loops, pose, force[:, None]),
+    )

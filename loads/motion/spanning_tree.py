@@ -1,0 +1,140 @@
+"""The tree of connections and sliders by which bodies hang on the ground, and the loops that the
+others close.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loads.linkage.linkage import GROUND, Linkage, LinkageError
+from pinbase.arrays import Complex, Floats, Ints
+
+ROUNDING = 1e-14  # of a length: what is left where equal lengths cancel
+
+
+@dataclass(frozen=True)
+class LoopEdge:
+    """A member of the tree: connection or slider number `which`; `away`: the items on the side
+    away from the ground. forward: whether the connection's body (the slider's moving body) is
+    among them.
+    """
+
+    slides: bool
+    which: int
+    away: frozenset[int]
+    forward: bool
+
+
+def ends_of(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
+    """The items that a slider or connection joins: its (moving) body, and what carries that."""
+    if slides:
+        s = linkage.sliders[which]
+        return linkage.index[s.moving], linkage.index[s.base]
+    joint, c = linkage.connections[which]
+    return linkage.index[c.body], linkage.index[linkage.carrier(joint)]
+
+
+def frames(linkage: Linkage) -> tuple[int, Ints]:
+    """Number of frames, and the frame of every item: 0 is the ground's.
+
+    Pins and particles have no angle; the ground's frame serves, their chains do not depend on it.
+    """
+    index = linkage.index
+    joined = _Sets(len(index))
+    for s in linkage.sliders:
+        joined.join(index[s.base], index[s.moving])
+    ground = joined.of(index[GROUND])
+    frame = np.zeros(len(index), dtype=np.int64)
+    numbers: dict[int, int] = {ground: 0}
+    for i, item in enumerate(linkage.items):
+        if item.inertia is not None or joined.of(i) == ground:
+            frame[i] = numbers.setdefault(joined.of(i), len(numbers))
+    for i in range(len(linkage.items)):
+        frame[i] = numbers.get(joined.of(i), 0)
+    return len(numbers), frame
+
+
+def shortest(gaps: Complex) -> Floats:
+    """(K, K) whole numbers by which gaps (n, K) combine to ones with as few nonzeros as sums and
+    differences of two at a time can make: two loops along the same bodies leave the rest.
+    """
+    count = gaps.shape[1]
+    combined, gaps = np.eye(count), gaps.copy()
+    size = np.abs(gaps).max(initial=0.0)
+    better = True
+    while better:
+        better = False
+        for k in np.argsort(-(gaps != 0.0).sum(axis=0), kind="stable"):
+            for sign in (1.0, -1.0):
+                new = gaps[:, k, None] - sign * gaps
+                new[np.abs(new) < ROUNDING * size] = 0.0
+                entries = (new != 0.0).sum(axis=0)
+                entries[k] = len(gaps) + 1
+                j = int(entries.argmin())
+                if entries[j] < (gaps[:, k] != 0.0).sum():
+                    gaps[:, k] = new[:, j]
+                    combined[:, k] -= sign * combined[:, j]
+                    better = True
+    return combined
+
+
+class _Sets:
+    """Disjoint sets of items."""
+
+    def __init__(self, count: int) -> None:
+        self._parent = list(range(count))
+
+    def of(self, i: int) -> int:
+        while self._parent[i] != i:
+            i = self._parent[i]
+        return i
+
+    def join(self, i: int, j: int) -> bool:
+        """Whether they were apart before."""
+        a, b = self.of(i), self.of(j)
+        self._parent[a] = b
+        return a != b
+
+
+def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int], ...]]:
+    """Edges of a spanning tree, from the ground outwards, and the (slides, which) that close loops.
+
+    Sliders come first: bodies of one frame then hang together, and no loop turns against itself.
+
+    Raises: LinkageError for bodies that nothing joins to the ground.
+    """
+    index = linkage.index
+    members = [(True, k, *ends_of(linkage, True, k)) for k in range(len(linkage.sliders))]
+    members += [(False, k, *ends_of(linkage, False, k)) for k in range(len(linkage.connections))]
+    joined = _Sets(len(index))
+    inside = [m for m in members if joined.join(m[2], m[3])]
+    closing = tuple((m[0], m[1]) for m in members if m not in inside)
+    ground = index[GROUND]
+    adrift = [
+        item.name for i, item in enumerate(linkage.items) if joined.of(i) != joined.of(ground)
+    ]
+    if adrift:
+        raise LinkageError(
+            f"no connection or slider joins {', '.join(adrift)} to the ground; add one",
+            "not-joined",
+        )
+    neighbours: dict[int, list[tuple[tuple[bool, int, int, int], int]]] = {}
+    for m in inside:
+        neighbours.setdefault(m[2], []).append((m, m[3]))
+        neighbours.setdefault(m[3], []).append((m, m[2]))
+    order: list[tuple[tuple[bool, int, int, int], int, int]] = []
+    seen, queue = {ground}, [ground]
+    for inner in queue:
+        for m, outer in neighbours.get(inner, ()):
+            if outer not in seen:
+                seen.add(outer)
+                queue.append(outer)
+                order.append((m, inner, outer))
+    away: dict[int, set[int]] = {outer: {outer} for _, _, outer in order}
+    for _, inner, outer in reversed(order):
+        if inner != ground:
+            away[inner] |= away[outer]
+    edges = tuple(LoopEdge(m[0], m[1], frozenset(away[o]), m[2] == o) for m, _, o in order)
+    return edges, closing

@@ -1,0 +1,134 @@
+"""Transmission angles: how effectively a link drives the joint that it moves.
+
+The force of a two-joint link acts along it. The angle is 90 degrees minus that between the link and
+the way its far joint goes: 90 is best, at 0 the link cannot move the joint (a dead point). For a
+four-bar it is the textbooks' angle between coupler and follower (Alt, 1932).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loads.linkage.linkage import GROUND, Body, Joint, Linkage, Slider
+from loads.motion.mobility import is_particle
+from loads.motion.motion import Motion
+from pinbase.arrays import Floats
+
+STANDS = 1e-9  # of the fastest body: what moves less does not
+
+
+def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
+    """(T,) rad by link and joint, for links with two joints, neither at a body that stands still.
+
+    Drives are taken one at a time, the others locked: bodies that only they move stand still, too.
+    The way of a joint does not depend on the speed, so a rest is no exception. Where several drives
+    move a link, the smallest angle.
+    """
+    linkage, loops = motion.linkage, motion.loops
+    out: dict[tuple[str, str], Floats] = {}
+    for k, drive in enumerate(linkage.drives):
+        unit = np.zeros_like(motion.speeds)
+        unit[:, k] = 1.0
+        rates = motion.solve(loops.drive_side(unit))
+        still = _standing(motion, rates)
+        drivers = (drive.base, drive.moving if isinstance(drive, Slider) else drive.body)
+        for body, ends in _links(motion, rates, still).items():
+            angles = _angles(motion, rates, body, ends)
+            for joint, angle in zip(ends, angles, strict=True):
+                if _moved_by(linkage, body, joint, still, drivers):
+                    key = (body, joint.name)
+                    out[key] = np.minimum(out[key], angle) if key in out else angle
+    return out
+
+
+def _standing(motion: Motion, rates: Floats) -> set[str]:
+    """The ground, and the bodies that do not move at these rates (T, n)."""
+    linkage, loops = motion.linkage, motion.loops
+    speed = np.abs(loops.velocities(motion.pose, rates, loops.centres)).max(axis=0)
+    for i in range(len(linkage.bodies)):
+        if f := loops.frame[i]:
+            speed[i] += linkage.length_scale * np.abs(rates[:, f - 1]).max()
+    least = STANDS * speed.max(initial=0.0)
+    return {GROUND} | {b.name for b, v in zip(linkage.bodies, speed, strict=False) if v <= least}
+
+
+def _angles(
+    motion: Motion, rates: Floats, body: str, ends: tuple[Joint, Joint]
+) -> tuple[Floats, ...]:
+    """(T,) of a link at both ends."""
+    loops = motion.loops
+    index = np.array([motion.linkage.index[body]] * 2)
+    points = loops.points(index, np.array([complex(*j.at) for j in ends]))
+    place = loops.place(motion.pose, points)
+    way = loops.velocities(motion.pose, rates, points)
+    line = (place[:, 1] - place[:, 0])[:, None]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sine = np.abs(np.real(np.conj(line) * way)) / (np.abs(line) * np.abs(way))
+    return tuple(np.arcsin(np.minimum(sine, 1.0)).T)
+
+
+def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Joint, Joint]]:
+    """Moving bodies with exactly two joints, at none of which anything stands still and at both of
+    which they turn, that slide on nothing.
+    """
+    linkage, out = motion.linkage, {}
+    for body in linkage.bodies:
+        joints = linkage.joints_on(body.name)
+        slides = any(body.name in (s.base, s.moving) for s in linkage.sliders)
+        if body.name in still or len(joints) != 2 or slides:
+            continue
+        if all(not set(_bodies(j)) & still and _turns_at(motion, rates, body, j) for j in joints):
+            out[body.name] = (joints[0], joints[1])
+    return out
+
+
+def _turns_at(motion: Motion, rates: Floats, link: Body, joint: Joint) -> bool:
+    """Whether the link turns against another body there; else they move as one."""
+    linkage = motion.linkage
+    spins = [
+        _spin(motion, rates, b.name)
+        for b in linkage.bodies
+        if b.name in _bodies(joint) and b != link and not is_particle(linkage, b.name)
+    ]
+    mine = _spin(motion, rates, link.name)
+    least = STANDS * np.abs(rates * motion.loops.scale).max() / linkage.length_scale
+    return any(float(np.abs(spin - mine).max()) > least for spin in spins)
+
+
+def _spin(motion: Motion, rates: Floats, body: str) -> Floats:
+    f = motion.loops.frame[motion.linkage.index[body]]
+    return rates[:, f - 1] if f else np.zeros(len(rates))
+
+
+def _moved_by(
+    linkage: Linkage, link: str, end: Joint, still: set[str], drivers: tuple[str, str]
+) -> bool:
+    """Whether the link moves what is at this end: the drive does not reach it another way, or
+    reaches both ends.
+    """
+    other = next(j for j in linkage.joints_on(link) if j != end)
+    blocked = still | {link}
+    return not _reached(linkage, end, blocked, drivers) or _reached(
+        linkage, other, blocked, drivers
+    )
+
+
+def _reached(linkage: Linkage, end: Joint, blocked: set[str], drivers: tuple[str, str]) -> bool:
+    """Whether the drive reaches a joint without passing through blocked bodies."""
+    seen, queue = set[str](), _bodies(end)
+    while queue:
+        body = queue.pop()
+        if body in blocked or body in seen:
+            continue
+        if body in drivers:
+            return True
+        seen.add(body)
+        for joint in linkage.joints_on(body):
+            queue += _bodies(joint)
+        pairs = [(s.base, s.moving) for s in linkage.sliders] + [t.bodies for t in linkage.teeth]
+        queue += [other for pair in pairs if body in pair for other in pair]
+    return False
+
+
+def _bodies(joint: Joint) -> list[str]:
+    return [c.body for c in joint.connections] + ([joint.fixed_in] if joint.fixed_in else [])

@@ -1,0 +1,268 @@
+"""Jobs side by side, in as many processes, each of which takes one job after another over a pipe.
+
+Forked on Linux, because a child then has every library imported (two seconds otherwise) and all
+that it needs without anything being sent. A fork is safe while no other thread runs, so
+`hold_threads` comes before the numeric libraries, and whoever shows progress must not do so from a
+thread. On other systems processes are started anew (pinbase.processes.worker) and sent the
+jobs, which must pickle. One thread costs nothing that was measured: of a solid with 185,000
+unknowns neither time nor any bit of the answer changed. A crash inside a mesher ends its process
+and costs the job that was being done; another process goes on with the rest. Not a process for
+every job: the memory that each touches anew took a sixth of all the time of many small pins. No
+socket is opened that another process could find: whoever is neither this process nor its child
+cannot send a job.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import signal
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any, Generic, TypeVar
+
+from pinbase.processes import interrupts
+from pinbase.processes.limits import Limits, limited, passed
+from pinbase.processes.system import portable
+from pinbase.processes.worker import Serve, load, start_worker
+
+T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+Tell = Callable[[str], None]
+Progress = Callable[[str, float], None]
+Watch = Callable[[int, str], str]
+Item = TypeVar("Item")
+
+TICK = 0.2  # s between two calls of progress at most, for its clock
+WATCH_TICK = 0.02  # s between two looks at processes that are watched
+GRACE = 0.5  # s for a process to clean up once asked to end
+
+KILLED = 9  # SIGKILL, which Windows has not
+
+_preloaded: list[str] = []
+
+
+@dataclass(frozen=True)
+class Job(Generic[T_co]):
+    """Work under a name; it gets a function to report its progress. What it returns must be small:
+    it is sent from process to process. limits: which end its process, where that is not this one.
+    """
+
+    name: str
+    work: Callable[[Tell], T_co]
+    limits: Limits | None = None
+
+
+@dataclass(frozen=True)
+class Died:
+    """What comes of a job during which its process ended by itself, and why. status: as
+    subprocess has it, negative for a signal. limited: whether it passed a limit.
+    """
+
+    reason: str
+    status: int = 0
+    limited: bool = False
+
+
+def cores() -> int:
+    """How many this process may use."""
+    return (os.cpu_count() or 1) if portable() else len(os.sched_getaffinity(0))
+
+
+def processes(asked: int | None) -> int:
+    """How many jobs at a time: as many as are requested, or as there are cores. One, in this
+    process, where other threads run: a forked process would wait for them forever.
+
+    Raises: InputError for what is no number of jobs.
+    """
+    if portable():
+        return asked or cores()
+    return (asked or cores()) if can_fork() else 1
+
+
+def can_fork() -> bool:
+    """Whether that is safe: with other threads, the child could wait for their locks forever."""
+    return not portable() and len(os.listdir("/proc/self/task")) == 1
+
+
+def preload(*modules: str) -> None:
+    """Import what jobs will need once for all of them; what is missing they miss themselves.
+    Processes that are started anew import it when they begin.
+    """
+    _preloaded.extend(modules)
+    load(modules)
+
+
+def side_by_side(
+    jobs: Sequence[Job[T]],
+    most: int,
+    progress: Progress = lambda _, __: None,
+    anew: bool = False,
+    watch: Watch | None = None,
+) -> list[T | Died]:
+    """What the jobs return, in their order; they start in that order, at most so many at a time.
+
+    With `most` 1 they are done in this process. progress: called with what is being done and the
+    part of the jobs that is behind. anew: whether processes are started anew on Linux too. watch:
+    as `served` has it.
+
+    Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
+    """
+    if most == 1:
+        return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
+    waiting = list(reversed(range(len(jobs))))
+    found: dict[int, T | Died] = {}
+    sends = anew or portable()
+
+    def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
+        if not waiting:
+            return None
+        number = waiting.pop()
+        return jobs[number].name, (number, jobs[number]) if sends else number
+
+    def give(item: int | tuple[int, Job[T]], value: T | Died) -> None:
+        number = item if isinstance(item, int) else item[0]
+        limits = jobs[number].limits
+        if isinstance(value, Died) and limits and (limit := passed(value.status, limits)):
+            value = Died(limit, value.status, limited=True)
+        found[number] = value
+
+    serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
+
+    def show(doing: str) -> None:
+        progress(doing, len(found) / len(jobs))
+
+    served(serve, take, give, most, show, lambda: not sends, watch)
+    return [found[i] for i in range(len(jobs))]
+
+
+def served(
+    serve: Serve[Item, T],
+    take: Callable[[], tuple[str, Item] | None],
+    give: Callable[[Item, T | Died], None],
+    most: int,
+    progress: Callable[[str], None] = lambda _: None,
+    forks: Callable[[], bool] = can_fork,
+    watch: Watch | None = None,
+) -> None:
+    """Have processes serve items, at most so many at a time, until none is left. take: the name of
+    the next item and the item, None while there is none. give: called with each and what came of
+    it; there may be further items then. progress: called with what is being done. forks: whether
+    the next process is forked, by default where that is safe. watch: called often with the number
+    of each process and what it has reported last; ends a process for the reason that it returns.
+
+    A process that is not forked is started anew and sent `serve`; items are always sent.
+
+    Raises: what `serve` raises, at once, with the name and traceback in a note; no process is left.
+    """
+    running: dict[Connection, _Child] = {}
+    try:
+        while True:
+            while len(running) < most and (item := take()) is not None:
+                child = _Child(*start_worker(serve, forks(), tuple(_preloaded)))
+                running[child.pipe] = child
+                child.take(*item)
+            if not running:
+                return
+            for pipe in wait(list(running), TICK if watch is None else WATCH_TICK):
+                assert isinstance(pipe, Connection)
+                child = running[pipe]
+                kind, value = child.next()
+                if kind == "tells":
+                    child.doing = value
+                    continue
+                if kind == "raises":
+                    raise value
+                give(child.item, value)
+                if kind == "returns" and (item := take()) is not None:
+                    child.take(*item)
+                else:
+                    running.pop(pipe).close()
+            for child in list(running.values()) if watch else ():
+                if watch and (reason := watch(child.process.pid or 0, child.doing)):
+                    _end([running.pop(child.pipe)])
+                    give(child.item, Died(reason, -KILLED, limited=True))
+            interrupts.require_none()
+            progress("; ".join(child.doing for child in running.values()))
+    finally:
+        _end(list(running.values()))
+
+
+def _numbered_job(jobs: Sequence[Job[T]], number: int, tell: Tell) -> T:
+    return _sent_job((number, jobs[number]), tell)
+
+
+def _sent_job(item: tuple[int, Job[T]], tell: Tell) -> T:
+    _, job = item
+    with limited(job.limits):
+        return job.work(tell)
+
+
+def _teller(progress: Progress, part: float) -> Tell:
+    def tell(message: str) -> None:
+        interrupts.require_none()
+        progress(message, part)
+
+    return tell
+
+
+@dataclass
+class _Child:
+    process: BaseProcess
+    pipe: Connection
+    item: Any = None
+    doing: str = ""
+
+    def take(self, name: str, item: object) -> None:
+        """Do this next."""
+        self.item, self.doing = item, name
+        with suppress(OSError):  # it has ended meanwhile, as `next` will tell
+            self.pipe.send((name, item))
+
+    def next(self) -> tuple[str, Any]:
+        """What it says next: "tells", "raises", "returns" or "dies", and what."""
+        try:
+            kind, data = self.pipe.recv()
+            return kind, pickle.loads(data)
+        except (EOFError, OSError):  # OSError: in the middle of a message
+            self.process.join()
+            status = self.process.exitcode or 0
+            return "dies", Died(ended(status), status)
+
+    def send(self, number: int) -> None:
+        """Send a signal, also to the programs that it runs, where it leads a group of its own."""
+        pid = self.process.pid
+        with suppress(OSError):
+            if pid and not portable() and os.getpgid(pid) == pid:
+                os.killpg(pid, number)
+        self.process.kill() if number == KILLED else self.process.terminate()
+
+    def close(self) -> None:
+        """Have it end, and wait for that."""
+        with suppress(OSError):
+            self.pipe.send(None)
+        self.process.join()
+        self.process.close()
+        self.pipe.close()
+
+
+def ended(status: int) -> str:
+    """A process's end in words."""
+    if status >= 0:
+        return f"its process ended with status {status}"
+    text = f"its process was ended by signal {-status} ({signal.strsignal(-status)})"
+    return text + "; it may have run out of memory" * (status == -KILLED)
+
+
+def _end(children: list[_Child]) -> None:
+    """End processes: those inside a library's own code do not hear that they should."""
+    for child in children:
+        child.send(signal.SIGTERM)
+    for child in children:
+        child.process.join(GRACE / len(children))
+        child.send(KILLED)
+        child.close()

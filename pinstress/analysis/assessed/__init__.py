@@ -1,0 +1,1 @@
+"""Checks and limit loads of solved rows."""

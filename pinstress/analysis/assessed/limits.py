@@ -1,0 +1,84 @@
+"""Limit loads of the rows of a task that the study or `--limit-load` requests.
+
+A row that yields has its limit load without being asked, if that is a matter of seconds of
+processor time. Whether it is may depend on the computer; what is found never does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import inf
+
+from assess.plastic.records import LimitLoad
+from assess.plastic.solve import Rung, limit_load
+from fea.core.peak import Peak
+from fea.solve.solve_pin import Solution
+from fea.support.contact.solve_in_lugs import LugSolution
+from geometry import Pin
+from pinbase.processes.pool import Tell
+from pinstress.analysis.plan import Plan
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+
+ON_FOUNDATIONS = 'not for a pin on elastic foundations: use joints = "contact"'
+
+
+UNASKED = 20.0  # s of processor time of a limit load that was not asked for
+
+
+def limit_rung(study: Study, pin: str) -> Rung | None:
+    """Which model finds the limit loads of a pin; None: they are not requested."""
+    asked = study.table.analysis.limit_load
+    if isinstance(asked, list):
+        return "solid" if pin in asked else None
+    rungs: dict[str, Rung | None] = {"auto": "auto", "always": "solid", "never": None}
+    return rungs[asked]
+
+
+def rung_of(plan: Plan, pin: str) -> Rung | None:
+    """The same in a run, which may request more than the study."""
+    return limit_rung(plan.study, pin) or ("auto" if plan.limit_load else None)
+
+
+def limit_seconds(plan: Plan) -> float:
+    """Processor time that a limit load may take, s: endless where someone asked for it."""
+    asked = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
+    return inf if asked else UNASKED
+
+
+def limit_loads(
+    plan: Plan, task: Task, found: Iterable[Solution | LugSolution], tell: Tell
+) -> tuple[LimitLoad | None, ...]:
+    """One for each case of a task, None where it is not requested."""
+    rung = rung_of(plan, task.pin.name)
+    return tuple(_limit_load(plan, task, solved, rung, tell) for solved in found)
+
+
+def _limit_load(
+    plan: Plan, task: Task, solved: Solution | LugSolution, rung: Rung | None, tell: Tell
+) -> LimitLoad | None:
+    in_lugs = solved if isinstance(solved, LugSolution) else None
+    peak = solved.solution.peak if isinstance(solved, LugSolution) else solved.peak
+    if rung is None or not limit_asked(peak, task, rung):
+        return None
+    tell(f"pin {task.pin.name}, limit load in {peak.case}")
+    pin, loads = task.pin, peak.governing
+    assert loads is not None
+    if in_lugs is not None and isinstance(pin, Pin):
+        if in_lugs.rings is None:
+            return LimitLoad("none", note=ON_FOUNDATIONS)
+        pin, loads = in_lugs.rings, in_lugs.pressed(loads)
+    clamps = tuple(pin.surface(name) for name in task.clamps)
+    seconds = limit_seconds(plan)
+    try:
+        return limit_load(pin, task.material, clamps, loads, rung, plan.asked.memory, seconds)
+    except ArithmeticError as error:  # the elastic answer stands
+        return LimitLoad("none", note=str(error))
+
+
+def limit_asked(peak: Peak, task: Task, rung: Rung) -> bool:
+    """Whether the limit load of a row is computed."""
+    factor = peak.safety_factor(task.material.yield_strength)
+    if factor is None or peak.governing is None:
+        return False
+    return rung == "solid" or factor < 1.0

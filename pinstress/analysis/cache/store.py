@@ -1,0 +1,180 @@
+"""What was solved before, found again by the content of what was asked: a folder of files, each
+named by the SHA-256 of everything its answer depends on.
+
+A file is a line with our name, the hash of its own name and its content, and the content
+(pinstress.analysis.cache.serialise). One that is damaged, renamed or of another type is as good as
+none, and so is a folder that cannot be written. Other programs, too, name files by hashes: only
+what has our line is ever removed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import os
+import re
+import stat
+import tempfile
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TypeVar
+
+from pinbase.processes.system import portable
+from pinstress.analysis.cache.serialise import pack, unpack
+
+T = TypeVar("T")
+
+VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or OFF: none
+OFF = "off"
+LIMIT = 10**9  # bytes of all files; the longest unused go first
+# Packages that have a hand in an answer.
+ROOMS = ("assess", "fea", "geometry", "pinbase", "pinstress", "reports")
+# On which answers depend.
+PACKAGES = ("pinstress", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "cvxopt", "pymetis")
+MAGIC = b"pinstress\n"
+KEY, PARTIAL = re.compile(r"[0-9a-f]{64}"), ".partial"
+OURS = re.compile(rf"{KEY.pattern}(\w+{re.escape(PARTIAL)})?")
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Cache:
+    """A folder, for answers of one `program` (by the hash of its versions and source)."""
+
+    folder: Path
+    program: str
+    limit: int = LIMIT
+
+    def key(self, asked: object) -> str:
+        """The name of the answer to what is asked (of what pinstress.analysis.cache.serialise
+        takes).
+        """
+        return hashlib.sha256(self.program.encode() + pack(asked)).hexdigest()
+
+    def read(self, key: str, kind: type[T]) -> T | None:
+        """What was written, a `kind`; None when there is nothing that can be trusted."""
+        path = self._path(key)
+        try:
+            if not path.is_file():
+                return None
+            seal, content = _split(path.read_bytes())
+            if seal != _seal(key, content):
+                raise ValueError("damaged")
+            value = unpack(kind, content)
+            with suppress(OSError):  # of a folder that can only be read
+                os.utime(path)  # used now
+        except Exception as error:  # whatever is wrong with it, it is solved anew
+            log.debug("%s is not used: %s", path, error)
+            return None
+        return value
+
+    def write(self, key: str, value: object) -> None:
+        """Keep an answer, if that is possible; its file is complete or absent."""
+        path = self._path(key)
+        try:
+            content = pack(value)
+            if len(content) > self.limit:
+                return
+            self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            descriptor, partial = tempfile.mkstemp(PARTIAL, key, self.folder)
+            try:
+                with open(descriptor, "wb") as file:
+                    file.write(MAGIC + _seal(key, content) + content)
+                os.replace(partial, path)
+            except BaseException:
+                Path(partial).unlink(missing_ok=True)
+                raise
+        except (OSError, MemoryError) as error:
+            log.debug("%s is not written: %s", path, error)
+
+    def trim(self) -> None:
+        """Remove what was longest not used until all is within the limit; partial files too, which
+        killed runs leave, and nothing that has another name than ours.
+        """
+        found, room = [], self.limit
+        with suppress(OSError):  # it is not there, or not ours
+            for entry in os.scandir(self.folder):
+                if OURS.fullmatch(entry.name) and _ours(entry.path):
+                    with suppress(FileNotFoundError):  # another run was quicker
+                        seen = entry.stat(follow_symlinks=False)
+                        found.append((seen.st_mtime_ns, seen.st_size, entry.path))
+            for _, size, path in sorted(found, reverse=True):
+                room -= size
+                if room < 0:
+                    Path(path).unlink(missing_ok=True)
+
+    def _path(self, key: str) -> Path:
+        if not KEY.fullmatch(key):
+            raise ValueError(f"{key!r:.100} is not the name of an entry")
+        return self.folder / key
+
+
+def user_cache() -> Cache | None:
+    """The user's: in the folder that PINSTRESS_CACHE names, else where the system keeps caches
+    (XDG_CACHE_HOME). None when it is switched off or there is no such folder.
+    """
+    named = os.environ.get(VARIABLE)
+    if named is not None and named.strip().lower() in ("", OFF):
+        return None
+    try:
+        folder = Path(named).expanduser() if named else _usual()
+        return Cache(folder.absolute(), program())
+    except (OSError, RuntimeError, ImportError) as error:  # no home, say
+        log.debug("no cache: %s", error)
+        return None
+
+
+def _usual() -> Path:
+    from platformdirs import user_cache_path
+
+    return user_cache_path("pinstress", appauthor=False)
+
+
+def program() -> str:
+    """Hash of what results depend on in addition to the task: versions, and the source itself, so
+    that whoever changes a formula does not meet the answers of the old one.
+    """
+    made_by = [(name, _version(name)) for name in PACKAGES], portable()
+    found = hashlib.sha256(repr(made_by).encode())
+    root = Path(__file__).parents[3]
+    for room in ROOMS:
+        for path in sorted((root / room).rglob("*.py")):
+            name = path.relative_to(root).as_posix()
+            found.update(name.encode() + hashlib.sha256(path.read_bytes()).digest())
+    return found.hexdigest()
+
+
+def _version(name: str) -> str | None:
+    """None of a package that is not there, as pymetis is not on every system."""
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _seal(key: str, content: bytes) -> bytes:
+    return hashlib.sha256(key.encode() + content).digest()
+
+
+def _split(data: bytes) -> tuple[bytes, bytes]:
+    if not data.startswith(MAGIC):
+        raise ValueError("not ours")
+    end = len(MAGIC) + hashlib.sha256().digest_size
+    return data[len(MAGIC) : end], data[end:]
+
+
+def _ours(path: str) -> bool:
+    """Whether a file of such a name is ours: it begins so, or is partial, as only we call it."""
+    if path.endswith(PARTIAL):
+        return True
+    try:
+        if not stat.S_ISREG(os.lstat(path).st_mode):  # a link, a folder
+            return False
+        with open(path, "rb") as file:
+            begin = file.read(len(MAGIC))
+    except OSError:  # gone
+        return False
+    return begin == MAGIC

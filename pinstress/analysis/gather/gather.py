@@ -1,0 +1,322 @@
+"""From what the rooms found, in SI, to the results that reports are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, replace
+from importlib.metadata import version
+
+import numpy as np
+
+from assess.strength.records import BeamCheck
+from fea.core.peak import Peak, decides
+from fea.core.pin_loads import PinLoads
+from fea.section.section_stress import SectionAnswer
+from fea.solve.solve_pin import Solution
+from fea.support.contact.pressure_loads import PressureLoads
+from fea.support.contact.records import JointResult
+from fea.support.contact.solve_in_lugs import LugSolution
+from geometry import CutPin, Pin
+from pinstress.analysis.assessed.checked import Checked, factor_assumption
+from pinstress.analysis.cache.store import PACKAGES
+from pinstress.analysis.gather.gather_fatigue import fatigue_of
+from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
+from pinstress.analysis.mechanics.gather_sequences import with_sequences
+from pinstress.analysis.plan import Plan, all_loads
+from pinstress.analysis.stored import Solved
+from pinstress.study.model.cases import CaseLoads, at_time
+from pinstress.study.model.drawn_cuts import cut_shapes
+from pinstress.study.model.pins import far_ends, outline, weight
+from pinstress.study.model.sequence import chosen_cases
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs
+from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.tables import ReportTable
+from reports.data import results as plain
+from reports.data.changes import Change
+from reports.data.dependence import depends_on
+from reports.data.sensitivities import PinSensitivities
+
+WITHOUT_FRICTION = (
+    "Pins slide in their lugs without friction, which would lower their bending (by 15 to 24 % on "
+    "a clevis with coefficients of 0.1 to 0.3): the safe side while a load grows, not in a cycle."
+)
+
+
+def _in_lugs(study: Study) -> bool:
+    """Whether lugs support any pin."""
+    joints = study.table.analysis.joints
+    return joints in ("contact", "foundation") or (
+        joints == "auto" and any(pin.lug for pin in study.table.pin.values())
+    )
+
+
+def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
+    """A plan's results from what was found of its tasks."""
+    study = plan.study
+    found = [
+        replace(made, histories=with_sequences(study, plan.loads, made.histories)) for made in found
+    ]
+    pins, cases = list(study.table.pin), list(plan.loads)
+    rows = [
+        (task, *row)
+        for task, made in zip(plan.tasks, found, strict=True)
+        for row in zip(
+            made.peaks, made.joints or [None] * len(made.peaks), made.strength, strict=True
+        )
+    ]
+    opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
+    limits = {
+        (peak.pin, peak.case): limit
+        for made in found
+        for peak, limit in zip(made.peaks, made.limits, strict=False)  # none of a task that failed
+    }
+    rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
+    beam = next((made.beam for made in found if made.beam is not None), None)
+    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
+    landing = {(r.pin, r.case): r for made in found for r in made.landing}
+    fatigue, fatigue_margins = fatigue_of(plan, found)
+    results = replace(
+        results,
+        pins=tuple(
+            replace(
+                p,
+                second_opinion=opinions.get((p.pin, p.case)),
+                limit_load=limits.get((p.pin, p.case)),
+                depends_on=depends_on(p, landing.get((p.pin, p.case))),
+            )
+            for p in results.pins
+        ),
+        landing=tuple(landing.values()),
+        surfaces=tuple(surface for made in found for surface in made.surfaces),
+        changes=_worst_changes(found),
+        sensitivities=_in_order(found, pins, cases, plan.sensitive),
+        histories=tuple(history for made in found for history in made.histories),
+        fatigue=fatigue,
+        margins=(*results.margins, *fatigue_margins),
+    )
+    return _in_study_units(results, study)
+
+
+def _worst_changes(found: list[Solved]) -> tuple[Change, ...]:
+    """One for each pin, for the worst of its cases; the pin with the worst first."""
+    rows = sorted((x.change for x in found if x.change), key=lambda change: change.load_factor)
+    return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
+
+
+def _in_order(
+    found: list[Solved], pins: list[str], cases: list[str], every: bool
+) -> tuple[PinSensitivities, ...]:
+    """As the rows are; without `every` one for each pin, for the worst of its cases."""
+    rows = [row for made in found for row in made.sensitivities]
+    if not every:
+        rows = list({row.pin: row for row in sorted(rows, key=lambda row: row.maximum)}.values())
+    return tuple(sorted(rows, key=lambda row: (pins.index(row.pin), cases.index(row.case))))
+
+
+def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
+    s = study.system
+    return results.in_units(plain.Units(s.length, s.force, s.stress, s.time), s.factor)
+
+
+def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
+    """The mechanics of a study without stresses. Raises: InputError for bad input."""
+    published = read_published(study)
+    loads = all_loads(study, chosen_cases(study, cases))
+    tolerance = study.table.analysis.tolerance
+    return _in_study_units(_results(study, loads, [], None, published, tolerance), study)
+
+
+def _results(
+    study: Study,
+    loads: dict[str, CaseLoads],
+    rows: list[tuple[Task, Peak, JointResult | None, Checked]],
+    beam: BeamCheck | None,
+    published: Published,
+    tolerance: float,
+) -> plain.Results:
+    """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
+    table = study.table
+    tasks = {task.pin.name: task for task, *_ in reversed(rows)}
+    strength = [found for *_, found in rows]
+    return plain.Results(
+        title=table.title,
+        study=study.path.name,
+        study_sha256=study.sha256,
+        units=plain.SI,
+        required_safety_factor=table.analysis.required_safety_factor,
+        tolerance=tolerance,
+        pins=tuple(_pin_result(study, loads, *row, published) for row in rows),
+        shapes=tuple(
+            _shape(tasks[name], [peak for _, peak, *_ in rows if peak.pin == name])
+            for name in table.pin
+            if name in tasks
+        ),
+        margins=tuple(margin for found in strength for margin in found.margins),
+        arms=tuple(found.arms for found in strength if found.arms),
+        **mechanics(study, loads, published),
+        beam_check=beam,
+        provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
+        published_source=table.published.source if table.published else "",
+        assumptions=(
+            *table.assumptions,
+            *factor_assumption(study, strength),
+            *((WITHOUT_FRICTION,) if _in_lugs(study) else ()),
+            *(f"Hardly meant: {q}" for q in study.questions),
+        ),
+        versions={name: version(name) for name in PACKAGES},
+        study_text=study.text,
+        inputs=inputs(study),
+        title_block=_title_block(table.report),
+    )
+
+
+def _title_block(given: ReportTable) -> plain.TitleBlock:
+    date = "" if given.date is None else given.date.isoformat()
+    return plain.TitleBlock(given.revision, date, given.prepared, given.checked, given.approved)
+
+
+def _pin_result(
+    study: Study,
+    loads: dict[str, CaseLoads],
+    task: Task,
+    peak: Peak,
+    joint: JointResult | None,
+    found: Checked,
+    published: Published,
+) -> plain.PinResult:
+    strength = task.material.yield_strength
+    required = study.table.analysis.required_safety_factor
+    factor = peak.safety_factor(strength)
+    case = loads[peak.case]
+    here = case if peak.time is None else at_time(case, peak.time)
+    assert here is not None
+    positions = drive_position(study, here) if peak.location else None
+    theirs = published.peaks.get((peak.pin, peak.case), (None, None))
+    return plain.PinResult(
+        pin=peak.pin,
+        case=peak.case,
+        model=peak.model,
+        verdict=peak.verdict,
+        note=peak.note,
+        max_von_mises=peak.max_von_mises,
+        error_estimate=peak.error_estimate,
+        location=peak.location,
+        time=peak.time if peak.location else None,
+        position=None if positions is None else float(positions[0]),
+        position_unit=position_unit(study, here),
+        safety_factor=factor,
+        yields=None if factor is None else factor < 1.0,
+        decided=_meets(peak, strength, required),
+        required=required,
+        dofs=peak.dofs,
+        seconds=peak.seconds,
+        history=peak.history,
+        held=_held(task, joint),
+        joint=joint,
+        places=peak.places,
+        left_out=task.left_out[peak.case],
+        published_max_von_mises=theirs[0],
+        published_safety_factor=theirs[1],
+        why=peak.why,
+        singular_at=peak.singular_at,
+        hand_checks=found.hand_checks,
+        max_von_mises_interval=peak.interval,
+        safety_factor_interval=_factors(peak, strength),
+        error_parts={} if peak.parts is None else asdict(peak.parts),
+        loads=_governing_loads(task, here),
+    )
+
+
+def _held(task: Task, joint: JointResult | None) -> str:
+    if task.lugs:
+        return f"its lugs ({joint.model if joint else 'contact'})"
+    return ", ".join(task.clamps) or "nothing (loads in balance)"
+
+
+def _factors(peak: Peak, strength: float | None) -> tuple[float, float | None] | None:
+    """Factor of safety over the interval of the maximum; None above, where no stress is left."""
+    if peak.interval is None or strength is None:
+        return None
+    low, high = peak.interval
+    return strength / high, strength / low if low > 0.0 else None
+
+
+def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, ...]:
+    r = here.reactions
+    return tuple(
+        plain.GoverningLoad(name, r.bodies[c], r.forces[0, c], r.moments[0, c])
+        for c, name in enumerate(r.connections)
+        if name in task.pin.connections
+    )
+
+
+def _meets(peak: Peak, strength: float | None, required: float | None) -> bool | None:
+    """Whether the required factor, or yield, is reached; None where that is open."""
+    return None if strength is None else decides(peak, strength / (required or 1.0))
+
+
+def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
+    pin, density = task.pin, task.material.density
+    held = {pin.surface(c) for c in task.clamps}
+    segments = tuple(
+        (length, diameter, bore, label, "held" if label in held else kind)
+        for length, diameter, bore, label, kind in outline(pin)
+    )
+    heavy = weight(pin, density) if density else None
+    cuts = tuple(cut_shapes(pin)) if isinstance(pin, CutPin) else ()
+    solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
+    made_of = task.material.name
+    return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
+
+
+def landing_range(
+    loads: Mapping[str, CaseLoads], task: Task, found: Solution | LugSolution
+) -> plain.LandingRange | None:
+    """A pin over the ranges of its landing's impulse: unit fields superposed."""
+    solution = found.solution if isinstance(found, LugSolution) else found
+    case, over = solution.peak.case, loads[solution.peak.case].range
+    if over is None or solution.answer is None:
+        return None
+    maxima, strength = _maxima(task, found, task.ranges[case]), task.material.yield_strength
+    return plain.LandingRange(
+        pin=task.pin.name,
+        case=case,
+        impulse_time=over.times,
+        velocity_change=over.velocities,
+        pulses=over.pulses,
+        force=over.forces,
+        max_von_mises=maxima,
+        safety_factor=None if strength is None else strength / maxima,
+        nominal=over.nominal,
+        nominal_pulse=over.nominal_pulse,
+        verdict=solution.peak.verdict,
+        spread=_spread(solution.peak),
+        error=(solution.peak.error_estimate or 0.0) / (solution.peak.max_von_mises or 1.0),
+    )
+
+
+def _maxima(task: Task, found: Solution | LugSolution, loads: PinLoads) -> plain.Floats:
+    """The larger of surface and section, Pa, under other loads of a case, at each instant."""
+    if isinstance(found, LugSolution):
+        solution, pin, acting = found.solution, found.rings, found.pressed(loads)
+        clamps: tuple[str, ...] = ()
+    else:
+        solution, acting = found, loads
+        pin = task.pin if isinstance(task.pin, Pin) else None
+        clamps = tuple(task.pin.surface(name) for name in task.clamps)
+    assert solution.answer is not None
+    surface, places = solution.answer.maxima(acting), solution.peak.places
+    if places is None or places.section is None or pin is None:
+        return surface
+    feels = acting.on_rings if isinstance(acting, PressureLoads) else acting
+    sections = SectionAnswer(pin, task.material, clamps, (feels,))
+    return np.maximum(surface, sections.maxima(feels))
+
+
+def _spread(peak: Peak) -> tuple[float, float] | None:
+    if peak.interval is None or not peak.max_von_mises:
+        return None
+    low, high = peak.interval
+    return peak.max_von_mises / high, peak.max_von_mises / low if low > 0.0 else np.inf

@@ -1,0 +1,214 @@
+"""From histories of stress to damage under the study's spectrum."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from math import inf
+
+from assess.fatigue.assess import FatigueMaterial, assess
+from assess.fatigue.proportional import BY_SIDE
+from assess.fatigue.records import PointFatigue, PointHistory
+from assess.strength.margin import RATIO, Margin, PinMargin, not_made
+from fea.core.peak import decides
+from fea.support.lugs.lug import Lug
+from pinbase.errors import ArgumentError
+from pinstress.analysis.plan import Plan
+from pinstress.analysis.stored import Solved
+from pinstress.study.model.fatigue import fatigue_material, spectrum
+from pinstress.study.schema.fatigue import FatigueTable
+from reports.data.headline import FATIGUE
+from reports.data.results import Fatigue
+
+FACTORS = (
+    "Factors for surface, size, temperature, corrosion and surface treatment are not applied: the "
+    "S-N data must include them."
+)
+ZERO = "Every case begins and ends at zero load, and so does every motion."
+SUPPORT = "Support by the stress gradient and the size of the highly stressed surface is left out."
+
+
+@dataclass(frozen=True)
+class _Open:
+    """Why a pin's fatigue is not decided, and what would decide it."""
+
+    reason: str
+    needs: str
+
+
+def fatigue_of(plan: Plan, found: list[Solved]) -> tuple[Fatigue | None, list[PinMargin]]:
+    """Of all critical points, the worst first, and the margins; None and none without a spectrum.
+
+    Whatever fails here fails for a pin, whose fatigue is then not decided: other results stay.
+    """
+    table = plan.study.table.fatigue
+    if table is None:
+        return None, []
+    points: list[PointFatigue] = []
+    opens: dict[str, _Open] = {}
+    without = _without_data(plan, table)
+    for pin in dict.fromkeys(task.pin.name for task in plan.tasks):
+        if pin in without:
+            continue
+        own, failed = _points(plan, [h for m in found for h in m.histories if h.pin == pin], table)
+        points += own
+        if (missing := _missing(plan, found, pin, table) or failed) is not None:
+            opens[pin] = missing
+    points.sort(key=lambda p: (-p.damage, -float(p.amplitudes.max(initial=0.0))))
+    # More damage cannot help a pin that has too much already.
+    failing = {p.pin for p in points if (p.utilisation or 0.0) > 1.0}
+    short = [
+        f"Damage of pin {pin} is too low: {opens[pin].reason}." for pin in opens if pin in failing
+    ]
+    fatigue = Fatigue(
+        unit=table.unit,
+        occurrences=dict(table.occurrences),
+        method=table.method,
+        probability=table.failure_probability,
+        life=table.life,
+        points=tuple(points),
+        left_out=(*short, *_left_out(plan, found, table, points)),
+        not_decided={pin: open_.reason for pin, open_ in opens.items() if pin not in failing},
+    )
+    needs = {pin: open_.needs for pin, open_ in opens.items() if pin not in failing}
+    key = "fkm" if table.method == "fkm-p-ram" else "fatigue"
+    needs |= {pin: f"material.{plan.study.table.pin[pin].material}.{key}" for pin in without}
+    return fatigue, list(_margins(fatigue, needs))
+
+
+def _margins(found: Fatigue, needs: dict[str, str]) -> Iterator[PinMargin]:
+    """Of each pin's worst point: damage per unit against what the design life allows; needs: of
+    pins that have none.
+    """
+    if not found.life:
+        return
+    worst: dict[str, PointFatigue] = {}
+    for point in found.points:
+        worst.setdefault(point.pin, point)
+    for pin, point in worst.items():
+        if pin in needs:
+            continue
+        allowed = 1.0 / found.life
+        margin = Margin(
+            FATIGUE,
+            point.method,
+            "limit",
+            point.damage,
+            allowed,
+            1.0,
+            RATIO,
+            at=f"point {point.point}",
+            basis=f"damage per {found.unit}",
+        )
+        yield PinMargin(pin, "", margin)
+    for pin, what in needs.items():
+        none = not_made(FATIGUE, found.method, "limit", 1.0, what)
+        yield PinMargin(pin, "", replace(none, dimension=RATIO))
+
+
+def _material(plan: Plan, pin: str) -> FatigueMaterial:
+    table = plan.study.table
+    return fatigue_material(table.material[table.pin[pin].material])
+
+
+def _pressed(lugs: Iterable[Lug]) -> bool:
+    """Whether any is an interference fit."""
+    return any(lug.clearance < 0.0 for lug in lugs)
+
+
+def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
+    """Pins whose material has no data for the method."""
+    pins = dict.fromkeys(task.pin.name for task in plan.tasks)
+    data = {pin: _material(plan, pin) for pin in pins}
+    needs_fkm = table.method == "fkm-p-ram"
+    return [p for p, m in data.items() if (m.fkm if needs_fkm else m.curve) is None]
+
+
+def _points(
+    plan: Plan, histories: list[PointHistory], table: FatigueTable
+) -> tuple[list[PointFatigue], _Open | None]:
+    """Of one pin, and what is open at any of its points."""
+    points, failed = [], None
+    for history in histories:
+        at = f"at point {history.point}"
+        try:
+            point = assess(history, spectrum(table), _material(plan, history.pin))
+        except ArgumentError as error:
+            failed = failed or _Open(
+                f"{at}, {error}", 'fatigue.method = "critical-plane" with its data'
+            )
+        except Exception as error:  # of pyLife or ours: none may take other results with it
+            reason = f"{at}, {table.method} failed ({type(error).__name__}: {error})"
+            failed = failed or _Open(reason, f"a method other than {table.method}, which failed")
+        else:
+            points += [] if point is None else [point]
+    return points, failed
+
+
+def _missing(plan: Plan, found: list[Solved], pin: str, table: FatigueTable) -> _Open | None:
+    """What of the spectrum no stress of the pin is known of."""
+    sequences = plan.study.table.sequence
+    cases: dict[str, None] = {}
+    for name in table.occurrences:
+        parts = [x.case for x in sequences[name].steps] if name in sequences else [name]
+        cases |= dict.fromkeys(parts)
+    idle = [case for case in cases if case not in plan.loads]
+    if idle:
+        return _Open(f"{_named(idle)} not run", f"{_named(idle, verb='')} to be run")
+    mine = [m for t, m in zip(plan.tasks, found, strict=True) if t.pin.name == pin]
+    there = {c.case for made in mine for h in made.histories for c in h.cases}
+    peaks = [p for made in mine for p in made.peaks if p.case in cases and p.case not in there]
+    if unsolved := [p.case for p in peaks if p.max_von_mises is None]:
+        verdict = next(p.verdict for p in peaks if p.max_von_mises is None)
+        return _Open(f"{_named(unsolved)} not solved ({verdict})",
+                     f"a solution of {_named(unsolved, verb='')}")  # fmt: skip
+    if peaks:
+        reason = next((made.no_histories for made in mine if made.no_histories), "")
+        text = f"no history of stress in {_named([p.case for p in peaks], verb='')}"
+        return _Open(f"{text} ({reason})" if reason else text, "a history of stress")
+    tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
+    if len(tasks) > 1:
+        reason = "its clamps differ between cases, and damage with different clamps does not add up"
+        return _Open(reason, "the same clamps in all cases of the spectrum")
+    return None
+
+
+def _named(cases: list[str], verb: str = "was") -> str:
+    """A case was, cases were; without a verb the cases alone."""
+    many = len(cases) > 1
+    ending = f" {'were' if many else 'was'}" if verb else ""
+    return f"case{'s' * many} {', '.join(cases)}{ending}"
+
+
+def _left_out(
+    plan: Plan, found: list[Solved], table: FatigueTable, points: list[PointFatigue]
+) -> tuple[str, ...]:
+    elastic = {p.pin for p in points if p.method != "fkm-p-ram"}
+    singular = dict.fromkeys(p.pin for made in found for p in made.peaks if p.verdict == "singular")
+    yields = [
+        task.pin.name
+        for task, made in zip(plan.tasks, found, strict=True)
+        if task.pin.name in elastic
+        and any(decides(p, task.material.yield_strength or inf) is False for p in made.peaks)
+    ]
+    tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
+    left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
+    shear = dict.fromkeys(p.pin for p in points if BY_SIDE in p.note)
+    sentences = [
+        ("No fatigue data of the material: pin", _without_data(plan, table)),
+        ("Shear that alternates is signed by its direction, as no principal stress is larger than "
+         "the other: pin", shear),
+        ("Beyond yield, where elastic stress understates the damage: pin", dict.fromkeys(yields)),
+        (
+            "Assembly stress of interference fits is taken as gone between cases, which "
+            "overstates ranges: pin",
+            tight,
+        ),
+        (
+            "Assembly stress of interference fits is left out where loads are prescribed: pin",
+            left,
+        ),
+        ("Cracks may start in singular zones, where stress is not evaluated: pin", singular),
+    ]  # fmt: skip
+    said = [f"{text} {', '.join(names)}." for text, names in sentences if names]
+    return (*said, ZERO, SUPPORT if table.method == "fkm-p-ram" else FACTORS)

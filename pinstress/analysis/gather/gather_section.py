@@ -1,0 +1,79 @@
+"""What a pin shows when it is cut open through its maximum."""
+
+from __future__ import annotations
+
+from math import atan2, hypot
+
+import numpy as np
+
+from fea.core.pin_loads import Floats, PinLoads
+from fea.harmonic.half_section import MeridianPlane
+from geometry.shape.chords import needed
+from reports.data.surface import HalfSection, Mask
+
+STATIONS, ROWS = 200, 33  # at most 2.5 times as many stations, of which few are needed
+NEAR = 1e-6  # of the length: how close to a shoulder, on both sides of it, stress is read
+WITHIN = 7e-3  # of the maximum
+ROUND = 2e-3  # of the radius
+
+
+def half_section(
+    plane: MeridianPlane, loads: PinLoads, instant: int, maximum: float, at: tuple[float, ...]
+) -> HalfSection:
+    """Through the point `at` (x, y, z) of the surface's maximum, which is outside of what is
+    excluded; what exceeds it is cut down to it, but not what lies beneath lugs.
+    """
+    x, y, z = at
+    angle, r = atan2(y, x), hypot(x, y)
+    stations = np.union1d(_stations(plane), [z])
+    inner, outer = plane.walls(stations)
+    k = int(np.searchsorted(stations, z))
+    own = np.clip((r - inner[k]) / (outer[k] - inner[k]), 0.0, 1.0)
+    part = np.union1d(np.sin(np.linspace(0.0, 0.5 * np.pi, ROWS)), [own])
+    j = int(np.searchsorted(part, own))
+    grid = _grid(stations, inner, outer, part)
+    found = plane.von_mises(loads, instant, angle, grid)
+    if loads.pressed is None:
+        found = np.minimum(found, maximum)
+    found[0, k, j] = maximum
+    allowed = np.broadcast_to(np.where(plane.outside(grid), WITHIN * maximum, np.inf), found.shape)
+    walls = np.stack([inner, outer], axis=1)
+    rows = _needed(stations, found, allowed, k, walls)
+    found, allowed = (np.swapaxes(x[:, rows], 1, 2) for x in (found, allowed))
+    columns = _needed(part, found, allowed, j)
+    found = np.swapaxes(found[:, columns], 1, 2)
+    return HalfSection(angle, stations[rows], inner[rows], outer[rows], part[columns], found)
+
+
+def _stations(plane: MeridianPlane) -> Floats:
+    """Along z, close together where the mesh is, twice at shoulders."""
+    r, z = plane.skin.T
+    low, high = float(z.min()), float(z.max())
+    near = NEAR * (high - low)
+    faces = z[:-1][(np.abs(np.diff(z)) < near) & (np.abs(np.diff(r)) > near)]
+    fine = np.round((z - low) / (high - low) * 2 * STATIONS) / (2 * STATIONS)
+    along = low + (high - low) * np.union1d(fine, np.linspace(0.0, 1.0, STATIONS // 2))
+    clear = np.abs(along[:, None] - faces).min(axis=1) > 2.0 * near
+    both = np.concatenate([[low, high], along[clear], faces - near, faces + near])
+    return np.unique(np.clip(both, low, high))
+
+
+def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
+    """Points (Z, R, 2), r and z, none of them outside by round-off."""
+    safe = 1.0 - NEAR
+    r = inner[:, None] + (outer - inner)[:, None] * (0.5 + safe * (part - 0.5))
+    near = NEAR * (z[-1] - z[0])
+    within = np.clip(z, z[0] + near, z[-1] - near)
+    return np.stack([r, np.broadcast_to(within[:, None], r.shape)], axis=2)
+
+
+def _needed(
+    at: Floats, found: Floats, allowed: Floats, own: int, radii: Floats | None = None
+) -> Mask:
+    """Which of N places to keep, `own` among them, for stresses (2, N, ..) and radii (N, 2)."""
+    values, within = (np.moveaxis(x, 1, 0).reshape(len(at), -1) for x in (found, allowed))
+    if radii is not None:
+        values = np.concatenate([values, radii], axis=1)
+        within = np.concatenate([within, np.full(radii.shape, ROUND * radii.max())], axis=1)
+    # A pin without any stress allows nothing, and misses nothing.
+    return needed(at, values, within + np.finfo(float).tiny, np.arange(len(at)) == own)

@@ -1,0 +1,186 @@
+"""From a pin's solutions to the surfaces that reports show."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import atan2
+
+import numpy as np
+
+from fea.core.pin_loads import Floats, PinLoads
+from fea.core.solution import Answer
+from fea.cut.evaluate import CutAnswer
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.half_section import MeridianPlane
+from fea.solid.evaluate import SolidAnswer
+from fea.solve.solve_pin import Solution
+from fea.solve.surface_fields import (
+    amounts,
+    excluded,
+    largest_at,
+    largest_there,
+    unit_surface,
+    unread,
+)
+from fea.support.contact.cell_pressure import CellPressure
+from pinbase.arrays import Ints
+from pinstress.analysis.gather.gather_section import half_section
+from pinstress.analysis.gather_fields import shown_at
+from pinstress.analysis.thinning import fewer_loads, meridian_points
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.tasks import Task
+from reports.data.surface import SECTORS, LoadCourse, Mask, Surface, SurfaceCase
+
+
+def surfaces_of(
+    loads: dict[str, CaseLoads],
+    task: Task,
+    solutions: Sequence[Solution],
+    pressures: Sequence[CellPressure | None],
+) -> tuple[Surface, ...]:
+    """A pin's surfaces with all the cases that some model with fields solved, one for each mesh.
+
+    pressures: of contact with its lugs, by solution.
+    """
+    together: dict[int, list[tuple[Solution, CellPressure | None]]] = {}
+    for solution, pressure in zip(solutions, pressures, strict=True):
+        own = id(_unit_fields(solution.answer))
+        together.setdefault(own, []).append((solution, pressure))
+    found = (_surface(loads, task, each) for each in together.values())
+    return tuple(surface for surface in found if surface is not None)
+
+
+def _unit_fields(answer: Answer | None) -> object:
+    """What answers from one mesh share."""
+    if isinstance(answer, SolidAnswer):
+        return answer.solution.fields
+    if isinstance(answer, CutAnswer):
+        return answer.solution
+    return answer.fields if isinstance(answer, HarmonicAnswer) else None
+
+
+def _surface(
+    loads: dict[str, CaseLoads],
+    task: Task,
+    each: Sequence[tuple[Solution, CellPressure | None]],
+) -> Surface | None:
+    """Of cases solved on one mesh; None where no model has fields."""
+    found = [(s, s.answer, p) for s, p in each if s.answer is not None]
+    with_fields = [(s, a, p) for s, a, p in found if unit_surface(a) is not None]
+    if not with_fields:
+        return None
+    surface = unit_surface(with_fields[0][1])
+    assert surface is not None
+    plane = _plane(with_fields[0][1])
+    cases = [
+        _pressed(_case(loads[s.peak.case], task, s, plane), surface.points, p)
+        for s, _, p in with_fields
+    ]
+    keep = np.ones(len(surface.points), dtype=bool)
+    if surface.revolved:
+        kept = np.any(
+            [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
+            axis=0,
+        )
+        surface, cases = fewer_loads(surface, cases)
+        keep = meridian_points(surface, cases, kept)
+        cases = [
+            replace(c, unread=_unread(loads[c.case], s, np.flatnonzero(keep), c.location))
+            for c, (s, _, _) in zip(cases, with_fields, strict=True)
+        ]
+    return Surface(
+        pin=task.pin.name,
+        points=surface.points[keep],
+        triangles=surface.triangles,
+        n=surface.n,
+        even=surface.even,
+        stress=surface.stress[keep],
+        displacement=surface.displacement[keep],
+        yield_strength=task.material.yield_strength,
+        cases=tuple(_kept(c, keep) for c in cases),
+    )
+
+
+def _plane(answer: Answer) -> MeridianPlane | None:
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    return MeridianPlane(answer.fields, answer.singularities)
+
+
+def _case(
+    case: CaseLoads, task: Task, solution: Solution, plane: MeridianPlane | None
+) -> SurfaceCase:
+    """At the case's samples and the governing instant."""
+    shown, answer = shown_at(solution, case), solution.answer
+    assert answer is not None
+    maxima = answer.maxima(shown.loads)
+    top, at = float(maxima[shown.instant]), largest_at(answer, shown.loads, shown.instant)
+    return SurfaceCase(
+        case=solution.peak.case,
+        times=shown.loads.times,
+        instant=shown.instant,
+        amounts=amounts(answer, shown.loads),
+        maxima=maxima,
+        excluded=excluded(answer),
+        largest=largest_there(answer, shown.loads, shown.instant),
+        zones=_zones(answer),
+        loads=_courses(task, shown.loads),
+        section=half_section(plane, shown.loads, shown.instant, top, at) if plane and at else None,
+        location=at,
+    )
+
+
+def _unread(
+    case: CaseLoads, solution: Solution, points: Ints, at: tuple[float, ...] | None
+) -> Mask | None:
+    """Of points (J,) of a meridian, from the angle of a location on."""
+    assert solution.answer is not None
+    start = 0.0 if at is None else atan2(at[1], at[0])
+    turns = start + 2.0 * np.pi * np.arange(SECTORS) / SECTORS
+    return unread(solution.answer, shown_at(solution, case).loads, points, turns)
+
+
+def _zones(answer: Answer) -> Floats:
+    found = answer.singularities if isinstance(answer, HarmonicAnswer | CutAnswer) else ()
+    return np.array([(p.r, p.z, p.radius) for p in found]).reshape(-1, 3)
+
+
+def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
+    """Of every band on which a link bears."""
+    links = loads.links
+    none = np.zeros((len(loads), 3))
+    acting = {name: links.forces[:, c] for c, name in enumerate(links.surfaces)}
+    acting |= {name: none for name in task.left_out[loads.case] if name not in acting}
+    bands = {name: task.pin.band(name) for name in acting}
+    return tuple(
+        LoadCourse(name, band.middle, band.radius, acting[name], name not in links.surfaces)
+        for name, band in bands.items()
+    )
+
+
+def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -> SurfaceCase:
+    if pressure is None:
+        return case
+    rings = pressure.rings(points)
+    return replace(case, rings=rings, pressure=pressure.pressure, first=pressure.angle)
+
+
+def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
+    """Points (P,) of a meridian that the case needs: where its maximum is if it is on the surface,
+    and where contact pressure jumps.
+    """
+    kept = np.zeros(len(points), dtype=bool)
+    if case.rings is not None:
+        jumps = np.flatnonzero(np.diff(case.rings))
+        kept[jumps] = kept[jumps + 1] = True
+    if case.location is not None:
+        x, y, z = case.location
+        away = np.hypot(points[:, 0] - np.hypot(x, y), points[:, 2] - z)
+        kept |= away <= away.min() * (1.0 + 1e-9)
+    return kept
+
+
+def _kept(case: SurfaceCase, keep: Mask) -> SurfaceCase:
+    rings = None if case.rings is None else case.rings[keep]
+    return replace(case, excluded=case.excluded[keep], largest=case.largest[keep], rings=rings)

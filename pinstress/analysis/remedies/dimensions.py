@@ -1,0 +1,91 @@
+"""The dimensions of a pin by the keys of its table in the study."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from itertools import groupby
+
+from geometry import Pin, PinLike
+from geometry.shape.dimensions import Dimension, dimensions
+from pinstress.study.model.pins import by_corners
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.pins import PinTable
+
+Change = Callable[[PinTable, float], PinTable]
+LINES = "meridian", "bore_meridian"
+Z, R, RADIUS = range(3)  # of a corner
+
+
+def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
+    """Those of a body of revolution that are not zero, in m: of its profile
+    (geometry.shape.dimensions), or of its outline by corners: "meridian[3][2]" is the radius of the
+    third one. None of any other pin, and none of one from a file.
+    """
+    table = study.table.pin[pin.name]
+    if not isinstance(pin, Pin) or table.geometry is not None:
+        return
+    if table.profile is not None:
+        yield from dimensions(pin)
+        return
+    for key, value, changes in (*_along(table), *_across(table), *_radii(table)):
+        yield Dimension(key, value, partial(_changed, pin.name, table, changes))
+
+
+def _changed(name: str, table: PinTable, changes: list[Change], value: float) -> Pin:
+    for change in changes:
+        table = change(table, value)
+    return by_corners(name, table)
+
+
+def _corner(line: str, corner: int, at: int) -> Change:
+    def change(table: PinTable, value: float) -> PinTable:
+        corners = list(getattr(table, line))
+        numbers = corners[corner]
+        corners[corner] = (*numbers[:at], value, *numbers[at + 1 :])
+        return table.model_copy(update={line: corners})
+
+    return change
+
+
+def _band(name: str, end: int) -> Change:
+    def change(table: PinTable, value: float) -> PinTable:
+        band = table.band[name]
+        first, last = band.z or (0.0, 0.0)
+        moved = band.model_copy(update={"z": (first, value) if end else (value, last)})
+        return table.model_copy(update={"band": {**table.band, name: moved}})
+
+    return change
+
+
+def _along(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
+    """z: of all corners and bands at one z together."""
+    found: list[tuple[float, str, Change]] = []
+    for line in LINES:
+        for k, corner in enumerate(getattr(table, line) or ()):
+            found.append((corner[Z], f"{line}[{k + 1}][1]", _corner(line, k, Z)))
+    for name, band in table.band.items():
+        for end, z in enumerate(band.z or ()):
+            found.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
+    for z, run in groupby(sorted(found, key=lambda one: one[0]), lambda one: one[0]):
+        some = list(run)
+        if z:
+            yield some[0][1], z, [change for _, __, change in some]
+
+
+def _across(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
+    """r: of neighbours where it is equal together."""
+    for line in LINES:
+        corners = enumerate(getattr(table, line) or ())
+        for r, run in groupby(corners, lambda one: one[1][R]):
+            some = [k for k, _ in run]
+            where = f"{some[0] + 1}" if not some[1:] else f"{some[0] + 1}-{some[-1] + 1}"
+            if r:
+                yield f"{line}[{where}][2]", r, [_corner(line, k, R) for k in some]
+
+
+def _radii(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
+    for line in LINES:
+        for k, corner in enumerate(getattr(table, line) or ()):
+            if len(corner) > RADIUS and corner[RADIUS]:
+                yield f"{line}[{k + 1}][3]", corner[RADIUS], [_corner(line, k, RADIUS)]

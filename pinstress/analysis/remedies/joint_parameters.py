@@ -1,0 +1,104 @@
+"""All that a pin in contact with its lugs depends on, by the keys of the study: dimensions of pin
+and lugs, and what they are made of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from assess.derivatives.in_lugs import Joint, JointParameter
+from geometry import Pin
+from geometry.shape.dimensions import Dimension
+from pinstress.analysis.remedies.dimensions import dimensions_of
+from pinstress.study.model.lugs import lugs_about
+from pinstress.study.model.pins import material
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.pins import LugTable
+
+LOOSE = 1e-3  # of the pin's radius: what steps of a clearance are parts of, as it may be none
+
+
+@dataclass(frozen=True)
+class StudyParameter:
+    """One of them; kind: its dimension ("length", "stress", .., "1")."""
+
+    kind: str
+    of_joint: JointParameter
+
+
+def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
+    """Those of a pin in lugs that are not zero, and its clearances."""
+    pin = task.pin
+    assert isinstance(pin, Pin)
+    for d in dimensions_of(study, pin):
+        changed = partial(_with_dimension, study, task, d)
+        yield StudyParameter("length", JointParameter(d.key, d.value, d.value, changed))
+    table = study.table.pin[pin.name]
+    for lug in task.lugs:
+        name = lug.connection
+        given = table.lug.get(name)
+        bushing = given and given.bushing
+        for key, value, scale in (
+            ("clearance", lug.clearance, LOOSE * pin.band(name).radius),
+            ("outer_diameter", given and given.outer_diameter, None),
+            ("edge_radius", lug.edge_radius, None),
+            ("bushing.thickness", bushing and bushing.thickness, None),
+        ):
+            if scale or value:
+                changed = partial(_with_lug, study, task, name, key)
+                number = value or 0.0
+                one = JointParameter(f"lug.{name}.{key}", number, scale or number, changed)
+                yield StudyParameter("length", one)
+    made_of = [task.material, *(m for x in task.lugs for m in (x.material, x.bearing))]
+    for part in dict.fromkeys(made_of):
+        heavy = part == task.material and any(loads.body.any() for loads in task.loads)
+        for key, kind in (
+            ("youngs_modulus", "stress"),
+            ("poisson_ratio", "1"),
+            *((("density", "density"),) if heavy else ()),
+        ):
+            value = getattr(part, key)
+            if value:
+                changed = partial(_with_material, study, task, part.name, key)
+                full = f"material.{part.name}.{key}"
+                yield StudyParameter(kind, JointParameter(full, value, value, changed))
+
+
+def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:
+    pin = dimension.changed(value)
+    return pin, task.material, lugs_about(study, pin)
+
+
+def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
+    own = "pin", task.pin.name, "lug", name
+    if name not in study.table.pin[task.pin.name].lug:
+        study = _changed(study, own, LugTable())
+    return _made_anew(_changed(study, (*own, *key.split(".")), value), task)
+
+
+def _with_material(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
+    return _made_anew(_changed(study, ("material", name, key), value), task)
+
+
+def _made_anew(study: Study, task: Task) -> Joint:
+    pin = task.pin
+    assert isinstance(pin, Pin)
+    made_of = material(study, study.table.pin[pin.name].material)
+    return pin, made_of, lugs_about(study, pin)
+
+
+def _changed(study: Study, path: tuple[str, ...], value: Any) -> Study:
+    return replace(study, table=_set(study.table, path, value))
+
+
+def _set(table: Any, path: tuple[str, ...], value: Any) -> Any:
+    """A table with another value at a path of names."""
+    first, *rest = path
+    named = isinstance(table, dict)
+    if rest:
+        value = _set(table[first] if named else getattr(table, first), tuple(rest), value)
+    return {**table, first: value} if named else table.model_copy(update={first: value})

@@ -1,0 +1,341 @@
+"""What a little more of anything does to a pin's factor of safety: true derivatives.
+
+They are of the row's number: of the stress of a section where that governs, otherwise of the
+surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic model's
+first mesh are taken, relative to its own maximum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from assess.derivatives.derivatives import derivatives
+from assess.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
+from assess.derivatives.in_section import section_derivatives
+from assess.derivatives.records import Derivatives, SolvedCase
+from fea.beam.model import BeamAnswer
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.core.places import Place
+from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.solve.refine import STEP, Solution, singularities_of
+from fea.solve.requirement import Asked
+from fea.support.contact.solve_in_lugs import LugSolution
+from geometry import Pin
+from geometry.mesh.gmsh_session import MeshError
+from geometry.shape.dimensions import Dimension
+from pinbase.arrays import Floats
+from pinstress.analysis.remedies.dimensions import dimensions_of
+from pinstress.analysis.remedies.joint_parameters import StudyParameter, joint_parameters
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from reports.data.sensitivities import PinSensitivities, Sensitivity
+
+MOST = 0.1  # of a dimension that its step is at most
+SMALL = 0.01  # step of any other parameter, of its value; of a force, of the largest
+POISSON = 0.01
+LOOSER = 0.01  # of the step of a dimension: that of a clearance
+IN_LUGS = (
+    "in contact with its lugs, whose derivatives take about as long as the solution: "
+    "--sensitivities gives them"
+)
+NO_CONTACT = 'no derivatives of a pin on foundations: analysis.joints = "contact" has them'
+NOT_REVOLVED = "no derivatives, only of bodies of revolution: solve the changed study"
+
+
+def sensitivities(
+    study: Study,
+    asked: Asked,
+    task: Task,
+    solutions: Iterable[Solution | LugSolution],
+    step: float,
+    every: bool = False,
+) -> tuple[PinSensitivities, ...]:
+    """Of a task's worst case, or of every one. step: of a dimension (m) whose effect is shown; a
+    tenth of it, or a hundredth, where that is no small part of the dimension.
+    """
+    found = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
+    dimensions = tuple(dimensions_of(study, task.pin))
+    return tuple(
+        _of_lugs(study, task, s, step if every else None)
+        if isinstance(s, LugSolution)
+        else _of_case(asked, task, s, dimensions, step)
+        for s in found[: None if every else 1]
+    )
+
+
+def _largest(found: Solution | LugSolution) -> float:
+    solution = found.solution if isinstance(found, LugSolution) else found
+    return solution.peak.max_von_mises or 0.0
+
+
+def by_length(
+    study: Study,
+    task: Task,
+    joined: LugSolution,
+    keys: Collection[str] | None = None,
+) -> dict[str, float] | None:
+    """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
+    each of its lengths, Pa/m, by their keys in the pin's table: "profile[2].diameter", "fillet",
+    "lug.M.clearance"; None where it has no derivatives. keys: those asked for; without, all.
+
+    Raises: MeshError, SolveError.
+    """
+    lengths = [x.of_joint for x in joint_parameters(study, task) if x.kind == "length"]
+    asked = [x for x in lengths if keys is None or x.key in keys]
+    found = differentiated_in_lugs(joined, task, asked, alone=True)
+    return None if found is None else found.by_parameter
+
+
+def differentiated_in_lugs(
+    joined: LugSolution,
+    task: Task,
+    parameters: Iterable[JointParameter],
+    *,
+    alone: bool = False,
+    place: Place | None = None,
+) -> JointDerivatives | None:
+    """Of the maximum of a pin in contact, or of a place at the row's instant; None where it has
+    none. alone: by the parameters only, not by loads. Raises: MeshError, SolveError.
+    """
+    solution, model, rings = joined.solution, joined.model, joined.rings
+    peak, answer = solution.peak, solution.answer
+    if model is None or rings is None or peak.governing is None or not peak.max_von_mises:
+        return None
+    if not isinstance(answer, HarmonicAnswer):
+        return None
+    solved = SolvedCase(
+        rings,
+        task.material,
+        (),
+        solution.loads.at(np.array([solution.instant])),
+        answer.solution,
+        answer.singularities,
+        (peak.own_error or 0.0) / peak.max_von_mises,
+        solution.loads,
+    )
+    links = peak.governing
+    return joint_derivatives(
+        solved, model, links, parameters, alone=alone, place=place or governing_place(peak)
+    )
+
+
+def governing_place(peak: Peak) -> Place:
+    """Of which place the maximum is."""
+    return "surface" if peak.places is None else peak.places.governs
+
+
+def differentiated(
+    asked: Asked, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
+) -> Derivatives | None:
+    """Of a solution's maximum; None where it has none. Raises: MeshError, SolveError."""
+    peak, pin, answer = solution.peak, task.pin, solution.answer
+    if not peak.max_von_mises or peak.governing is None or not isinstance(pin, Pin):
+        return None
+    clamps = tuple(pin.surface(name) for name in task.clamps)
+    error, history = (peak.own_error or 0.0) / peak.max_von_mises, None
+    by_section = governing_place(peak) == "section"
+    if isinstance(answer, HarmonicAnswer):
+        section, zones, history = answer.solution, answer.singularities, solution.loads
+    elif isinstance(answer, BeamAnswer):
+        case = (peak.governing,)
+        zones = singularities_of(pin, task.material, clamps, case, asked.distance)
+        section = harmonic_solution(
+            SectionProblem(pin, task.material, clamps, case, zones), 0, STEP
+        )
+    else:
+        return None
+    solved = SolvedCase(pin, task.material, clamps, peak.governing, section, zones, error, history)
+    if by_section:
+        return section_derivatives(solved, dimensions)
+    return scaled(derivatives(solved, dimensions), peak.max_von_mises)
+
+
+def scaled(found: Derivatives, maximum: float) -> Derivatives:
+    """With another maximum, Pa, and the same relative derivatives."""
+    times = maximum / found.maximum
+    if times == 1.0:
+        return found
+    return replace(
+        found,
+        maximum=maximum,
+        by_dimension={key: times * x for key, x in found.by_dimension.items()},
+        by_force={key: times * x for key, x in found.by_force.items()},
+        by_moment={key: times * x for key, x in found.by_moment.items()},
+        poisson_ratio=times * found.poisson_ratio,
+        density=times * found.density,
+    )
+
+
+def _of_case(
+    asked: Asked, task: Task, solution: Solution, dimensions: tuple[Dimension, ...], step: float
+) -> PinSensitivities:
+    peak = solution.peak
+    maximum = peak.max_von_mises or 0.0
+    factor = peak.safety_factor(task.material.yield_strength)
+    out = PinSensitivities(peak.pin, peak.case, maximum, factor)
+    if not isinstance(task.pin, Pin):
+        return replace(out, note=NOT_REVOLVED)
+    try:
+        found = differentiated(asked, task, solution, dimensions)
+    except (MeshError, SolveError) as error:
+        return replace(out, note=f"no derivatives: {error}")
+    if found is None or peak.governing is None:
+        return replace(out, note=f"no derivatives with the {peak.model} model")
+    rows = (
+        *_of_dimensions(found, dimensions, step),
+        *_of_loads(found, peak.governing),
+        *_of_material(found, task.material),
+    )
+    return _with_rows(out, found, rows)
+
+
+def _with_rows(
+    out: PinSensitivities, found: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
+) -> PinSensitivities:
+    return replace(
+        out,
+        rows=_sorted(rows, out.factor),
+        tied_places=found.tied_places,
+        tied_times=found.tied_times,
+        without=tuple(found.without.items()),
+    )
+
+
+def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) -> PinSensitivities:
+    """Of a pin in contact; without a step, why there are none."""
+    peak = joined.solution.peak
+    maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
+    factor, links = peak.safety_factor(strength), peak.governing
+    out = PinSensitivities(peak.pin, peak.case, maximum, factor)
+    if not isinstance(task.pin, Pin):
+        return replace(out, note=NOT_REVOLVED)
+    if joined.model is None or links is None:
+        return replace(out, note=NO_CONTACT)
+    if step is None:
+        return replace(out, note=IN_LUGS)
+    try:
+        parameters = [x.of_joint for x in joint_parameters(study, task)]
+        found = differentiated_in_lugs(joined, task, parameters)
+    except (MeshError, SolveError) as error:
+        return replace(out, note=f"no derivatives: {error}")
+    if found is None:
+        return replace(out, note=f"no derivatives with the {peak.model} model")
+    rows = [
+        *_of_forces(found.by_force, "force", links.surfaces, links.forces[0], maximum),
+        *_of_forces(found.by_moment, "moment", links.surfaces, links.moments[0], maximum),
+        *_of_joint(joint_parameters(study, task), found.by_parameter, maximum, step),
+    ]
+    if strength is not None:
+        key, more = f"material.{task.material.name}.yield_strength", SMALL * strength
+        rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
+    return _with_rows(replace(out, changing=found.changing), found, rows)
+
+
+def _of_joint(
+    parameters: Iterable[StudyParameter], by: dict[str, float], maximum: float, step: float
+) -> Iterator[_Parameter]:
+    for parameter in parameters:
+        one, kind = parameter.of_joint, parameter.kind
+        if one.key not in by:
+            continue
+        if one.key.endswith(".clearance"):
+            more = LOOSER * step
+        elif kind == "length":
+            more = _little(step, one.value)
+        else:
+            more = POISSON if kind == "1" else SMALL * one.value
+        stress = by[one.key]
+        yield _Parameter(one.key, kind, one.value, more, stress, -stress / maximum)
+
+
+def _little(step: float, value: float) -> float:
+    """A step (m) of a dimension, a power of ten smaller where that would be no small part of it."""
+    while step > MOST * value:
+        step /= 10.0
+    return step
+
+
+@dataclass(frozen=True)
+class _Parameter:
+    """As a Sensitivity; relative: derivative of the factor over the factor."""
+
+    key: str
+    kind: str
+    value: float
+    step: float
+    stress: float
+    relative: float
+
+    @property
+    def effect(self) -> float:
+        """Of the step on the factor, relative."""
+        return self.relative * self.step
+
+    def sensitivity(self, factor: float | None) -> Sensitivity:
+        """Of this factor."""
+        of_factor = None if factor is None else factor * self.relative
+        after = None if factor is None else factor * (1.0 + self.effect)
+        return Sensitivity(
+            self.key, self.kind, self.value, self.step, self.stress, of_factor, after
+        )
+
+
+def _of_dimensions(
+    found: Derivatives, dimensions: tuple[Dimension, ...], step: float
+) -> Iterator[_Parameter]:
+    for dimension in dimensions:
+        if dimension.key in found.by_dimension:
+            more = _little(step, dimension.value)
+            stress = found.by_dimension[dimension.key]
+            relative = -stress / found.maximum
+            yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
+
+
+def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
+    """The largest effects first."""
+    return tuple(each.sensitivity(factor) for each in sorted(rows, key=lambda x: -abs(x.effect)))
+
+
+def _of_loads(found: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
+    for kind, by, given in (
+        ("force", found.by_force, loads.forces[0]),
+        ("moment", found.by_moment, loads.moments[0]),
+    ):
+        yield from _of_forces(by, kind, loads.surfaces, given, found.maximum)
+
+
+def _of_forces(
+    by: dict[tuple[str, str], float],
+    kind: str,
+    surfaces: tuple[str, ...],
+    given: Floats,
+    maximum: float,
+) -> Iterator[_Parameter]:
+    for (surface, axis), stress in by.items():
+        value = float(given[surfaces.index(surface), "xyz".index(axis)])
+        step = SMALL * float(np.abs(given).max())
+        if step:
+            relative = -stress / maximum
+            yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
+
+
+def _of_material(found: Derivatives, material: Material) -> Iterator[_Parameter]:
+    rho, strength = material.density, material.yield_strength
+    for name, kind, value, step, stress in (
+        ("youngs_modulus", "stress", material.youngs_modulus, None, found.youngs_modulus),
+        ("poisson_ratio", "1", material.poisson_ratio, POISSON, found.poisson_ratio),
+        ("density", "density", rho, None, found.density),
+        ("yield_strength", "stress", strength, None, 0.0),
+    ):
+        if value is not None:
+            relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / found.maximum
+            more = SMALL * value if step is None else step
+            yield _Parameter(
+                f"material.{material.name}.{name}", kind, value, more, stress, relative
+            )

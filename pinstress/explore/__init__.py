@@ -1,0 +1,1 @@
+"""Many analyses: sweeps, sizes, weights, probabilities, charts."""

@@ -1,0 +1,253 @@
+"""The speed-accuracy chart of one pin: every model on a ladder of meshes compared with a
+reference.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+from fea.core.peak import Peak
+from fea.solve.refine import LOCAL
+from fea.solve.single_mesh import Problem, Rung
+from fea.solve.solve_pin import Asked, Solution, solve_pin
+from fea.solve.verdict import Seen
+from fea.support.contact.pressure_loads import PressureLoads
+from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from geometry import Pin
+from geometry.mesh.elements import Element
+from pinbase.processes.pool import Progress
+from pinstress.analysis.plan import all_loads
+from pinstress.explore.chart.in_lugs import chosen_in_lugs, climb_in_lugs, contact_reference
+from pinstress.explore.chart.limit_loads import limit_points, limit_problem
+from pinstress.explore.chart.measured_process import Measure, Measured
+from pinstress.explore.chart.mesh_sequences import (
+    HARMONIC,
+    USUAL,
+    Climb,
+    chosen,
+    climb_harmonic,
+    climb_local,
+    climb_solid,
+    harmonic_reference,
+    local_reference,
+    solid_reference,
+)
+from pinstress.explore.chart.single_joint import JointProblem, JointRung
+from pinstress.explore.chart.single_limit import LimitProblem
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.tasks import Task, tasks
+from pinstress.study.reading.choices import require_tolerance, select
+from pinstress.study.reading.file import Study
+from reports.data.chart import Chart, ChartPoint, Reference
+
+NAMES = {
+    "beam": "Timoshenko beam",
+    "harmonic": "quadratic triangles",
+    "harmonic+local": "triangles and local tetrahedra",
+    "linear": "linear tetrahedra",
+    "straight": "straight quadratic tetrahedra",
+    "curved": "curved quadratic tetrahedra",
+}
+
+
+@dataclass(frozen=True)
+class ChartPlan:
+    """What is to be charted, every input read and found usable. peak: what `auto` says of it on
+    its first mesh. beam_error: relative, of the beam by itself. chosen: of a pin in its lugs, on
+    which mesh of contact a run ends. limit: load, where a run computes one.
+    """
+
+    study: Study
+    problem: Problem | JointProblem
+    asked: Asked
+    peak: Peak
+    beam_error: float | None = None
+    chosen: JointRung | None = None
+    limit: LimitProblem | None = None
+
+
+def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None) -> ChartPlan:
+    """Raises: InputError for bad input, an unconstrained pin, or one without any stress."""
+    select(study.table.pin, [pin], "pin", "pin")
+    loads = all_loads(study, select(study.table.case, [case], "case", "case"))
+    (task,) = tasks(study, [pin_of(study, pin)], loads)
+    table = study.table.analysis
+    asked = Asked(
+        require_tolerance(tolerance) or table.tolerance,
+        goal=table.goal,
+        required=table.required_safety_factor,
+        distance=table.excluded_distance,
+    )
+    if task.lugs:
+        return _plan_in_lugs(study, task, asked)
+    clamps = tuple(task.pin.surface(c) for c in task.clamps)
+
+    def first(model: Asked) -> Solution:
+        found = solve_pin(
+            task.pin, task.material, task.clamps, task.loads, model, between=task.between
+        )
+        return found[0]
+
+    solution = first(replace(asked, meshes=1))
+    peak = solution.peak
+    problem = Problem(task.pin, task.material, clamps, solution.loads, asked.distance)
+    _require_stress(study, peak)
+    beam_error = None
+    if isinstance(task.pin, Pin):
+        with suppress(ValueError, ArithmeticError):  # the chart will say why
+            beam = first(replace(asked, model="beam")).peak
+            if beam.max_von_mises and beam.error_estimate is not None:
+                beam_error = beam.error_estimate / beam.max_von_mises
+    limit = limit_problem(study, task, solution)
+    return ChartPlan(study, problem, asked, peak, beam_error, limit=limit)
+
+
+def _require_stress(study: Study, peak: Peak) -> None:
+    if not peak.max_von_mises:
+        why = "its loads cause no stress" if peak.verdict == "converged" else peak.note
+        text = f"pin {peak.pin}, case {peak.case}: there is nothing to chart: {why}"
+        raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
+
+
+def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
+    """Of a pin in its lugs: solved as a run would."""
+    if not isinstance(task.pin, Pin):
+        raise study.error(
+            f"pin {task.pin.name} has cuts and is held by lugs; charts of contact are of pins "
+            'without cuts: remove them, or set analysis.joints = "prescribed"',
+            at=f"pin.{task.pin.name}",
+            code="not-axisymmetric",
+        )
+    given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
+    (found,) = solve_in_lugs(given, asked)
+    solution = found.solution
+    _require_stress(study, solution.peak)
+    assert found.joint is not None
+    loads = solution.loads
+    problem = JointProblem(
+        task.pin,
+        task.material,
+        task.lugs,
+        loads.links if isinstance(loads, PressureLoads) else loads,
+        solution.instant,
+        asked.distance,
+        loads.pressed,
+    )
+    end = chosen_in_lugs(problem, solution.peak, found.joint)
+    limit = limit_problem(study, task, found)
+    return ChartPlan(study, problem, asked, solution.peak, chosen=end, limit=limit)
+
+
+def chart(
+    plan: ChartPlan,
+    measure: Measure,
+    meshes: int | None = None,
+    runs: int = 3,
+    progress: Progress = lambda _, __: None,
+    calculix: bool = False,
+) -> Chart:
+    """Climb all ladders. measure: of one rung. meshes: of each solid element, by default as many as
+    are quick. runs: the times are their medians. calculix: of a pin in its lugs also by CalculiX.
+
+    Raises: SolveError when there is no reference.
+    """
+    about, behind = len(HARMONIC) + 3 * (meshes or USUAL) + 4, 0
+
+    def tell(message: str) -> None:
+        nonlocal behind
+        progress(message, min(behind / about, 1.0))
+        behind += 1
+
+    climb = Climb(plan.problem, plan.asked, plan.peak.model, measure, runs, tell)
+    made = _climbed(plan, climb, meshes, calculix)
+    if plan.limit is None:
+        return made
+    limits = limit_points(plan.limit, measure, runs, tell)
+    return replace(made, points=(*made.points, *limits))
+
+
+def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) -> Chart:
+    """The ladders of the maximum von Mises stress."""
+    if plan.chosen is not None:
+        climb_in_lugs(climb, plan.chosen, calculix)
+        rung, seen, cells = contact_reference(climb)
+        return _joined(plan, climb, (rung, seen), cells)
+    pin = plan.problem.pin
+    if isinstance(pin, Pin):
+        climb.to(Rung("beam"))
+        climb_harmonic(climb)
+    elif climb.auto == LOCAL:
+        climb_local(climb)
+    else:
+        other = Measured(None, failed=f"pin {pin.name} is not a body of revolution")
+        climb.done += [(Rung("beam"), other), (Rung("harmonic"), other)]
+    elements: tuple[Element, ...] = ("linear", "straight", "curved")
+    for element in elements:
+        climb_solid(climb, element, meshes)
+    if isinstance(pin, Pin):
+        reference = harmonic_reference(climb)
+    else:
+        reference = local_reference(climb) if climb.auto == LOCAL else solid_reference(climb)
+    return _joined(plan, climb, reference)
+
+
+def _joined(
+    plan: ChartPlan,
+    climb: Climb,
+    reference: tuple[Rung | JointRung, Seen],
+    cells: float = 0.0,
+) -> Chart:
+    """cells: the part of the reference's error from cells of contact, relative."""
+    at, seen = reference
+    stress, best = plan.study.system.factor("stress"), seen.results[-1]
+    ends = plan.chosen or chosen(climb)
+
+    def name(rung: Rung | JointRung) -> str:
+        if isinstance(rung, JointRung):
+            return rung.element
+        return NAMES.get(rung.model, NAMES[rung.element])
+
+    points = [
+        ChartPoint(
+            rung.model,
+            name(rung),
+            found.result.unknowns,
+            found.seconds,
+            found.memory,
+            found.result.maximum / stress,
+            abs(found.result.maximum / best.maximum - 1.0),
+            rung == ends,
+        )
+        if found.result is not None
+        else ChartPoint(rung.model, name(rung), failed=found.failed)
+        for rung, found in climb.done
+    ]
+    return Chart(
+        pin=plan.problem.pin.name,
+        case=plan.problem.loads.case,
+        stress_unit=plan.study.system.stress,
+        tolerance=plan.asked.tolerance,
+        points=tuple(points),
+        reference=Reference(
+            at.model, name(at), best.unknowns,
+            best.maximum / stress, seen.relative + cells,
+        ),
+        bare=max(m.bare for _, m in climb.done),
+        runs=climb.runs,
+        beam_error=plan.beam_error,
+        note=_note(plan.peak),
+    )  # fmt: skip
+
+
+def _note(peak: Peak) -> str:
+    """Where the maximum is one of a part of the pin only."""
+    governing = [zone for zone in peak.singular_at if zone.governs]
+    if not governing:
+        return ""
+    worst = max(governing, key=lambda zone: zone.max_von_mises)
+    return (
+        f"No maximum exists: at {worst.kind} ({' / '.join(worst.between)}) stress grows without "
+        "bound. The chart shows the maximum outside the excluded zones, which all models "
+        "share."
+    )

@@ -1,0 +1,204 @@
+"""The ladders of meshes of a chart: which are climbed, how far, and what they are measured by."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from fea.core.linear_solver import SolveError
+from fea.core.mesh_result import MeshResult
+from fea.solve.refine import LOCAL, MESHES, MOST_UNKNOWNS, STEP
+from fea.solve.single_mesh import Problem, Rung
+from fea.solve.solve_pin import Asked, enough, ratio_of
+from fea.solve.verdict import Seen
+from geometry import Pin
+from geometry.mesh.elements import Element
+from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
+from pinstress.explore.chart.single_joint import JointProblem, JointRung
+
+HARMONIC = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.solve.single_mesh)
+FIRST: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
+USUAL, FEWEST = 5, 4  # meshes of an element, however large
+MOST = 150_000  # unknowns of a solid that is charted; of one that has no other reference:
+MOST_BELOW_REFERENCE = 50_000
+MOST_OF_REFERENCE = 400_000
+ORDER = 10.0  # times the unknowns of the finest that is charted
+FEWEST_OF_REFERENCE = 3
+ADAPTED = (
+    "harmonic",
+    LOCAL,
+    "contact",
+    "prescribed",
+)  # models whose meshes are finer where stress is high
+
+
+@dataclass
+class Climb:
+    """Rungs climbed so far, in their order. auto: the model that it chooses."""
+
+    problem: Problem | JointProblem
+    asked: Asked
+    auto: str
+    measure: Measure
+    runs: int
+    tell: Callable[[str], None]
+    done: list[tuple[Rung | JointRung, Measured]] = field(default_factory=list)
+
+    def to(self, rung: Rung | JointRung, keep: bool = True) -> Measured:
+        """Climb a rung; `keep` it as a point of the chart."""
+        self.tell(f"{rung.model} model")
+        below = self.results(rung) if rung.model in ADAPTED and rung.level > 0 else ()
+        if not keep:  # refined everywhere: it is what the others are measured by
+            below = tuple(replace(result, high=()) for result in below)
+        runs = self.runs if keep and rung.model != "calculix" else 1
+        found = self.measure(MeasureJob(self.problem, rung, below[-1:], runs, reference=not keep))
+        if keep:
+            self.done.append((rung, found))
+        return found
+
+    def drop_repeated(self) -> None:
+        """Leave out the last but one where the last is the same mesh, which places that need small
+        elements keep from being coarser.
+        """
+        (_, one), (_, two) = self.done[-2:]
+        if one.result and two.result and one.result.unknowns == two.result.unknowns:
+            del self.done[-2]
+
+    def results(self, like: Rung | JointRung) -> tuple[MeshResult, ...]:
+        """Of the same model and element, from a run's first mesh on."""
+        return tuple(
+            m.result for r, m in self.done
+            if (r.model, r.element) == (like.model, like.element) and r.level >= 0 and m.result
+        )  # fmt: skip
+
+    def enough(self, model: str, results: tuple[MeshResult, ...]) -> bool:
+        """Whether a run of the model would end here."""
+        return enough(self.asked, self.problem.material, self.seen(model, results))
+
+    def seen(self, model: str, results: tuple[MeshResult, ...], first: int = 0) -> Seen:
+        """Successive meshes as a run sees them."""
+        ratio = ratio_of(self.problem.pin, model)
+        name, case = self.problem.pin.name, self.problem.loads.case
+        return Seen(name, case, model, results, (0.0,) * len(results), ratio, first)
+
+
+def climb_harmonic(climb: Climb) -> None:
+    """The usual levels, and on to where `auto` ends."""
+    for level in HARMONIC:
+        found = climb.to(Rung("harmonic", level=level))
+        climb.drop_repeated()
+    while (
+        climb.auto == "harmonic"
+        and found.result is not None
+        and level + 1 < MESHES["harmonic"]
+        and found.result.unknowns * STEP**2 <= MOST_UNKNOWNS["harmonic"]
+        and not climb.enough("harmonic", climb.results(Rung("harmonic")))
+    ):
+        level += 1
+        found = climb.to(Rung("harmonic", level=level))
+
+
+def climb_local(climb: Climb) -> None:
+    """All meshes that a run may make."""
+    for level in range(MESHES[LOCAL]):
+        climb.to(Rung(LOCAL, level=level))
+
+
+def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
+    """Finer and finer meshes, as many as requested or until they get large, or pass a limit."""
+    pin = climb.problem.pin
+    step = 2 if pin.meshed else 1  # it can only be halved
+    first = 0 if pin.meshed else FIRST[element]
+    most = MOST if isinstance(pin, Pin) else MOST_BELOW_REFERENCE
+    for k in range(meshes or USUAL):
+        found = climb.to(Rung("solid", element, first + step * k))
+        if found.over:
+            return
+        growth = STEP ** (3 * step)
+        few = meshes or (2 if pin.meshed else FEWEST)
+        if found.result is not None and k + 1 >= few and found.result.unknowns * growth > most:
+            return
+
+
+def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
+    """Finer and finer than the finest that is charted, until an order larger."""
+    level, charted = _finest(climb, "harmonic")
+    results: list[MeshResult] = []
+    while len(results) < FEWEST_OF_REFERENCE or results[-1].unknowns < ORDER * charted[-1].unknowns:
+        level += 1
+        found = climb.to(Rung("harmonic", level=level), keep=False)
+        if found.result is None:
+            raise SolveError(
+                f"the reference, harmonic mesh {level + 1}: {found.failed}", code="no-reference"
+            )
+        results.append(found.result)
+        if results[-1].unknowns > MOST_OF_REFERENCE:
+            break
+    first = level - len(results) + 1
+    return Rung("harmonic", level=level), climb.seen("harmonic", tuple(results), first)
+
+
+def local_reference(climb: Climb) -> tuple[Rung, Seen]:
+    """A mesh more than is charted, which has nearly twice the unknowns of the last one.
+
+    Raises: SolveError where it cannot be solved.
+    """
+    level, charted = _finest(climb, LOCAL)
+    finer = Rung(LOCAL, level=level + 1)
+    found = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
+    if found.result is None:
+        raise SolveError(f"the reference: {found.failed}", code="no-reference")
+    return Rung(LOCAL, level=level + 1), climb.seen(LOCAL, (*charted, found.result))
+
+
+def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
+    """The solid model on finer meshes than are charted, as far as its unknowns allow."""
+    level, charted = _finest(climb, "solid")
+    results = list(charted)
+    step = 2 if climb.problem.pin.meshed else 1
+    while (
+        results[-1].unknowns < ORDER * charted[-1].unknowns
+        and results[-1].unknowns * STEP ** (3 * step) <= MOST_OF_REFERENCE
+    ):
+        found = climb.to(Rung("solid", "curved", level + step), keep=False)
+        if found.result is None:
+            break
+        results.append(found.result)
+        level += step
+    if len(results) == len(charted):
+        raise SolveError(
+            "no solid mesh finer than those charted could be solved as a reference",
+            code="no-reference",
+        )
+    return Rung("solid", "curved", level), climb.seen("solid", tuple(results))
+
+
+def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshResult, ...]]:
+    """The finest level of a model's best element, and all its mesh results.
+
+    Raises: SolveError when there is none.
+    """
+    of_it = [(r.level, m) for r, m in climb.done if r.model == model and r.element == "curved"]
+    results = tuple(m.result for _, m in of_it if m.result)
+    if not results:
+        raise SolveError(
+            f"no mesh of the {model} model could be solved: {of_it[0][1].failed}",
+            code="no-mesh-solved",
+        )
+    return max(level for level, m in of_it if m.result), results
+
+
+def chosen(climb: Climb) -> Rung | JointRung | None:
+    """Where `auto` ends; None where it goes on to finer meshes than there are here."""
+    model = climb.auto
+    if model == "beam":
+        return Rung("beam")
+    of_it = [
+        r for r, m in climb.done
+        if r.model == model and r.element == "curved" and r.level >= 0 and m.result
+    ]  # fmt: skip
+    results = climb.results(Rung(model, "curved"))  # type: ignore[arg-type]
+    for n, rung in enumerate(of_it, 1):
+        if climb.enough(model, results[:n]):
+            return rung
+    return of_it[-1] if model in ADAPTED and of_it else None

@@ -1,0 +1,294 @@
+"""Probabilities of failure of a study's pins, found in four ways that check each other.
+
+Plain sampling decides where enough samples fail; FORM finds where failure is most likely; designs
+sampled about these points weight far fewer of them into small probabilities. Every probability is
+one of designs that were solved as a run solves them: nothing is fitted or interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinbase.processes.pool import Progress
+from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
+from pinstress.explore.reliability.drivers import base_samples, indices
+from pinstress.explore.reliability.form import (
+    NOISY,
+    SMOOTH,
+    Closeness,
+    DesignPoint,
+    LimitState,
+    design_point,
+    distinct,
+    form_quantile,
+)
+from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
+from pinstress.explore.reliability.sampling import importance_draws, plain_draws
+from pinstress.explore.sweep.batches import shapes
+from pinstress.explore.sweep.evaluate import Evaluator
+from pinstress.explore.sweep.parameters import Parameter
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.vary import ReliabilityTable
+from reports.data.reliability import (
+    SYSTEM,
+    Driver,
+    FirstOrder,
+    Reliability,
+    Spread,
+)
+from reports.data.results import PinResult, Results
+
+Array = NDArray[np.float64]
+
+STARTS = 3  # failing samples from which further design points are sought
+APART = 0.7  # cosine below which a sample's direction is another
+BEYOND = 1.0  # standard deviations beyond the design points: where others are looked for
+MOST_CENTRES = 40  # of importance sampling
+
+
+def assess(
+    study: Study,
+    nominal: Results,
+    jobs: int,
+    progress: Progress,
+    pins: Sequence[str] | None = None,
+    cases: Sequence[str] | None = None,
+) -> Reliability:
+    """Assess the pins of a study in its cases. nominal: the results of the study as it is.
+
+    Raises: InputError for a study without random numbers or without strengths.
+    """
+    asked = study.table.reliability
+    parameters, space = random_numbers(study)
+    evaluator = Evaluator(study, parameters, pins, cases)
+    _require_strengths(study, evaluator)
+    designs = SolvedDesigns(evaluator, space, jobs, progress)
+    plain = plain_draws(asked.samples, space.size, asked.seed)
+    sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
+    forms = _first_orders(study, parameters, designs, sampled, cases)
+    centres = [c for form in forms for c in form.centres]
+    weighted = weighted_sample(designs, centres, asked)
+    shares = _indices(designs, asked) if space.lower is None else None
+    rows = {(p.pin, p.case): p for p in nominal.pins}
+    risks = []
+    for k, (pin, case) in enumerate(evaluator.table):
+        drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
+        found = AssessedRow(
+            pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers
+        )
+        risks.append(risk_of(found, sampled, weighted, asked))
+    if len(risks) > 1:
+        everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
+        worst = AssessedRow(SYSTEM, SYSTEM, RiskColumn(None), _worst(nominal), None, everything)
+        risks.insert(0, risk_of(worst, sampled, weighted, asked))
+    vary = study.table.vary
+    assert vary is not None
+    return Reliability(
+        title=study.table.title,
+        study=str(study.path),
+        limit=asked.factor,
+        probability=asked.probability,
+        confidence=asked.confidence,
+        samples=asked.samples,
+        seed=asked.seed,
+        parameters=tuple((p.key, p.law_text) for p in parameters),
+        risks=tuple(risks),
+        correlations=tuple(
+            f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations
+        ),
+        solved=dict(designs.solved),
+        reasons=dict(designs.reasons),
+        notes=tuple(_notes(nominal)),
+    )
+
+
+def _require_strengths(study: Study, evaluator: Evaluator) -> None:
+    for name in dict.fromkeys(pin for pin, _ in evaluator.table):
+        material = study.table.pin[name].material
+        if study.table.material[material].yield_strength is None:
+            raise study.error(
+                f"material.{material}: reliability needs its yield_strength, for the factors of "
+                f"pin {name}",
+                code="no-strength",
+            )
+
+
+@dataclass(frozen=True)
+class _Form:
+    """FORM's result of a row, the points about which to sample, and the nearest design point."""
+
+    result: FirstOrder
+    centres: tuple[Array, ...] = ()
+    nearest: DesignPoint | None = None
+
+
+def _first_orders(
+    study: Study,
+    parameters: tuple[Parameter, ...],
+    designs: SolvedDesigns,
+    sampled: Sample,
+    cases: Sequence[str] | None,
+) -> list[_Form]:
+    """Of all rows; only the pin of a row is solved."""
+    table = designs.evaluator.table
+    found: dict[tuple[str, str], _Form] = {}
+    for pin in dict.fromkeys(pin for pin, _ in table):
+        alone = designs.of_pin(Evaluator(study, parameters, [pin], cases))
+        for k, row in enumerate(alone.evaluator.table):
+            place, asked = table.index(row), study.table.reliability
+            starts = starts_of(sampled, place, asked.factor)
+            found[row] = first_order(alone, k, starts, asked)
+            if sampled.answers.depends[place]:
+                about = found[row].centres + _beneath(alone, k, asked)
+                found[row] = replace(found[row], centres=about)
+    return [found[row] for row in table]
+
+
+def first_order(
+    designs: SolvedDesigns, row: int, starts: list[Array], asked: ReliabilityTable
+) -> _Form:
+    """Design points of a row from the mean and from other starts in other directions."""
+    size = designs.space.size
+    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
+    limit = designs.limit(row, asked.factor)
+    points = [design_point(limit, np.zeros(size), close)]
+    _search(points, starts, limit, close)
+    _search(points, _failing_beyond(limit, distinct(points), size), limit, close)
+    kept = distinct(points)
+
+    def unused(u: Array) -> Array:
+        return -designs.at(u, "FORM").used[:, row]
+
+    lowest = form_quantile(unused, asked.probability, size, close)
+    value = -1.0 / lowest.value if lowest.value else np.inf
+    centres = [p.u for p in kept]
+    if not lowest.why and all(np.linalg.norm(lowest.u - c) > 1.0 for c in centres):
+        centres.append(lowest.u)
+    if not kept:
+        return _Form(FirstOrder(np.nan, np.nan, value, 0, points[0].why), tuple(centres))
+    nearest = kept[0]
+    result = FirstOrder(nearest.index, nearest.probability, value, len(kept))
+    return _Form(result, tuple(centres), nearest)
+
+
+def _beneath(designs: SolvedDesigns, row: int, asked: ReliabilityTable) -> tuple[Array, ...]:
+    """Where what lies beneath contact is most likely to be too much, to sample there, too."""
+    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
+    limit = designs.limit(row, asked.factor, deep=True)
+    point = design_point(limit, np.zeros(designs.space.size), close)
+    return tuple(p.u for p in distinct([point]))
+
+
+def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
+    """Where to look for design points of a row: samples that fail, nearest to the mean first, in
+    different directions; else the worst.
+    """
+    u, used = sampled.draws.u, sampled.answers.used[:, row]
+    if np.isnan(used).all():
+        return []
+    failing = np.flatnonzero(factor * used > 1.0)
+    if not len(failing):
+        return [u[int(np.nanargmax(used))]]
+    order = failing[np.argsort(np.linalg.norm(u[failing], axis=1), kind="stable")]
+    kept: list[Array] = []
+    for at in order:
+        direction = u[at] / np.linalg.norm(u[at])
+        if all(direction @ k < APART * float(np.linalg.norm(k)) for k in kept):
+            kept.append(u[at])
+        if len(kept) == STARTS:
+            break
+    return kept
+
+
+def weighted_sample(
+    designs: SolvedDesigns, centres: list[Array], asked: ReliabilityTable
+) -> Sample | None:
+    """Designs about the centres (d,), solved; none without centres or samples in the study."""
+    kept: list[Array] = []
+    for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
+        if all(np.linalg.norm(centre - other) > 0.5 for other in kept):
+            kept.append(centre)
+    if not kept or not asked.importance_samples:
+        return None
+    draws = importance_draws(kept[:MOST_CENTRES], asked.importance_samples, asked.seed)
+    return Sample(draws, designs.at(draws.u, "importance sampling"))
+
+
+def _indices(
+    designs: SolvedDesigns, asked: ReliabilityTable
+) -> list[list[tuple[Spread, Spread]]] | None:
+    """Of all rows and, last, of the system."""
+    base = base_samples(asked.sobol_samples)
+    if not base or designs.space.size < 2:
+        return None
+
+    def factors(u: Array) -> Array:
+        found = designs.at(u, "Sobol indices")
+        return np.concatenate([found.factors, found.system.factors], axis=1)
+
+    return indices(factors, designs.space.size, base, asked.seed, asked.confidence)
+
+
+def _search(
+    points: list[DesignPoint], starts: Iterable[Array], limit: LimitState, close: Closeness
+) -> None:
+    """Add the design points from starts in other directions than those that are known."""
+    for start in starts:
+        known = [p.direction @ start for p in points if not p.why]
+        if all(cosine < APART * float(np.linalg.norm(start)) for cosine in known):
+            points.append(design_point(limit, start, close))
+
+
+def _failing_beyond(limit: LimitState, known: list[DesignPoint], size: int) -> Iterable[Array]:
+    """Points (d,) that fail farther out than the nearest design point, along all axes and opposite
+    to it: further design points may be near them that no sample shows.
+    """
+    if not known or known[0].index <= 0.0:
+        return ()
+    every = np.concatenate([np.eye(size), -np.eye(size), -known[0].direction[None, :]])
+    probes = (known[0].index + BEYOND) * every
+    return list(probes[limit(probes) < 0.0])
+
+
+def _drivers(
+    parameters: tuple[Parameter, ...],
+    designs: SolvedDesigns,
+    form: _Form | None,
+    shares: list[tuple[Spread, Spread]] | None,
+) -> tuple[Driver, ...]:
+    nearest = form.nearest if form else None
+    parts = None if nearest is None else designs.space.importance(nearest.direction)
+    return tuple(
+        Driver(
+            parameter.key,
+            None if parts is None else float(parts[k]),
+            *((None, None) if shares is None or np.isnan(shares[k][0].value) else shares[k]),
+        )
+        for k, parameter in enumerate(parameters)
+    )
+
+
+def _worst(nominal: Results) -> PinResult | None:
+    known = [p for p in nominal.pins if p.safety_factor is not None]
+    return min(known, key=lambda p: p.safety_factor or 0.0, default=None)
+
+
+def _notes(nominal: Results) -> Iterable[str]:
+    yield (
+        "Not included: the choice of the laws themselves, the model's idealisations (linear "
+        "elasticity, the shape as drawn), and whatever does not vary."
+    )
+    if any(p.verdict == "singular" for p in nominal.pins):
+        yield (
+            "Rows marked singular have unbounded stress at a corner or an edge (singular_zones.csv "
+            "of a run says which); their factors are those outside the excluded zones."
+        )
+    if any(p.joint and p.joint.range for p in nominal.pins):
+        yield (
+            "The range over the joint is that of the study as it is, relative to its maximum; the "
+            "links' own flexibility enters only there."
+        )

@@ -1,0 +1,169 @@
+"""A row's probabilities, quantiles and distribution from the samples and what FORM found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtri
+
+from pinstress.explore.reliability.designs import Answers
+from pinstress.explore.reliability.sampling import Draws, Estimate, probability, quantile
+from pinstress.study.schema.vary import ReliabilityTable
+from reports.data.reliability import ByErrors, Driver, FirstOrder, Risk, Spread
+from reports.data.results import PinResult
+
+Array = NDArray[np.float64]
+
+CURVE = 80  # points of a distribution
+FEWEST = 10  # weighted samples below a point of it
+
+
+@dataclass(frozen=True)
+class RiskColumn:
+    """A row of the study, or all (None)."""
+
+    row: int | None
+
+    def of(self, answers: Answers) -> tuple[Array, Array]:
+        """What is used and the errors, (n,)."""
+        found = answers.system if self.row is None else answers
+        return found.used[:, self.row or 0], found.errors[:, self.row or 0]
+
+    def deep(self, answers: Answers) -> Array:
+        """What is used, or used beneath contact, if that is more, (n,)."""
+        found = answers.system if self.row is None else answers
+        return found.deep[:, self.row or 0]
+
+    def depends(self, answers: Answers) -> bool:
+        """Whether what lies beneath contact is ever more."""
+        return bool(answers.depends.any() if self.row is None else answers.depends[self.row])
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Draws with their answers."""
+
+    draws: Draws
+    answers: Answers
+
+    def probability(
+        self, asked: ReliabilityTable, column: RiskColumn, part: float = 0.0
+    ) -> Estimate:
+        """Of failure. part: of its error by which each stress is larger."""
+        used, errors = column.of(self.answers)
+        margin = 1.0 - asked.factor * used * (1.0 + part * errors)
+        return probability(self.draws, margin, 0.0, asked.confidence)
+
+    def deep(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
+        """The probability of failure or of dependence on what lies beneath contact."""
+        margin = 1.0 - asked.factor * column.deep(self.answers)
+        return probability(self.draws, margin, 0.0, asked.confidence)
+
+    def quantile(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
+        """The factor of safety that is not reached with the stated probability."""
+        with np.errstate(divide="ignore"):
+            factors = 1.0 / column.of(self.answers)[0]
+        return quantile(self.draws, factors, asked.probability, asked.confidence)
+
+
+@dataclass(frozen=True)
+class AssessedRow:
+    """A row of the study, or all of them, with its result as the study is and what FORM found."""
+
+    pin: str
+    case: str
+    column: RiskColumn
+    nominal: PinResult | None
+    form: FirstOrder | None
+    drivers: tuple[Driver, ...]
+
+
+def risk_of(
+    row: AssessedRow, sampled: Sample, weighted: Sample | None, asked: ReliabilityTable
+) -> Risk:
+    """What plain and importance sampling say of a row."""
+    plain = sampled.probability(asked, row.column)
+    by_weights = weighted and weighted.probability(asked, row.column)
+    low = weighted and weighted.quantile(asked, row.column)
+    nominal = row.nominal
+    bare = Risk(
+        row.pin,
+        row.case,
+        nominal.verdict if nominal else "failed",
+        nominal.safety_factor if nominal else None,
+        _bounded(plain),
+        plain.count,
+        plain.unknown,
+        _bounded(sampled.quantile(asked, row.column)),
+        _bounded(by_weights) if by_weights else None,
+        _bounded(low) if low else None,
+        row.form,
+        drivers=row.drivers,
+    )
+    best = weighted if weighted and bare.by_weights else sampled
+    return replace(
+        bare,
+        mesh=_by_errors(best, row, asked),
+        joint=_by_joint(best, row, asked),
+        beneath=_beneath(sampled, weighted, row, asked),
+        curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
+    )
+
+
+def _beneath(
+    sampled: Sample, weighted: Sample | None, row: AssessedRow, asked: ReliabilityTable
+) -> Spread | None:
+    """None where nothing beneath contact is ever more than the row."""
+    if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
+        return None
+    plain = _bounded(sampled.deep(asked, row.column))
+    return plain.or_narrower(_bounded(weighted.deep(asked, row.column)) if weighted else None)
+
+
+def _by_errors(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
+    used, errors = row.column.of(best.answers)
+    known = errors[np.isfinite(used) & (used > 0.0)]
+    if not len(known):
+        return None
+    ends = (_bounded(best.probability(asked, row.column, part)) for part in (-1.0, 1.0))
+    error = float(np.median(known))
+    return ByErrors(-error, error, *ends)
+
+
+def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
+    """With the relative range over the joint of the study as it is."""
+    nominal = row.nominal
+    span = nominal.joint.range if nominal and nominal.joint else None
+    if span is None or nominal is None or not nominal.max_von_mises or row.column.row is None:
+        return None
+    used, _ = row.column.of(best.answers)
+    scales = [end / nominal.max_von_mises for end in span.max_von_mises]
+    ends = (
+        _bounded(probability(best.draws, 1.0 - asked.factor * used * s, 0.0, asked.confidence))
+        for s in scales
+    )
+    return ByErrors(scales[0] - 1.0, scales[1] - 1.0, *ends)
+
+
+def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, float, int], ...]:
+    """Points of the distribution of the factor of safety, even in normal deviates."""
+    used, _ = row.column.of(sample.answers)
+    known = np.isfinite(used) & (used > 0.0)
+    order = np.argsort(-used[known], kind="stable")
+    factors = 1.0 / used[known][order]
+    below = np.cumsum(sample.draws.weights[known][order]) / len(used)
+    inside = np.flatnonzero((below > 0.0) & (below < 1.0))
+    if way:  # of weighted samples, where they are many: not far above the design points
+        inside = inside[(below[inside] < 0.5) & (inside >= FEWEST)]
+    if not len(inside):
+        return ()
+    deviates = ndtri(below[inside])
+    at = np.unique(np.searchsorted(deviates, np.linspace(deviates[0], deviates[-1], CURVE)))
+    chosen = inside[np.minimum(at, len(inside) - 1)]
+    return tuple((float(factors[k]), float(below[k]), way) for k in chosen)
+
+
+def _bounded(found: Estimate) -> Spread:
+    return Spread(found.value, found.low, found.high)

@@ -1,0 +1,129 @@
+"""The least weight with which a factor is missed at most with some probability.
+
+Two searches in turn: the least weight of the study as it is, each row with a larger factor; and, of
+what is found, the factor of each row that is missed with that probability, by the first order
+(pinstress.explore.reliability.form), whose ratio to the row's own factor is what the next search
+asks for.
+
+Source: Du & Chen, J. Mech. Des. 126 (2004) 225 (sequential optimisation and assessment).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from pinbase.processes.pool import Progress
+from pinstress.analysis.remedies.secant import CLOSE
+from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
+from pinstress.explore.reliability.form import NOISY, SMOOTH, Array, form_quantile
+from pinstress.explore.size.counted import low_factor
+from pinstress.explore.size.least_weight import LightStudy, lighten
+from pinstress.explore.size.lightest_pin import Aim
+from pinstress.explore.size.pin_shape import kind_of
+from pinstress.explore.sweep.batches import shapes
+from pinstress.explore.sweep.evaluate import Evaluator
+from pinstress.study.reading.file import Study
+
+ROUNDS = 5
+EXCESS = 2.0 * CLOSE  # over the factor, with which a search ends
+
+Row = tuple[str, str]  # pin and case
+
+
+def require_laws(study: Study, aim: Aim, pins: Iterable[str] | None) -> None:
+    """Raises: InputError for a study without laws, and for laws of dimensions that are to change
+    and do not move with them.
+    """
+    parameters, _ = random_numbers(study)
+    vary = study.table.vary
+    assert vary is not None
+    chosen = set(study.table.pin if pins is None else pins)
+    for parameter in parameters:
+        table, *inner = parameter.number.path
+        if table != "pin" or inner[0] not in chosen:
+            continue
+        kind = kind_of(parameter.key.partition(f"pin.{inner[0]}.")[2])
+        if kind in aim.vary and vary.parameters[parameter.key].tolerance is None:
+            raise study.error(
+                f"vary.parameters.{parameter.key}: its law stays where it is when the dimension "
+                "changes; give it a tolerance, which moves with it, or leave its kind out of "
+                "--vary",
+                code="law-of-a-dimension",
+            )
+
+
+def factors_at(
+    study: Study, pins: Iterable[str], probability: float, progress: Progress
+) -> dict[Row, float]:
+    """By row, the factor that is missed with a probability; NaN where that is not found.
+
+    Raises: InputError.
+    """
+    parameters, space = random_numbers(study)
+    out: dict[Row, float] = {}
+    for pin in pins:
+        progress(f"pin {pin}, factor at {probability:g}", 0.95)
+        evaluator = Evaluator(study, parameters, [pin])
+        designs = SolvedDesigns(evaluator, space, 1, progress)
+        close = NOISY if any(map(shapes, evaluator.numbers)) else SMOOTH
+        for k, row in enumerate(evaluator.table):
+
+            def unused(u: Array, k: int = k, designs: SolvedDesigns = designs) -> Array:
+                return -designs.at(u, "FORM").used[:, k]
+
+            found = form_quantile(unused, probability, space.size, close)
+            out[row] = -1.0 / found.value if found.value and not found.why else np.nan
+    return out
+
+
+def lighten_at(
+    study: Study,
+    aim: Aim,
+    probability: float,
+    pins: list[str] | None,
+    jobs: int,
+    progress: Progress,
+) -> LightStudy:
+    """Every pin's least weight for a factor that is missed with a probability at most.
+
+    Raises: InputError.
+    """
+    require_laws(study, aim, pins)
+    found = lighten(study, aim, pins, jobs, progress)
+    before = {each.pin: each.before for each in found.pins}
+    for _ in range(ROUNDS):
+        names = [each.pin for each in found.pins]
+        at = factors_at(found.study, names, probability, progress)
+        found = replace(found, at=at, settled=found.settled and _reached(found, at, aim))
+        if found.settled:
+            break
+        more = {
+            (p.pin, p.case): p.safety_factor / at[p.pin, p.case]
+            for p in found.results.pins
+            if p.safety_factor and np.isfinite(at.get((p.pin, p.case), np.nan))
+        }
+        found = lighten(study, replace(aim, more=more), pins, jobs, progress)
+    else:
+        at = factors_at(found.study, [each.pin for each in found.pins], probability, progress)
+        found = replace(found, at=at, settled=found.settled and _reached(found, at, aim))
+    kept = tuple(replace(each, before=before[each.pin]) for each in found.pins)
+    return replace(found, pins=kept)
+
+
+def _reached(found: LightStudy, at: dict[Row, float], aim: Aim) -> bool:
+    """Whether every pin that was found has the factor, and little more."""
+    for each in found.pins:
+        mine = [p for p in found.results.pins if p.pin == each.pin and p.safety_factor]
+        low = [
+            (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0)
+            for p in mine
+        ]
+        if each.factor is None or not low:
+            continue
+        least = float(np.nanmin(low)) if np.isfinite(low).any() else np.inf
+        if not aim.required <= least * (1.0 + 1e-9) <= aim.required * (1.0 + EXCESS):
+            return False
+    return True

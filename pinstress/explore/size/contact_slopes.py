@@ -1,0 +1,61 @@
+"""Derivatives of the stress of a pin in contact by the dimensions of its least weight."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.places import Place
+from fea.support.contact.solve_in_lugs import LugSolution
+from geometry import Pin
+from geometry.shape.dimensions import Dimension
+from pinbase.arrays import Floats
+from pinstress.analysis.remedies.joint_parameters import joint_parameters
+from pinstress.analysis.remedies.sensitivities import differentiated_in_lugs
+from pinstress.explore.size.scaled_study import hole_in_eye
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+
+LESS = 3e-5  # of a dimension, by which its effect on a band is found
+
+
+class UndifferentiatedError(Exception):
+    """Stress has no derivatives by dimensions: of a pin with cuts, or of some in contact."""
+
+
+def by_contact(
+    before: Study,
+    study: Study,
+    row: tuple[Task, LugSolution, Place],
+    dimensions: tuple[Dimension, ...],
+) -> Floats:
+    """Relative derivatives (n,) of the largest stress of a place, 1/m; eyes that are wider in the
+    study than before, because they became too narrow, grow with the pin. row: what was solved.
+
+    Raises: UndifferentiatedError.
+    """
+    task, joined, place = row
+    keys, name = [d.key for d in dimensions], task.pin.name
+    old, now = (x.table.pin[name].lug for x in (before, study))
+    grown = {at for at in now if now[at].outer_diameter != old[at].outer_diameter}
+    eyes = {at: f"lug.{at}.outer_diameter" for at in grown}
+    wanted = {*keys, *eyes.values()}
+    lengths = [x.of_joint for x in joint_parameters(study, task) if x.of_joint.key in wanted]
+    found = differentiated_in_lugs(joined, task, lengths, alone=True, place=place)
+    if found is None:
+        raise UndifferentiatedError
+    by = found.by_parameter
+    slopes = np.array([by.get(key, 0.0) for key in keys])
+    for at, key in eyes.items():
+        ratio = (now[at].outer_diameter or 0.0) / hole_in_eye(study, name, at)
+        slopes += by.get(key, 0.0) * ratio * _band_rates(task, dimensions, at)
+    return slopes / found.maximum
+
+
+def _band_rates(task: Task, dimensions: tuple[Dimension, ...], connection: str) -> Floats:
+    """Of the diameter on which a link bears, by the dimensions."""
+    assert isinstance(task.pin, Pin)  # others are not differentiated
+    now, out = task.pin.band(connection).radius, []
+    for d in dimensions:
+        less = d.changed(d.value * (1.0 - LESS)).band(connection).radius
+        out.append(2.0 * (now - less) / (d.value * LESS))
+    return np.array(out)

@@ -1,0 +1,145 @@
+"""The least weight of all pins of a study that reach a factor of safety, loads and all."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from pinbase.processes.pool import Died, Job, Progress, preload, side_by_side
+from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.remedies.secant import CLOSE
+from pinstress.analysis.results import run
+from pinstress.explore.size.counted import low_factor
+from pinstress.explore.size.lightest_pin import Aim, Lightest, Start, as_it_is, lightest_pin
+from pinstress.explore.size.other_dimensions import written_study
+from pinstress.explore.size.pin_shape import VariedShape
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import Study
+from reports.data.decision import ORDER, SAFE, as_described
+from reports.data.results import Results
+
+PASSES = 5
+SOLVERS = ("fea.solve.solve_pin", "assess.derivatives.places", "scipy.optimize")
+
+
+@dataclass(frozen=True)
+class LightStudy:
+    """The new study, what was found of every pin, and the new study's run. passes: how often all
+    loads were found anew; settled: whether the run has the factors that the last one ended with.
+    at: by pin and case, the factor at a probability, if requested.
+    """
+
+    study: Study
+    pins: tuple[Lightest, ...]
+    results: Results
+    passes: int
+    settled: bool
+    at: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+
+def lighten(
+    study: Study,
+    aim: Aim,
+    pins: list[str] | None = None,
+    jobs: int = 1,
+    progress: Progress = lambda _, __: None,
+) -> LightStudy:
+    """Every pin's least weight. Weights of pins change the loads of others, so all are searched
+    again from where they are, under the loads of the new study, until its run confirms them.
+
+    Raises: InputError.
+    """
+    plan = prepare(study, pins=pins)
+    names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
+    starts: dict[str, Start] = {}
+    first: dict[str, float | None] = {}
+    for count in range(1, PASSES + 1):
+        found = _all(study, plan, names, aim, starts, jobs, progress)
+        first = {each.pin: each.before for each in found} | first
+        starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in found}
+        new = _written(study, aim, found)
+        progress("run of the new study", 0.9)
+        results = run(new, pins=names, jobs=jobs)
+        settled = all(_agrees(each, results, aim) for each in found)
+        if settled or count == PASSES:
+            break
+        plan = replace(plan, loads=prepare(new, pins=pins).loads)
+    kept = tuple(replace(each, before=first[each.pin]) for each in found)
+    if worse := _worse(study, aim, kept, results, jobs):
+        kept = tuple(
+            as_it_is(study, aim, each, worse[each.pin]) if each.pin in worse else each
+            for each in kept
+        )
+        new = _written(study, aim, list(kept))
+        results = run(new, pins=names, jobs=jobs)
+    return LightStudy(new, kept, results, count, settled)
+
+
+def _worse(
+    study: Study, aim: Aim, found: tuple[Lightest, ...], results: Results, jobs: int
+) -> dict[str, str]:
+    """By pin, why what was found is decided worse than the pin as it is: a row that is safe is
+    better than one that is not decided, this better than one that fails. Of pins as described: one
+    that just reaches a factor does not over a range of its joint.
+    """
+    changed = {x.pin for x in found if not x.kept and (x.values or x.scale is not None)}
+    doubtful = {p.pin for p in results.pins if ORDER[as_described(p)] < ORDER[SAFE]} & changed
+    if not doubtful:
+        return {}
+    start = run(_written(study, aim, []), pins=sorted(doubtful), jobs=jobs)
+    before = {(p.pin, p.case): as_described(p) for p in start.pins}
+    out: dict[str, str] = {}
+    for p in results.pins:
+        was, now = before.get((p.pin, p.case)), as_described(p)
+        if p.pin in doubtful and was is not None and ORDER[now] < ORDER[was]:
+            out[p.pin] = f"the lightest pin that was found is {now} in {p.case}, this one {was}"
+    return out
+
+
+def _all(
+    study: Study,
+    plan: Plan,
+    names: list[str],
+    aim: Aim,
+    starts: Mapping[str, Start],
+    jobs: int,
+    progress: Progress,
+) -> list[Lightest]:
+    if jobs > 1:
+        preload(*SOLVERS)
+    heavy = sorted(names, key=lambda n: -len(study.table.pin[n].profile or ()))  # the longest first
+    work = [
+        Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in heavy
+    ]
+    made = side_by_side(work, jobs, lambda message, part: progress(message, 0.9 * part))
+    by_name = dict(zip(heavy, made, strict=True))
+    return [
+        Lightest(name, why=one.reason) if isinstance(one := by_name[name], Died) else one
+        for name in names
+    ]
+
+
+def _written(study: Study, aim: Aim, found: list[Lightest]) -> Study:
+    found = [each for each in found if not each.kept]
+    scales = {each.pin: each.scale for each in found if each.scale is not None}
+    scaled = resized_study(study, scales, aim.step, aim.required)
+    values = {each.pin: each.values for each in found if each.values is not None}
+    shapes = {}
+    for name in values:
+        shape = VariedShape(study, pin_of(study, name), aim.vary, aim.limits)
+        shapes[name] = (shape.pin, shape.dimensions)
+    return written_study(scaled, shapes, values, aim.step, aim.required)
+
+
+def _agrees(each: Lightest, results: Results, aim: Aim) -> bool:
+    """Whether the run has the factor that was found for a pin, with little excess."""
+    more = aim.of_pin(each.pin)
+    mine = [p for p in results.pins if p.pin == each.pin]
+    if any(p.verdict == "unconverged" and p.decided for p in mine):
+        return all(p.decided is not False for p in mine)  # it ended where that was decided
+    low = [f / more.get(p.case, 1.0) for p in mine if (f := low_factor(p)) is not None]
+    if each.factor is None or not low:
+        return True
+    return aim.required <= min(low) * (1.0 + 1e-9) <= each.factor * (1.0 + CLOSE)

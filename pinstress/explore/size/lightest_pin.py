@@ -1,0 +1,400 @@
+"""The least weight of one pin that reaches a factor of safety in all its cases, under given loads.
+
+First it is scaled as a whole, as `size` does; the search goes on from there, so that it is never
+heavier. What is found is rounded as it is written, and solved once more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from geometry import Pin
+from pinbase.arrays import Floats
+from pinstress.analysis.plan import Plan
+from pinstress.analysis.remedies.dimensions import dimensions_of
+from pinstress.analysis.remedies.secant import CLOSE, LEAP, NoSizeError, smallest
+from pinstress.explore.size.contact_slopes import UndifferentiatedError
+from pinstress.explore.size.optimise import (
+    NEAR,
+    ImpossibleError,
+    Optimality,
+    Optimum,
+    StressPlace,
+    least_weight,
+    optimality,
+)
+from pinstress.explore.size.pin_shape import FARTHEST, KINDS, Proportions, VariedShape, kind_of
+from pinstress.explore.size.pin_stress import (
+    PinProblem,
+    PinStress,
+    SolvedPin,
+)
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.singular_places import decided
+from pinstress.explore.size.written_dimensions import ROUNDING, STEPS_UP, binding, rounded_values
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+
+AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
+ENOUGH = 2e-3  # of the weight: what meshes are worth
+NARROW = 5e-3  # a bracket of scales that is not looked into
+FAR = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
+SETTLED = 0.05  # of the stress of a pin in contact, below what is allowed: near enough
+ROUGH_AIM, ROUGH_ENOUGH = 0.015, 1e-2  # AIM and ENOUGH in contact, where meshes and cells scatter
+CORRECTIONS = 3  # of what rough cells say
+SCALINGS = 10
+DOUBT = 0.03  # of the weight of a pin that is only scaled, where that was found by slopes
+REPAIRS = 4
+WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions{}"
+CUTS = ": it has cuts, or is no body of revolution"
+AS_IT_IS = "left as it is: "
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What is wished: the factor, kinds of dimensions (KINDS) that may change, geometric limits,
+    the step (m) to which diameters are rounded up. more: by pin and case, times the factor that
+    the nominal design needs so that a less likely one reaches it.
+    """
+
+    required: float
+    vary: tuple[str, ...] = KINDS
+    limits: Proportions = field(default_factory=Proportions)
+    step: float | None = None
+    more: Mapping[tuple[str, str], float] | None = None
+
+    def of_pin(self, pin: str) -> dict[str, float]:
+        """By case."""
+        return {case: x for (name, case), x in (self.more or {}).items() if name == pin}
+
+
+@dataclass(frozen=True)
+class Lightest:
+    """A pin: its dimensions by key, m, as they are written, or by which scale it is only scaled;
+    neither where nothing reaches the factor, and `why`. before, factor: lower end of its factor as
+    it was and with these. scaled: its volume, m^3, were it only scaled, whole: the dimensions then,
+    m; None where that is not known. optimality: of what the search found; binding: what binds, in
+    words, by its multiplier. solved: designs. way: why it is only scaled, or left as it is, or how
+    the search ended if it did not converge. decided: as of Start.
+    """
+
+    pin: str
+    values: dict[str, float] | None = None
+    scale: float | None = None
+    before: float | None = None
+    factor: float | None = None
+    scaled: float | None = None
+    whole: tuple[float, ...] | None = None
+    optimality: Optimality | None = None
+    binding: tuple[tuple[str, float], ...] = ()
+    solved: int = 0
+    why: str = ""
+    way: str = ""
+    decided: frozenset[str] | None = None
+
+    @property
+    def kept(self) -> bool:
+        """Whether it is left as it is."""
+        return self.way.startswith(AS_IT_IS)
+
+
+@dataclass(frozen=True)
+class Start:
+    """A pin's dimensions by key, m, or its scale, and dimensions of it that is only scaled, m, as
+    they were found under other loads. decided: cases in which no singularity may govern; by default
+    those in which none does in the pin as it is given.
+    """
+
+    values: dict[str, float] | None = None
+    scale: float | None = None
+    whole: tuple[float, ...] | None = None
+    decided: frozenset[str] | None = None
+
+
+def lightest_pin(
+    study: Study,
+    plan: Plan,
+    pin: str,
+    aim: Aim,
+    start: Start | None = None,
+    tell: Tell = lambda _: None,
+) -> Lightest:
+    """Of a pin of the study as it was given; plan: with the loads of the study as it is now.
+    Failures are reported in the answer.
+    """
+    problem = problem_of(study, plan, pin, aim)
+    if isinstance(problem, str):
+        return Lightest(pin, why=problem)
+    start = start or Start()
+    stress = PinStress(problem, tell)
+    before: float | None = None
+    try:
+        if start.scale is not None or not isinstance(problem.shape.whole, Pin):
+            raise UndifferentiatedError
+        shape, known = problem.shape, start.values or {}
+        values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
+        stress.at(values, FAR)
+        sure = stress.sure(values)
+        before = problem.required * float(np.exp(-sure.largest))
+        stress.watched = decided(sure.peaks) if start.decided is None else start.decided
+        start = replace(start, decided=stress.watched)
+        first = stress.at(values)
+        search = _Search(problem, stress, aim)
+        if start.values is not None:
+            found = _found(search, first, start.whole)
+        else:
+            near, whole = _scaled(search, first, roughly=len(values) > 1)
+            found = _found(search, near, tuple(map(float, whole)))
+        return replace(found, before=before, decided=stress.watched)
+    except UndifferentiatedError:
+        return _only_scaled(stress, aim, start)
+    except ImpossibleError as error:
+        failed = Lightest(pin, before=before, solved=stress.count, why=str(error))
+        if before is None or not stress.watched:
+            return failed
+        if start.values is None and before >= problem.required and not _singular(stress):
+            return as_it_is(study, aim, failed, str(error))
+        return lightest_pin(study, plan, pin, aim, replace(start, decided=frozenset()), tell)
+
+
+def _singular(stress: PinStress) -> bool:
+    """Whether a singularity governs in the design that was solved first."""
+    return any(peak.verdict == "singular" for peak in stress.solved[0].peaks)
+
+
+def as_it_is(study: Study, aim: Aim, found: Lightest, why: str) -> Lightest:
+    """The pin as it is in the study in place of what was found, which is decided worse."""
+    shape = VariedShape(study, pin_of(study, found.pin), aim.vary, aim.limits)
+    values = {d.key: d.value for d in shape.dimensions} or None
+    scale = 1.0 if values is None else None
+    return Lightest(
+        found.pin, values, scale, found.before, found.before, solved=found.solved,
+        way=AS_IT_IS + why,
+    )  # fmt: skip
+
+
+def _only_scaled(stress: PinStress, aim: Aim, start: Start) -> Lightest:
+    """Without derivatives: all its dimensions times the same, as `size` does."""
+    problem, first = stress.problem, start.scale or 1.0
+    factors: dict[float, float] = {}
+    stress.watched = start.decided or frozenset()
+
+    def factor_at(scale: float) -> float:
+        found = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
+        if not factors and start.decided is None:
+            stress.watched = decided(found.peaks)
+        factors[scale] = problem.required * float(np.exp(-found.worst))
+        return factors[scale]
+
+    try:
+        best = smallest(factor_at, problem.required, first)
+        way = WHOLE.format("" if isinstance(problem.shape.whole, Pin) else CUTS)
+    except (NoSizeError, ImpossibleError, InputError) as error:
+        return Lightest(
+            problem.name, before=factors.get(first), solved=len(factors), why=str(error)
+        )
+    return Lightest(
+        problem.name, None, best.scale, factors[first], best.factor, solved=len(factors), way=way,
+        decided=stress.watched,
+    )  # fmt: skip
+
+
+def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
+    """What is posed of a pin, or why nothing can be."""
+    table = study.table.pin[pin]
+    if table.geometry is not None:
+        return "its shape comes from a file, which has no dimensions to change"
+    if study.table.material[table.material].yield_strength is None:
+        return f"its material {table.material} has no yield_strength"
+    made = pin_of(study, pin)
+    shape = VariedShape(study, made, aim.vary, aim.limits)
+    if not shape.dimensions and isinstance(made, Pin):
+        has = [
+            kind
+            for kind in KINDS
+            if any(kind_of(d.key) == kind for d in dimensions_of(study, made))
+        ]
+        return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
+    asked = replace(plan.asked, goal="value")
+    return PinProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
+
+
+class _Search:
+    """The pin as a problem for pinstress.explore.size.optimise."""
+
+    def __init__(self, problem: PinProblem, stress: PinStress, aim: Aim) -> None:
+        self.problem, self.stress, self.aim = problem, stress, aim
+        self.shape = problem.shape
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        now, far = np.log(self.shape.values), np.log(FARTHEST)
+        return now - far, now + far
+
+    def weight(self, x: Floats) -> tuple[float, Floats]:
+        values = np.exp(x)
+        volume, slope = self.shape.volume(values)
+        return float(np.log(volume)), slope * values / volume
+
+    def limits(self, x: Floats) -> tuple[Floats, Floats]:
+        values = np.exp(x)
+        limits, slopes = self.shape.at_limits(values)
+        return limits, slopes * values
+
+    def stresses(self, x: Floats) -> tuple[StressPlace, ...]:
+        return self.raised(self.stress.at(np.exp(x)))
+
+    def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
+        """Over what is aimed at, a little below what is allowed."""
+        aim = ROUGH_AIM if self.stress.in_contact else AIM
+        return tuple(replace(p, value=p.value + aim) for p in solved.every)
+
+    def least_weight(self, start: Floats) -> Optimum:
+        """From dimensions' logarithms."""
+        return least_weight(self, start, ROUGH_ENOUGH if self.stress.in_contact else ENOUGH)
+
+    def volume(self, solved: SolvedPin) -> float:
+        """m^3."""
+        return float(self.shape.volume(solved.values)[0])
+
+    def written(self, values: Floats) -> Floats:
+        """As they are written."""
+        metre = self.problem.study.system.factor("length")
+        return rounded_values(self.shape, values, self.aim.step, metre)
+
+    def keeps(self, values: Floats) -> bool:
+        """Whether geometric limits hold but for the digits that are written."""
+        return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
+
+
+def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
+    """From a design near the factor; whole: dimensions of the pin that is only scaled, if known."""
+    shape, aim = search.shape, search.aim
+    optimum = _optimum(search, near)
+    best = _written(search, optimum)
+    before, as_whole = None, near.values if whole is None else np.array(whole)
+    if set(aim.vary) == set(KINDS):
+        before = float(shape.volume(search.written(as_whole))[0])
+        if before <= search.volume(best) * (1.0 + DOUBT):
+            _, as_whole = _scaled(search, search.stress.at(as_whole), roughly=False)
+            as_scaled = _repaired(search, as_whole)
+            if as_scaled is not None:
+                before = search.volume(as_scaled)
+                best = min(as_scaled, best, key=search.volume)
+    return Lightest(
+        search.problem.name,
+        dict(zip(shape.keys, map(float, best.values), strict=True)),
+        factor=aim.required * float(np.exp(-best.largest)),
+        scaled=before,
+        whole=tuple(map(float, as_whole)),
+        optimality=optimum.optimality,
+        binding=tuple(binding(shape, optimum)),
+        solved=search.stress.count,
+        way=optimum.why,
+    )
+
+
+def _optimum(search: _Search, near: SolvedPin) -> Optimum:
+    """From a design near the factor. Of a pin in contact what rough cells say is corrected at the
+    optimum, and that is searched again from there, until the finer ones agree.
+    """
+    if len(search.shape.dimensions) > 1 or not -NEAR <= near.worst <= 0.0:
+        found = search.least_weight(np.log(near.values))
+    else:
+        x, places = np.log(near.values), near.every
+        found = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
+    if search.stress.in_contact:
+        for _ in range(CORRECTIONS):
+            sure = search.stress.sure(search.written(np.exp(found.x)))
+            if -SETTLED <= sure.worst <= 0.0:
+                break
+            found = search.least_weight(found.x)
+    return found
+
+
+def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin, Floats]:
+    """All dimensions times the same: the design nearest to the factor that was solved, and what
+    reaches it, `roughly` by the slope of stress there. As it is where only bores change.
+
+    Raises: ImpossibleError.
+    """
+    now, values = first, search.shape.values
+    best: SolvedPin | None = None
+    small, why = None, ""  # small: with which stress is too large
+    for _ in range(SCALINGS):
+        here = float(np.log(now.values[0] / values[0]))
+        if now.worst <= 0.0:
+            best = now
+        else:
+            small = here if small is None else max(small, here)
+        if -CLOSE <= now.worst <= 0.0:
+            break
+        top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
+        assert top.slope is not None  # it was found with derivatives
+        if top.slope.sum() > 0.0:  # of bores alone, which weaken it
+            return first, first.values
+        leap, rate = np.log(LEAP), min(float(top.slope.sum()), -0.5)
+        there = here + float(np.clip((now.worst + AIM) / -rate, -leap, leap))
+        if roughly and abs(now.worst) <= FAR:
+            return now, values * np.exp(there)
+        if best is not None:
+            large = float(np.log(best.values[0] / values[0]))
+            if large - (there if small is None else small) < NARROW:
+                break
+            if small is not None and not small < there < large:
+                there = 0.5 * (small + large)
+        if abs(there) > np.log(FARTHEST):
+            break
+        try:
+            tried = values * np.exp(there)
+            now = search.stress.at(tried if roughly else search.written(tried), FAR)
+        except ImpossibleError as error:
+            why = f"; with {np.exp(there):.3g} times: {error}"
+            break
+    if best is None:
+        factor = search.aim.required * float(np.exp(-now.worst))
+        times = float(now.values[0] / values[0])
+        raise ImpossibleError(
+            f"with {times:.3g} times these dimensions its factor is only {factor:.4g}{why}; its "
+            "bands must be longer, its material stronger or its loads smaller"
+        )
+    return best, best.values
+
+
+def _written(search: _Search, optimum: Optimum) -> SolvedPin:
+    """The lightest design that was found and reaches the factor, as it is written.
+
+    Raises: ImpossibleError.
+    """
+    stress, step = search.stress, search.aim.step
+    found = [x for x in [_repaired(search, np.exp(optimum.x))] if x is not None]
+    lighter = [x for x in stress.solved if x.worst <= 0.0 and search.keeps(x.values)]
+    if lighter and step is None:
+        best = min(lighter, key=search.volume)
+        if not found or search.volume(best) < search.volume(found[0]):
+            found += [x for x in [_repaired(search, best.values)] if x is not None]
+    if not found:
+        raise ImpossibleError("the dimensions found, and slightly larger ones, miss the factor")
+    return min(found, key=search.volume)
+
+
+def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
+    """With the factor reached by dimensions as they are written, larger where need be; None where
+    it is not.
+    """
+    step, more = search.aim.step, 0.0
+    for k in range(REPAIRS if step is None else STEPS_UP):
+        found = search.stress.sure(search.written(values * (1.0 + more)))
+        if found.worst <= 0.0:
+            return found
+        if step is None:  # by what stress exceeds, were it tension, which is enough
+            more += 0.6 * found.worst + 5e-4 * (k + 1)
+        else:
+            more += 0.5 * step / float(values.min())
+    return None

@@ -1,0 +1,127 @@
+"""Other values of a pin's dimensions in a study: in what it holds, and in its text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import tomlkit
+
+from geometry import Pin
+from geometry.shape.dimensions import Dimension
+from pinstress.explore.size.pin_shape import kind_of
+from pinstress.explore.size.scaled_study import (
+    replace_number,
+    require,
+    rounded,
+    unit_of,
+    value_of,
+    with_what_follows,
+)
+from pinstress.explore.sweep.number import put
+from pinstress.study.reading.file import Study, with_raw
+from pinstress.study.schema.units import UnitSystem, to_si
+
+CHANGED = 1e-3  # of a dimension, to see where it is
+UP = {"diameters": 1, "bores": -1, "fillets": -1}  # where rounding up is on the safe side
+
+Path = tuple[str | int, ...]
+Values = Mapping[str, Mapping[str, float]]  # m, by pin and by key of a dimension
+
+
+def paths_of(pin: Pin, dimension: Dimension) -> tuple[Path, ...]:
+    """Where a dimension is in the pin's table; of both ends of a segment after "profile", k
+    and its key the index of the end follows.
+    """
+    key = dimension.key
+    if key.partition("[")[0] in ("meridian", "bore_meridian"):
+        line, corners, at = (part.rstrip("]") for part in key.split("["))
+        first, _, last = corners.partition("-")
+        numbers = range(int(first) - 1, int(last or first))
+        return tuple((line, corner, int(at) - 1) for corner in numbers)
+    return tuple(_in_profile(pin, dimension.changed(dimension.value * (1.0 - CHANGED))))
+
+
+def _in_profile(pin: Pin, other: Pin) -> Iterator[Path]:
+    if pin.fillet != other.fillet:
+        yield ("fillet",)
+    for k, (old, new) in enumerate(zip(pin.segments, other.segments, strict=True)):
+        if old.fillet != new.fillet:
+            yield "profile", k, "fillet"
+        for name in ("diameters", "bores"):
+            for end in (0, 1):
+                if getattr(old, name)[end] != getattr(new, name)[end]:
+                    yield "profile", k, name.removesuffix("s"), end
+
+
+def study_with(
+    study: Study, raw: dict[str, Any], pin: str, values: Sequence[tuple[tuple[Path, ...], float]]
+) -> Study:
+    """The study with dimensions of a pin at some places, m. raw: its content, as raw_study has it.
+
+    Raises: InputError for a shape that cannot be.
+    """
+    metre = study.system.factor("length")
+    for paths, value in values:
+        for path in paths:
+            where = _as_written(raw["pin"][pin], path)
+            raw = put(raw, ("pin", pin, *where), value / metre)
+    return with_raw(study, raw)
+
+
+def _as_written(table: Any, path: Path) -> Path:
+    """Without the index of an end where one number stands for both."""
+    here: Any = table
+    for k, part in enumerate(path):
+        here = value_of(here)
+        if not isinstance(here, dict | list):
+            return path[:k]
+        here = here[part]  # type: ignore[index]
+    return path
+
+
+def written_study(
+    study: Study,
+    shapes: Mapping[str, tuple[Pin, Sequence[Dimension]]],
+    values: Values,
+    step: float | None = None,
+    required: float | None = None,
+) -> Study:
+    """The study with other dimensions in its text, and what depends on them. shapes: pins by name
+    as they are, with the dimensions that change. step (m): to which diameters are rounded up;
+    without, all are rounded to four digits, diameters up, bores and fillets down.
+
+    Raises: InputError for a shape that cannot be.
+    """
+    document: Any = tomlkit.parse(study.text)
+    for name, (pin, dimensions) in shapes.items():
+        table = document["pin"][name]
+        for dimension in dimensions:
+            value = values[name][dimension.key]
+            for path in paths_of(pin, dimension):
+                _write(table, _as_written(table, path), value, dimension.key, study.system, step)
+    require(document, required)
+    return with_what_follows(study, tomlkit.dumps(document), values)
+
+
+def _write(
+    table: Any, path: Path, value: float, key: str, system: UnitSystem, step: float | None
+) -> None:
+    """At the path of a number. Places of a dimension in different units stay equal: all are what it
+    is rounded to in the study's unit. The radius of a corner is rounded to half a step.
+    """
+    here: Any = table
+    for part in path[:-1]:
+        here = value_of(here)[part]
+    here = value_of(here)
+    last: Any = path[-1]
+    old: Any = value_of(here[last])
+    unit, one = unit_of(old, "length", system)
+    metre, kind = system.factor("length"), kind_of(key)
+    steps = None
+    if step is not None and kind == "diameters":
+        steps = (step / 2.0 if key.startswith("meridian") else step) / metre
+    number = rounded(value / metre, steps, UP[kind]) * metre / one
+    if not math.isclose(number * one, to_si(old, "length", system), rel_tol=1e-12):
+        replace_number(here, last, float(f"{number:.12g}"), unit)

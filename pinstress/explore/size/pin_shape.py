@@ -1,0 +1,270 @@
+"""The dimensions of a pin that its least weight may change, its geometric limits and its volume.
+
+All diameters, bores and fillets of a body of revolution are linear in the values of its dimensions,
+so that limits and volume follow from these in closed form, with their gradients.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from geometry import Pin, PinLike
+from geometry.shape.dimensions import Dimension
+from geometry.shape.polygon import turn_at
+from pinbase.arrays import Floats
+from pinstress.analysis.remedies.dimensions import dimensions_of
+from pinstress.study.reading.file import Study
+
+KINDS = "diameters", "bores", "fillets"
+FACE = 0.6  # of a step's height, that its fillet takes at most
+BAND = 0.25  # of a segment's length, that fillets take at most
+FARTHEST = 50.0  # times a dimension, and parts of it
+STEP = 1e-3  # of a dimension, of which shapes are linear
+CORNER = 1.0 - math.pi / 4.0  # area between a fillet and its corner, of the radius squared
+CENTRE = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)  # its distance from the sides
+
+
+@dataclass(frozen=True)
+class Proportions:
+    """What a shape must keep, where it has it now: wall: thickness of walls over the diameter;
+    shoulder: the larger over the smaller diameter of a step.
+    """
+
+    wall: float = 0.1
+    shoulder: float = 1.2
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A sum of dimensions that must not be negative, over its length scale; what it is, in words.
+    instead: another one that will do, if any.
+    """
+
+    text: str
+    constant: float
+    slope: Floats
+    instead: Limit | None = None
+
+    def at(self, more: Floats) -> tuple[float, Floats]:
+        """Its value where dimensions are larger by (n,) m, and its gradient."""
+        value = self.constant + float(self.slope @ more)
+        if self.instead is not None:
+            other, slope = self.instead.at(more)
+            if other > value:
+                return other, slope
+        return value, self.slope
+
+
+@dataclass(frozen=True)
+class _Ends:
+    """Diameters and bores (S, 2) of the ends of segments and fillets (S - 1,) between them, m."""
+
+    outer: Floats
+    inner: Floats
+    fillets: Floats
+
+    @classmethod
+    def of(cls, pin: Pin) -> _Ends:
+        fillets = [_fillet(pin, k) for k in range(len(pin.segments) - 1)]
+        outer, inner = ([list(x) for x in y] for y in zip(*_across(pin), strict=True))
+        return cls(np.array(outer), np.array(inner), np.array(fillets, dtype=np.float64))
+
+
+def _across(pin: Pin) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
+    yield from ((s.diameters, s.bores) for s in pin.segments)
+
+
+def _fillet(pin: Pin, corner: int) -> float:
+    """Radius (m) of a step's fillet; 0 at other corners."""
+    left, right = pin.segments[corner], pin.segments[corner + 1]
+    return pin.fillet_at(corner) if turn_at(left, right) == "step" else 0.0
+
+
+class VariedShape:
+    """A pin of the study with other values (n,) of its dimensions, m: those of `kinds` that it has.
+
+    Neighbours of equal diameter or bore stay equal; limits are those of the pin as it is.
+    """
+
+    def __init__(
+        self, study: Study, pin: PinLike, kinds: Iterable[str], limits: Proportions
+    ) -> None:
+        self.whole, self.limits = pin, limits
+        chosen = tuple(kinds)
+        self.dimensions = tuple(d for d in dimensions_of(study, pin) if kind_of(d.key) in chosen)
+        self.values = np.array([d.value for d in self.dimensions])
+
+    @property
+    def pin(self) -> Pin:
+        """The pin as it is; only bodies of revolution have dimensions."""
+        assert isinstance(self.whole, Pin)
+        return self.whole
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        return tuple(d.key for d in self.dimensions)
+
+    @cached_property
+    def _now(self) -> _Ends:
+        return _Ends.of(self.pin)
+
+    @cached_property
+    def _rates(self) -> tuple[Floats, Floats, Floats]:
+        """Of ends (S, 2, n) twice and fillets (S - 1, n), by dimensions."""
+        found = [self._rate(d) for d in self.dimensions]
+        return tuple(np.stack([rate[k] for rate in found], axis=-1) for k in range(3))  # type: ignore
+
+    def _rate(self, dimension: Dimension) -> tuple[Floats, Floats, Floats]:
+        less = dimension.changed(dimension.value * (1.0 - STEP))
+        other, now, size = _Ends.of(less), self._now, STEP * dimension.value
+        return (
+            (now.outer - other.outer) / size,
+            (now.inner - other.inner) / size,
+            (now.fillets - other.fillets) / size,
+        )
+
+    def _ends(self, values: Floats) -> _Ends:
+        more, now = values - self.values, self._now
+        outer, inner, fillets = self._rates
+        return _Ends(
+            now.outer + outer @ more, now.inner + inner @ more, now.fillets + fillets @ more
+        )
+
+    @cached_property
+    def _rest(self) -> float:
+        """Volume that is not of segments and fillets, as it is, m^3."""
+        return self.pin.volume - self._plain(self.values)[0]
+
+    def part_of_diameter(self, segment: int) -> Floats:
+        """By which part a segment's mean diameter grows for each part of the dimensions, (n,)."""
+        rate = self._rates[0][segment].sum(axis=0) * self.values
+        return np.asarray(rate / self._now.outer[segment].sum())
+
+    def volume(self, values: Floats) -> tuple[float, Floats]:
+        """m^3, and its gradient (n,) m^2: exact but for rounded edges and fillets at cones, whose
+        part stays as it is.
+        """
+        value, slope = self._plain(values)
+        return value + self._rest, slope
+
+    def _plain(self, values: Floats) -> tuple[float, Floats]:
+        ends = self._ends(values)
+        outer, inner, fillets = self._rates
+        length = math.pi / 12.0 * np.array([s.length for s in self.pin.segments])
+        total, slope = 0.0, np.zeros(len(values))
+        for sign, d, rate in ((1.0, ends.outer, outer), (-1.0, ends.inner, inner)):
+            a, b = d.T
+            total += sign * float(length @ (a * a + a * b + b * b))
+            slope += sign * (length * (2.0 * a + b)) @ rate[:, 0]
+            slope += sign * (length * (2.0 * b + a)) @ rate[:, 1]
+        for k, rho in enumerate(ends.fillets):
+            end = self._thinner(k)
+            radius, by = ends.outer[end] / 2.0, outer[end] / 2.0
+            times = 2.0 * math.pi * CORNER
+            total += times * rho * rho * (radius + CENTRE * rho)
+            slope += times * rho * rho * by
+            slope += times * rho * (2.0 * radius + 3.0 * CENTRE * rho) * fillets[k]
+        return total, slope
+
+    def _thinner(self, corner: int) -> tuple[int, int]:
+        """The end of a segment at a corner whose diameter is smaller now."""
+        left, right = self._now.outer[corner, 1], self._now.outer[corner + 1, 0]
+        return (corner, 1) if left <= right else (corner + 1, 0)
+
+    @cached_property
+    def geometric(self) -> tuple[Limit, ...]:
+        """All limits but those of single dimensions."""
+        found = [*self._steps(), *self._walls(), *self._along()]
+        return tuple(x for x in found if np.abs(x.slope).max(initial=0.0) > 1e-9)
+
+    def at_limits(self, values: Floats) -> tuple[Floats, Floats]:
+        """Of all limits (m,), relative, negative where they are broken; gradients (m, n), 1/m."""
+        found = [limit.at(values - self.values) for limit in self.geometric]
+        slopes = np.array([slope for _, slope in found]).reshape(-1, len(values))
+        return np.array([value for value, _ in found]), slopes
+
+    def _limit(self, text: str, *parts: tuple[float, float, Floats]) -> Limit:
+        """Of factors, present values and rates, over the largest of the parts."""
+        size = max(abs(factor * value) for factor, value, _ in parts)
+        value = sum(factor * value for factor, value, _ in parts) / size
+        slope = sum(factor * rate for factor, _, rate in parts) / size
+        return Limit(text, max(float(value), 0.0), np.asarray(slope))
+
+    def _steps(self) -> Iterator[Limit]:
+        now, (outer, _, fillets) = self._now, self._rates
+        for k, rho in enumerate(now.fillets):
+            small = self._thinner(k)
+            large = (k + 1, 0) if small == (k, 1) else (k, 1)
+            d, D = float(now.outer[small]), float(now.outer[large])
+            if d == D:
+                continue
+            ratio = min(self.limits.shoulder, D / d)
+            name = f"step {k + 1}-{k + 2}"
+            yield self._limit(
+                f"{name}: diameters at least {ratio:.4g} apart",
+                (1.0, D, outer[large]), (-ratio, d, outer[small]),
+            )  # fmt: skip
+            if not rho:
+                continue
+            face = max(FACE, rho / ((D - d) / 2.0))
+            yield self._limit(
+                f"{name}: fillet at most {face:.4g} of its height",
+                (face / 2.0, D, outer[large]), (-face / 2.0, d, outer[small]),
+                (-1.0, rho, fillets[k]),
+            )  # fmt: skip
+            if np.any(fillets[k]):
+                text = f"{name}: fillet not smaller than it is, or {rho / d:.4g} of the diameter"
+                still = Limit(text, 0.0, fillets[k] / rho)
+                as_wide = self._limit(text, (1.0, rho, fillets[k]), (-rho / d, d, outer[small]))
+                yield replace(as_wide, instead=still)
+
+    def _walls(self) -> Iterator[Limit]:
+        """Of every segment's ends, and of every bore with the diameter on the other side."""
+        now, (outer, inner, _) = self._now, self._rates
+        pairs = [((k, e), (k, e)) for k in range(len(now.outer)) for e in (0, 1)]
+        for k in range(len(now.outer) - 1):
+            pairs += [((k, 1), (k + 1, 0)), ((k + 1, 0), (k, 1))]
+        known: set[tuple[bytes, bytes]] = set()
+        for shaft, bore in pairs:
+            D, b = float(now.outer[shaft]), float(now.inner[bore])
+            same = outer[shaft].tobytes(), inner[bore].tobytes()
+            if not b or same in known:
+                continue
+            known.add(same)
+            most = max(1.0 - 2.0 * self.limits.wall, b / D)
+            yield self._limit(
+                f"bore of segment {bore[0] + 1} at most {most:.4g} of the diameter",
+                (most, D, outer[shaft]), (-1.0, b, inner[bore]),
+            )  # fmt: skip
+
+    def _along(self) -> Iterator[Limit]:
+        """Of what fillets take of a segment's length."""
+        now, rates = self._now, self._rates[2]
+        for k, segment in enumerate(self.pin.segments):
+            here = [c for c in (k - 1, k) if 0 <= c < len(now.fillets)]
+            mine = [c for c in here if now.fillets[c] and self._thinner(c)[0] == k]
+            if not mine:
+                continue
+            taken = float(now.fillets[mine].sum())
+            most = max(BAND, taken / segment.length)
+            still = np.zeros(len(self.values))
+            yield self._limit(
+                f"fillets at most {most:.4g} of segment {k + 1}",
+                (most, segment.length, still), (-1.0, taken, rates[mine].sum(axis=0)),
+            )  # fmt: skip
+
+
+def kind_of(key: str) -> str:
+    """Of which kind a dimension is; empty for lengths and other radii."""
+    last = key.rpartition(".")[2]
+    if key.startswith("meridian["):
+        return "diameters" if key.endswith("][2]") else ""
+    if key.startswith("bore_meridian["):
+        return "bores" if key.endswith("][2]") else ""
+    named = {"diameter": "diameters", "bore": "bores", "fillet": "fillets"}
+    return named.get(last.partition("[")[0], "")

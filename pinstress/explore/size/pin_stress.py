@@ -1,0 +1,401 @@
+"""The stresses of a pin with other dimensions, in all cases, and their derivatives where they may
+govern: solved as a run solves them, so that what they say is what a run says.
+
+Of a body of revolution the largest stress is found in both halves of each segment, and that of its
+sections; of a pin in contact that of the surface, of sections, and beneath contact, all of which
+must meet the factor. In a row that is singular stress is read half the excluded distance away,
+where the upper end of the reported range is. All stresses of a surface are raised by the ratio of
+what counts of it to the largest of them.
+
+A pin in contact is searched on rough cells, which take a fifth or less of the time of the finest;
+by how much usual cells differ is found where it matters (`sure`), and added to all that is found on
+the rough ones. Cases far below the largest are left out until the pin is quite another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+
+from assess.derivatives.in_section import section_derivatives
+from assess.derivatives.places import PartsOfSection, PartTop, halves
+from assess.derivatives.records import SolvedCase
+from fea.beam.error_model import TWICE
+from fea.core.linear_solver import SolveError
+from fea.core.peak import Peak
+from fea.core.pin_loads import PinLoads
+from fea.harmonic.evaluate import HarmonicAnswer
+from fea.singular.singularities import VARIED
+from fea.solve.requirement import Asked
+from fea.solve.solve_pin import Solution
+from fea.support.contact.solve_in_lugs import LugSolution
+from geometry import ArgumentError, Pin
+from geometry.shape.dimensions import Dimension
+from pinbase.arrays import Floats, Mask
+from pinstress.analysis.remedies.dimensions import dimensions_of
+from pinstress.analysis.remedies.sensitivities import differentiated
+from pinstress.analysis.solve import solutions
+from pinstress.explore.size.contact_slopes import UndifferentiatedError, by_contact
+from pinstress.explore.size.counted import surface_and_section
+from pinstress.explore.size.optimise import ImpossibleError, StressPlace, worst
+from pinstress.explore.size.other_dimensions import paths_of, study_with
+from pinstress.explore.size.pin_shape import VariedShape
+from pinstress.explore.size.scaled_study import wider_eyes
+from pinstress.explore.size.singular_places import BENDING, CasePlace, SingularPlaces
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.tasks import Task, tasks
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study, raw_study
+
+WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
+UNKNOWN = 0.3  # the same of places where they are not yet known
+SMALL = 0.05  # of the largest force in any case: a case whose forces are smaller does not govern
+BELOW = 1.0  # the logarithm of stress below the largest, from which on a case is left out
+ANOTHER = 0.7  # the logarithm of a dimension's change after which all cases are looked at again
+EQUAL = 1e-9  # of a dimension
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class PinProblem:
+    """A pin of a study under loads that do not change: its shape, what is asked, by case the loads
+    and the part of the required factor that is needed there, mostly 1.
+    """
+
+    study: Study
+    name: str
+    shape: VariedShape
+    asked: Asked
+    loads: dict[str, CaseLoads]
+    required: float
+    more: dict[str, float]
+
+
+@dataclass(frozen=True)
+class SolvedPin:
+    """Peaks and places at values (n,) of the dimensions, m; places by the logarithms of these.
+    singular: by case, those of unbounded stress that must not govern.
+    """
+
+    values: Floats
+    peaks: tuple[Peak, ...]
+    places: tuple[StressPlace, ...]
+    singular: tuple[CasePlace, ...] = ()
+
+    @property
+    def every(self) -> tuple[StressPlace, ...]:
+        """Those that limit the search."""
+        return (*self.places, *(place for _, place in self.singular))
+
+    @property
+    def worst(self) -> float:
+        """The largest of these."""
+        return worst(self.every)
+
+    @property
+    def largest(self) -> float:
+        """The logarithm of the largest stress, as it counts, over what is allowed."""
+        return worst(self.places)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """The largest stress of a part, Pa as it counts, and what its derivatives need; besides: of its
+    logarithm by those of the dimensions, what comes to them.
+    """
+
+    name: str
+    case: str
+    stress: float
+    slopes: Callable[[], Floats]
+    guess: Floats | None = None
+    besides: Floats | float = 0.0
+
+
+class PinStress:
+    """Solves a pin with other dimensions. in_contact: whether lugs hold it, once solved. watched:
+    cases in which no singularity may govern, none to begin with.
+    """
+
+    def __init__(self, problem: PinProblem, tell: Tell) -> None:
+        self.problem, self._tell = problem, tell
+        self._raw: dict[str, Any] = raw_study(problem.study)
+        shape = problem.shape
+        self._paths = [paths_of(shape.pin, d) for d in shape.dimensions]  # none of other pins
+        self._known: set[str] = set()
+        self._found: list[SolvedPin] = []
+        self._sure: list[SolvedPin] = []
+        self._finer: dict[str, float] = {}  # what finer cells add to the logarithm, by place
+        self.in_contact = False
+        self.watched: frozenset[str] = frozenset()
+        self._singular = SingularPlaces(shape)
+        self._cases: tuple[str, ...] = ()  # that may govern near the dimensions `_about`
+        self._about: Floats | None = None
+        self.count = 0  # of designs
+
+    def study_at(self, values: Floats) -> Study:
+        """With what depends on the dimensions. Raises: InputError."""
+        old, name = self.problem.study, self.problem.name
+        every = list(zip(self._paths, map(float, values), strict=True))
+        new = study_with(old, self._raw, name, every)
+        eyes = wider_eyes(old, new, name)
+        wider = [((("lug", at, "outer_diameter"),), least) for at, least in eyes.items()]
+        return study_with(old, self._raw, name, [*every, *wider]) if wider else new
+
+    @property
+    def solved(self) -> list[SolvedPin]:
+        """What `at` says of all that was solved."""
+        return [self._as_finer(x) for x in self._found]
+
+    def at(self, values: Floats, far: float = np.inf) -> SolvedPin:
+        """Derivatives at all places that may govern; of the worst place only, where its stress is
+        `far` from what is allowed (its logarithm). Raises: ImpossibleError, UndifferentiatedError.
+        """
+        if (known := _among(self._found, values)) is None:
+            known = self._solved(self._possible(values), values, far, "rough")
+            self._found.append(known)
+        return self._as_finer(known)
+
+    def sure(self, values: Floats) -> SolvedPin:
+        """As a run has it; what is rough elsewhere is corrected by that. Raises as `at`."""
+        rough = self.at(values)
+        if not self.in_contact:
+            return rough
+        if (known := _among(self._sure, values)) is None:
+            found = self._solved(self._possible(values), None, 0.0, "usual")
+            known = replace(found, values=values)
+            self._sure.append(known)
+        before = {p.name: p.value for p in rough.places}
+        for place in known.places:
+            if place.name in before:
+                more = place.value - before[place.name]
+                self._finer[place.name] = self._finer.get(place.name, 0.0) + more
+        return self._watched(known)
+
+    def of(self, study: Study) -> SolvedPin:
+        """Of the pin in a study, without derivatives. Raises: ImpossibleError."""
+        return self._watched(self._solved(study, None, 0.0, "usual"))
+
+    def _watched(self, found: SolvedPin) -> SolvedPin:
+        return replace(found, singular=tuple(x for x in found.singular if x[0] in self.watched))
+
+    def _as_finer(self, found: SolvedPin) -> SolvedPin:
+        add = self._finer
+        places = (replace(p, value=p.value + add.get(p.name, 0.0)) for p in found.places)
+        return self._watched(replace(found, places=tuple(places)))
+
+    def _possible(self, values: Floats) -> Study:
+        """Raises: ImpossibleError."""
+        try:
+            return self.study_at(values)
+        except InputError as error:
+            raise ImpossibleError(str(error)) from None
+
+    def _solved(
+        self, study: Study, values: Floats | None, far: float, cells: Literal["rough", "usual"]
+    ) -> SolvedPin:
+        self.count += 1
+        self._tell(f"pin {self.problem.name}, design {self.count}")
+        peaks: list[Peak] = []
+        found: list[tuple[_Found, float]] = []
+        singular: list[CasePlace] = []
+        under: list[CasePlace] = []
+        asked = replace(self.problem.asked, cells=cells)
+        try:
+            for task in self._tasks(study, values):
+                for peak, parts in self._of_task(study, task, asked, values is not None):
+                    peaks.append(peak)
+                    allowed = self._allowed(task, peak)
+                    found += [(part, allowed) for part in parts]
+                    singular += self._singular.of(task.pin, peak, allowed, values)
+                    below = self._singular.beneath(task.pin, peak, allowed, values)
+                    under += [(peak.case, place) for place in below]
+        except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
+            raise ImpossibleError(str(error) or "out of memory") from None
+        if not peaks:
+            raise ImpossibleError("no case loads it")
+        logs = [float(np.log(part.stress / allowed)) for part, allowed in found]
+        top = max([*logs, *(place.value for _, place in under)])
+        of_case = [(part.case, log) for (part, _), log in zip(found, logs, strict=True)]
+        of_case += [(case, place.value) for case, place in under]
+        self._cases = tuple(dict.fromkeys(case for case, log in of_case if log > top - BELOW))
+        places = [place for _, place in under]
+        for (part, _), value in zip(found, logs, strict=True):
+            window = WINDOW if part.name in self._known else UNKNOWN
+            slope = None
+            if values is not None and value >= top - (window if abs(top) < far else 0.0):
+                slope = values * self._slope(part) + part.besides
+                self._known.add(part.name)
+            places.append(StressPlace(part.name, value, slope, part.guess))
+        at = np.zeros(0) if values is None else values
+        return SolvedPin(at, tuple(peaks), tuple(places), tuple(singular))
+
+    def _tasks(self, study: Study, values: Floats | None) -> list[Task]:
+        """The pin under the cases that may govern."""
+        pins, loads = [pin_of(study, self.problem.name)], self.problem.loads
+        if values is None:
+            chosen = self._cases
+        elif self._about is None or np.abs(np.log(values / self._about)).max() > ANOTHER:
+            self._about, chosen = values, ()
+        else:
+            chosen = self._cases
+        if not chosen:
+            every = tasks(study, pins, loads)
+            largest = {x.case: _size(task, x) for task in every for x in task.loads}
+            least = SMALL * max(largest.values(), default=0.0)
+            chosen = tuple(case for case, size in largest.items() if size >= least)
+        return tasks(study, pins, {case: loads[case] for case in chosen})
+
+    def _slope(self, part: _Found) -> Floats:
+        try:
+            return part.slopes()
+        except ArithmeticError as error:
+            raise ImpossibleError(str(error)) from None
+
+    def _allowed(self, task: Task, peak: Peak) -> float:
+        """Stress, Pa."""
+        strength = task.material.yield_strength
+        assert strength is not None  # a pin without strength is refused before
+        return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
+
+    def _of_task(
+        self, study: Study, task: Task, asked: Asked, differentiated: bool
+    ) -> Iterator[tuple[Peak, list[_Found]]]:
+        """Peaks and what is found of each."""
+        if differentiated and not isinstance(task.pin, Pin):
+            raise UndifferentiatedError
+        dimensions = self._dimensions(study, task) if differentiated else ()
+        section = PartsOfSection(dimensions)
+        for each in solutions(study, task, asked, lambda _: None):
+            self.in_contact |= isinstance(each, LugSolution) and each.model is not None
+            solution = each.solution if isinstance(each, LugSolution) else each
+            peak = solution.peak
+            _require_solved(peak)
+            if not peak.max_von_mises:
+                continue
+            if isinstance(each, LugSolution):
+                before = self.problem.study
+                yield peak, [
+                    _Found(
+                        f"{peak.case}, {place}", peak.case, stress,
+                        partial(by_contact, before, study, (task, each, place), dimensions),
+                    )
+                    for place, stress in surface_and_section(peak)
+                    if stress
+                ]  # fmt: skip
+            elif not differentiated:
+                yield peak, [_Found(peak.case, peak.case, peak.upper_end, _none)]
+            else:
+                yield peak, self._parts(task, each, dimensions, section)
+
+    def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
+        by = {d.key: d for d in dimensions_of(study, task.pin)}
+        try:
+            return tuple(by[key] for key in self.problem.shape.keys)
+        except KeyError:
+            raise ImpossibleError("two of its dimensions have become equal") from None
+
+    def _parts(
+        self,
+        task: Task,
+        solution: Solution,
+        dimensions: tuple[Dimension, ...],
+        parts: PartsOfSection,
+    ) -> list[_Found]:
+        """Of a row that no lugs hold."""
+        peak, answer, pin = solution.peak, solution.answer, task.pin
+        assert isinstance(pin, Pin)  # others are not differentiated
+        if not isinstance(answer, HarmonicAnswer):
+
+            def whole() -> Floats:
+                made = differentiated(self.problem.asked, task, solution, dimensions)
+                if made is None:
+                    raise SolveError("no derivatives", "no-derivatives")
+                slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
+                return slope / made.maximum
+
+            return [_Found(peak.case, peak.case, peak.upper_end, whole)]
+        zones = answer.singularities
+        if peak.verdict != "converged" and peak.interval is not None:
+            zones = tuple(zone.varied(min(VARIED)) for zone in zones)
+        clamps = tuple(pin.surface(name) for name in task.clamps)
+        solved = SolvedCase(pin, task.material, clamps, solution.loads, answer.solution, zones)
+        masks = halves(pin.stations, answer.fields.points)
+        tops = parts.tops(solved, solution.loads, masks)
+        ends = dict(surface_and_section(peak))
+        times = ends["surface"] / max(top.top.value for top in tops)
+
+        def slopes(top: PartTop, mask: Mask) -> Callable[[], Floats]:
+            return lambda: parts.slopes(solved, solution.loads, top, mask) / top.top.value
+
+        def of_section() -> Floats:
+            assert peak.places is not None
+            assert peak.places.section is not None
+            times, now = solution.loads.times, peak.places.section.time
+            instant = 0 if times is None or now is None else int(np.abs(times - now).argmin())
+            at = replace(solved, loads=solution.loads.at(np.array([instant])), history=None)
+            made = section_derivatives(at, dimensions)
+            slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
+            return slope / made.maximum
+
+        besides = self._by_clamps(peak, ends.get("section", 0.0)) if len(clamps) > 1 else 0.0
+        section = [
+            _Found(f"{peak.case}, section", peak.case, stress, of_section, besides=besides)
+            for place, stress in ends.items()
+            if place == "section" and stress
+        ]
+        named = {name: (mask, k // 2) for k, (name, mask) in enumerate(masks)}
+        return section + [
+            _Found(
+                f"{peak.case}, {top.part}",
+                peak.case,
+                times * top.top.value,
+                slopes(top, named[top.part][0]),
+                BENDING * self.problem.shape.part_of_diameter(named[top.part][1]),
+            )
+            for top in tops
+            if top.top.value > 0.0
+        ]
+
+    def _by_clamps(self, peak: Peak, stress: float) -> Floats | float:
+        """Of the logarithm of a section's stress with the error of a beam between two clamps, which
+        goes with the largest diameter until it is TWICE: its derivatives by that.
+        """
+        place = peak.places.section if peak.places else None
+        error = stress / place.max_von_mises - 1.0 if place and place.max_von_mises else 0.0
+        if error >= TWICE:
+            return 0.0
+        outer = [max(s.diameters) for s in self.problem.shape.pin.segments]
+        thickest = int(np.argmax(outer))
+        return error / (1.0 + error) * self.problem.shape.part_of_diameter(thickest)
+
+
+def _none() -> Floats:
+    """Derivatives that are not asked for."""
+    return np.zeros(0)
+
+
+def _among(found: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:
+    """What is solved with these values."""
+    same = (x for x in found if np.allclose(x.values, values, rtol=EQUAL, atol=0.0))
+    return next(same, None)
+
+
+def _size(task: Task, loads: PinLoads) -> float:
+    """The largest force of a case, N, moments as couples of forces over the pin's length."""
+    arm = task.pin.length
+    return float(max(np.abs(loads.forces).max(), np.abs(loads.moments).max(initial=0.0) / arm))
+
+
+def _require_solved(peak: Peak) -> None:
+    """Raises: ImpossibleError."""
+    if peak.verdict == "rigid":
+        raise ImpossibleError(f"it is unconstrained in case {peak.case}: {peak.note}")
+    if peak.verdict == "failed":
+        raise ImpossibleError(f"the numerical solution failed in case {peak.case}: {peak.note}")

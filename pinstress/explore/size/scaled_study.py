@@ -1,0 +1,246 @@
+"""Other diameters in a study's text: everything else in it stays as it was written."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from pinstress.study.model.pins import pin, weight
+from pinstress.study.reading.file import Study, parse_study
+from pinstress.study.schema.units import UnitSystem, to_si
+
+DIGITS = 4  # of a length that is not rounded to a step
+LEAST_EYE = 1.5  # outer diameter over the bore below which an eye that was wider grows with its pin
+NUMBER = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
+ACROSS = {  # keys of lengths across the axis; 1 where rounding up is on the safe side
+    "diameter": 1,
+    "distance": 1,
+    "bore": -1,
+    "fillet": -1,
+    "edge_radius": -1,
+    "bore_radius": -1,
+}
+FILES = ("peaks", "reactions", "motion", "values")  # that [published] names
+
+
+def resized_study(
+    study: Study,
+    scales: Mapping[str, float],
+    step: float | None = None,
+    required: float | None = None,
+) -> Study:
+    """The study with pins as `resized` makes them, and with what depends on them: stated weights
+    of floating pins change by what their shapes' weights do, and eyes that became narrower than
+    LEAST_EYE of their bores grow.
+
+    Raises: InputError for a shape that cannot be.
+    """
+    return with_what_follows(
+        study, resized(study.text, scales, study.system, step, required), scales
+    )
+
+
+def with_what_follows(study: Study, text: str, pins: Iterable[str]) -> Study:
+    """A study of another text in which pins have other shapes, with what depends on these.
+
+    Raises: InputError for a shape that cannot be.
+    """
+    if text == study.text:
+        return study
+    new = parse_study(study.path, text)
+    document, before = tomlkit.parse(text), text
+    for name in pins:
+        _reweigh(document, study, new, name)
+        _widen_eyes(document, study, new, name)
+    text = tomlkit.dumps(document)
+    return new if text == before else parse_study(study.path, text)
+
+
+def resized(
+    text: str,
+    scales: Mapping[str, float],
+    system: UnitSystem,
+    step: float | None = None,
+    required: float | None = None,
+) -> str:
+    """A study's text with pins (by name) scaled across their axis: diameters, bores, fillets,
+    the distances of flats and offsets of passages; lengths, holes and slots stay.
+
+    Diameters are rounded up, to a step (m) or to four digits, bores and fillets down; scale 1
+    without a step changes nothing. Provenance that no longer holds is replaced. required: the
+    study's new required factor of safety, if any.
+    """
+    study = tomlkit.parse(text)
+    for name, scale in scales.items():
+        if scale == 1.0 and step is None:
+            continue
+        table_of_pin: Any = study["pin"][name]
+        parts = (*_plain(table_of_pin.get("profile", [])), *_plain(table_of_pin.get("flat", [])))
+        for table in (table_of_pin, *parts):
+            for key, up in ACROSS.items():
+                if key in table:
+                    rounding = step if key == "diameter" else None
+                    for here, at in _numbers(table, key):
+                        _scale(here, at, scale, system, rounding, up)
+        for table in _plain(table_of_pin.get("passage", [])):
+            for here, at in _numbers(table, "offset"):
+                _scale(here, at, scale, system, None, -1)
+        for key, up in (("meridian", 1), ("bore_meridian", -1)):
+            for corner in map(value_of, _plain(table_of_pin.get(key, []))):
+                radius = step / 2.0 if step is not None and up > 0 else None
+                _scale(corner, 1, scale, system, radius, up)
+                if corner[2:]:
+                    _scale(corner, 2, scale, system, None, -1)
+    require(study, required)
+    return tomlkit.dumps(study)
+
+
+def require(document: Any, required: float | None) -> None:
+    """Write a required factor of safety, if any, into a study."""
+    if required is not None:
+        analysis: Any = document.setdefault("analysis", tomlkit.table())
+        old = analysis.get("required_safety_factor")
+        if old is None or float(value_of(old)) != required:
+            analysis["required_safety_factor"] = required
+
+
+def moved(text: str, old: Path, new: Path) -> str:
+    """A study's text for another folder, from which it names the same files."""
+    if old.resolve() == new.resolve():
+        return text
+    document = tomlkit.parse(text)
+    for table, key in _files(document):
+        path = os.path.join(old.resolve(), value_of(table[key]))
+        try:
+            name = os.path.relpath(path, new.resolve())
+        except ValueError:  # on another drive
+            name = path
+        table[key] = Path(name).as_posix()
+    return tomlkit.dumps(document)
+
+
+def _files(document: Any) -> Iterator[tuple[Any, str]]:
+    """The tables that name a file, each with the key that does."""
+    yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
+    published = document.get("published", {})
+    yield from ((published, key) for key in FILES if key in published)
+    for part in ("case", "mechanism"):
+        yield from ((table, "table") for table in _with_a_table(document.get(part, {})))
+
+
+def _with_a_table(node: Any) -> Iterator[Any]:
+    """Of cases, drives, laws of forces and springs those that name a table."""
+    if isinstance(node, list):
+        for entry in node:
+            yield from _with_a_table(entry)
+    elif isinstance(node, dict):
+        if "table" in node and isinstance(value_of(node["table"]), str):
+            yield node
+        for entry in node.values():
+            yield from _with_a_table(entry)
+
+
+def _plain(node: Any) -> list[Any]:
+    """The entries of an array, also one that comes with its provenance."""
+    return list(value_of(node))
+
+
+def value_of(node: Any) -> Any:
+    return node["value"] if isinstance(node, dict) and "value" in node else node
+
+
+def _reweigh(document: Any, old: Study, new: Study, name: str) -> None:
+    """Change the stated weight of a floating pin by what that of its shape has changed."""
+    mechanism, density = new.table.mechanism, _density(new, name)
+    joint = None if mechanism is None else mechanism.joint.get(name)
+    if not density or joint is None or joint.fixed_in or joint.weight is None:
+        return
+    more = weight(pin(new, name), density) - weight(pin(old, name), density)
+    _write(document["mechanism"]["joint"][name], "weight", joint.weight + more, "force", new.system)
+
+
+def _density(study: Study, name: str) -> float | None:
+    return study.table.material[study.table.pin[name].material].density
+
+
+def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
+    for at, least in wider_eyes(old, new, name).items():
+        _write(document["pin"][name]["lug"][at], "outer_diameter", least, "length", new.system)
+
+
+def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
+    """Outer diameters, m, that eyes about a pin need, of those that are given and have become too
+    narrow, by connection.
+    """
+    out = {}
+    for at, lug in new.table.pin[name].lug.items():
+        if lug.outer_diameter is None:
+            continue
+        before, after = (hole_in_eye(x, name, at) for x in (old, new))
+        least = min(LEAST_EYE, lug.outer_diameter / before) * after
+        if lug.outer_diameter < least * (1.0 - 1e-9):
+            out[at] = least
+    return out
+
+
+def hole_in_eye(study: Study, name: str, connection: str) -> float:
+    """Diameter of the hole in an eye about a pin, bushing and all, m."""
+    bushing = study.table.pin[name].lug[connection].bushing
+    ring = 2.0 * bushing.thickness if bushing else 0.0
+    return 2.0 * pin(study, name).band(connection).radius + ring
+
+
+def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:
+    """Where a key's numbers are, each with its key or index: one, or one for each end."""
+    both = value_of(table[key])
+    return [(both, i) for i in range(len(both))] if isinstance(both, list) else [(table, key)]
+
+
+def _scale(
+    table: Any, key: Any, scale: float, system: UnitSystem, step: float | None, up: int
+) -> None:
+    old = value_of(table[key])
+    size, one = to_si(old, "length", system), unit_of(old, "length", system)[1]
+    number = rounded(size / one * scale, None if step is None else step / one, up)
+    if not math.isclose(number * one, size, rel_tol=1e-12):
+        replace_number(table, key, number, unit_of(old, "length", system)[0])
+
+
+def _write(table: Any, key: str, si: float, dimension: str, system: UnitSystem) -> None:
+    unit, one = unit_of(value_of(table[key]), dimension, system)
+    replace_number(table, key, rounded(si / one, None, 1), unit)
+
+
+def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
+    """The unit in which a value is written, as text, and in SI."""
+    text = NUMBER.sub("", old, count=1) if isinstance(old, str) else ""
+    return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
+
+
+def replace_number(table: Any, key: Any, number: float, unit: str) -> None:
+    """Another number, in the same unit; where there is a source, the source is this."""
+    old = value_of(table[key])
+    new = f"{number:.12g}{unit}" if isinstance(old, str) else number
+    if (isinstance(table, dict) and "provenance" in table) or isinstance(table[key], dict):
+        note = f"by pinstress size, from {old}"
+        sourced = tomlkit.inline_table()
+        sourced.update({"value": new, "provenance": "derived", "note": note})
+        table[key] = sourced
+    else:
+        table[key] = new
+
+
+def rounded(number: float, step: float | None, up: int) -> float:
+    if number == 0.0:
+        return 0.0
+    step = step or 10.0 ** (math.floor(math.log10(number)) + 1 - DIGITS)
+    count = number / step
+    # What is a whole number of steps but for the last digits stays.
+    whole = math.ceil(count - 1e-9) if up > 0 else math.floor(count + 1e-9)
+    return float(f"{whole * step:.12g}")

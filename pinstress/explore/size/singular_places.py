@@ -1,0 +1,88 @@
+"""Places of a search for the least weight whose derivatives are not found: corners and edges where
+stress is unbounded, and what lies beneath contact.
+
+Where a singular place does not govern in a pin as it is given, its row is decided; were a segment
+of it to shrink until it does, it would not be. So stress in it, but next to its very edge, is kept
+below what is allowed, too. What lies beneath contact must meet the factor like surface and section.
+Derivatives are those of bending to begin with, and learned from one design to the next.
+
+Source: Broyden, Math. Comp. 19 (1965) 577.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from fea.core.peak import Peak
+from geometry import Pin, PinLike
+from pinbase.arrays import Floats
+from pinstress.explore.size.counted import beneath
+from pinstress.explore.size.optimise import StressPlace
+from pinstress.explore.size.pin_shape import VariedShape
+
+MARGIN = 0.05  # of the logarithm of stress, below what is allowed
+BENDING = -3.0  # power of the diameter, where nothing is known
+SAME = 1e-3  # of dimensions' logarithms: designs that are so near teach nothing
+
+CasePlace = tuple[str, StressPlace]
+
+
+class SingularPlaces:
+    """Of a pin whose dimensions vary."""
+
+    def __init__(self, shape: VariedShape) -> None:
+        self._shape = shape
+        self._known: dict[str, tuple[Floats, float, Floats]] = {}
+
+    def of(
+        self, pin: PinLike, peak: Peak, allowed: float, values: Floats | None
+    ) -> Iterator[CasePlace]:
+        """Of a row at values (n,) of the dimensions, m, under an allowed stress, Pa; above it where
+        one governs. Without values only those that govern, without derivatives.
+        """
+        names: set[str] = set()
+        for zone in peak.singular_at:
+            if not zone.felt or (values is None and not zone.governs):
+                continue
+            name = f"{peak.case}, {zone.kind} ({' / '.join(zone.between)})"
+            if name in names:
+                name += f" at {zone.location[2]:.4g} m"
+            names.add(name)
+            value = float(np.log(zone.felt / allowed)) + MARGIN
+            slope = self._slope(name, pin, values, value, zone.location[2])
+            limited = max(value, MARGIN) if zone.governs else value
+            yield peak.case, StressPlace(name, limited, slope)
+
+    def beneath(
+        self, pin: PinLike, peak: Peak, allowed: float, values: Floats | None
+    ) -> Iterator[StressPlace]:
+        """Of contact in a row, likewise."""
+        if stress := beneath(peak):
+            assert peak.places is not None
+            assert peak.places.contact is not None
+            name, value = f"{peak.case}, beneath contact", float(np.log(stress / allowed))
+            z = peak.places.contact.beneath_location[2]
+            yield StressPlace(name, value, self._slope(name, pin, values, value, z))
+
+    def _slope(
+        self, name: str, pin: PinLike, values: Floats | None, value: float, z: float
+    ) -> Floats | None:
+        if values is None or not isinstance(pin, Pin):
+            return None
+        x, segment = np.log(values), int(np.searchsorted(pin.stations[1:-1], z))
+        if name not in self._known:
+            slope = BENDING * self._shape.part_of_diameter(segment)
+        else:
+            there, before, slope = self._known[name]
+            step = x - there
+            if float(np.abs(step).max()) > SAME:
+                slope = slope + (value - before - slope @ step) / (step @ step) * step
+        self._known[name] = x, value, slope
+        return slope
+
+
+def decided(peaks: tuple[Peak, ...]) -> frozenset[str]:
+    """The cases in which no singularity governs."""
+    return frozenset(p.case for p in peaks if p.verdict != "singular")

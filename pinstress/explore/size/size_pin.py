@@ -1,0 +1,176 @@
+"""The smallest diameters of every pin that reach a factor of safety.
+
+A pin keeps its lengths, which the links set, and its proportions across the axis. Every trial is
+a study of its own, with the loads that follow from its weights, and solved as any other, so what
+is found is what a run of it gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from fea.core.peak import Peak, Verdict
+from fea.support.contact.solve_in_lugs import LugSolution
+from geometry import ArgumentError
+from pinstress.analysis.plan import Plan, all_loads
+from pinstress.analysis.remedies.secant import NoSizeError, smallest
+from pinstress.analysis.solve import solutions
+from pinstress.explore.size.counted import beneath
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.study.model.pins import material as material_of
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.tasks import tasks
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+
+STEPS_UP = 8  # of diameters rounded to steps, until the factor is reached
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Sized:
+    """A pin: by which scale it reaches the factor (None where it does not, and `why`), its factor
+    in the first trial and then, in the case that governs, with that case's verdict.
+    """
+
+    pin: str
+    scale: float | None
+    before: float | None
+    factor: float | None
+    verdict: Verdict | None
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """The factor to reach, and to which step (m) diameters are rounded up, if any."""
+
+    required: float
+    step: float | None = None
+
+
+def size_pin(
+    plan: Plan,
+    pin: str,
+    wish: Wish,
+    others: Mapping[str, float],
+    tell: Tell = lambda _: None,
+) -> Sized:
+    """Size one pin for all cases of a plan. others: by which scales pins are sized so far, this one
+    too, from which its search begins.
+
+    Failures are reported in the answer.
+    """
+    study = plan.study
+    problem = _problem(study, pin)
+    if problem:
+        return Sized(pin, None, None, None, None, problem)
+    found: dict[float, Peak] = {}
+    factors: dict[float, float] = {}
+
+    def factor_at(scale: float, rounding: float | None = None) -> float:
+        if rounding is None and scale in factors:
+            return factors[scale]
+        tell(f"pin {pin}, {scale:.3f} times its diameters")
+        trial = resized_study(study, {**others, pin: scale}, rounding)
+        found[scale] = governing(plan, trial, pin, tell)
+        factors[scale] = _factor(study, found[scale])
+        return factors[scale]
+
+    before: float | None = None
+    start = others.get(pin, 1.0)
+    try:
+        factor_at(start)
+        before = _nominal(study, found[start])
+        best = smallest(factor_at, wish.required, start)
+        scale, factor = best.scale, best.factor
+        if wish.step is not None:
+            least = min(study.table.pin[pin].diameters)
+            scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
+    except NoSizeError as error:
+        return Sized(pin, None, before, None, None, str(error) + _where(found))
+    except (InputError, ArithmeticError, ArgumentError) as error:
+        tried = ", ".join(f"{factor:.4g} at {s:.3g}" for s, factor in factors.items()) or "none"
+        why = f"a trial fails (factors by times its diameters: {tried}): {error}"
+        return Sized(pin, None, before, None, None, why)
+    return Sized(pin, scale, before, factor, found[scale].verdict)
+
+
+def _where(found: Mapping[float, Peak]) -> str:
+    """What the factor is by, where that is not the row's own number, for a pin that was solved."""
+    if not found:
+        return ""
+    last = list(found.values())[-1]
+    if beneath(last) < counts(last):
+        return ""
+    return f"; it is by what lies beneath the contact with its lugs in case {last.case}"
+
+
+def _stepped(
+    factor_at: Callable[[float, float | None], float],
+    scale: float,
+    step: float,
+    diameter: float,
+    required: float,
+) -> tuple[float, float]:
+    """A scale at which the factor is reached with diameters rounded up to a step."""
+    for _ in range(STEPS_UP):
+        factor = factor_at(scale, step)
+        if factor >= required:
+            return scale, factor
+        scale += step / diameter  # rounding changes proportions, so notches may be sharper
+    raise NoSizeError(f"the factor is not reached within {STEPS_UP} steps of the diameter")
+
+
+def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Peak:
+    """The peak with the lowest factor, as it counts, of a pin of `study` in the cases of the plan.
+
+    Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
+    """
+    loads = all_loads(study, list(plan.loads))
+    asked = replace(plan.asked, goal="value")
+    peaks: list[Peak] = []
+    for task in tasks(study, [pin_of(study, pin)], loads):
+        for found in solutions(study, task, asked, tell):
+            peaks.append(found.solution.peak if isinstance(found, LugSolution) else found.peak)
+    for peak in peaks:
+        if peak.verdict == "rigid":
+            raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
+        if peak.verdict == "failed":
+            raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
+    acting = [peak for peak in peaks if peak.max_von_mises]
+    if not acting:
+        raise NoSizeError("no case loads it")
+    return max(acting, key=counts)
+
+
+def counts(peak: Peak) -> float:
+    """The stress, Pa, that has to decide: of the maximum with its error, or what lies beneath
+    contact with its own, the larger; of a singular maximum, which decides nothing, that outside the
+    excluded zones.
+    """
+    own = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    return max(own or 0.0, beneath(peak))
+
+
+def _factor(study: Study, peak: Peak) -> float:
+    """Of that stress."""
+    return _nominal(study, peak) * (peak.max_von_mises or 0.0) / counts(peak)
+
+
+def _nominal(study: Study, peak: Peak) -> float:
+    material = material_of(study, study.table.pin[peak.pin].material)
+    factor = peak.safety_factor(material.yield_strength)
+    assert factor is not None  # a pin without strength is refused before
+    return factor
+
+
+def _problem(study: Study, pin: str) -> str:
+    table = study.table.pin[pin]
+    if table.geometry is not None:
+        return "its shape comes from a file, which has no diameters to change"
+    if study.table.material[table.material].yield_strength is None:
+        return f"its material {table.material} has no yield_strength"
+    return ""

@@ -1,0 +1,176 @@
+"""Designs in batches of a second of work and more, for processes here or on other computers.
+
+A batch is solved as a whole; which designs are in one, and where and when it is solved, changes
+none of their numbers. Designs that share a shape are in the same batch as far as possible, so that
+their pins are meshed once.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from geometry.mesh.moved.near_mesh import step
+from loads import noted_files
+from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
+from pinstress.explore.sweep.laws import Floats
+from pinstress.explore.sweep.number import Number
+from pinstress.study.reading.file import Study, parse_study
+
+AIM = 2.0  # s of work in a batch
+TASK = 0.008  # s in which a batch is handed out to one of many processes and its rows are read
+MOST = 5000  # designs in a batch
+UNSHAPED = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
+
+_ONE_AT_A_TIME = threading.Lock()  # workers of a user's cluster may have several threads
+
+Rows = list[list[DesignRow]]
+
+
+@dataclass(frozen=True)
+class DesignProblem:
+    """All that a process needs to solve designs of a study, as text: small, and the same for all
+    versions of the libraries between. files: hash of the contents that were sent of the files that
+    the study names; empty where they are read as they lie here.
+    """
+
+    path: Path
+    text: str
+    located: bool
+    numbers: tuple[Number, ...]
+    pins: tuple[str, ...] | None = None
+    cases: tuple[str, ...] | None = None
+    files: str = ""
+
+    @classmethod
+    def of(
+        cls,
+        study: Study,
+        numbers: Sequence[Number],
+        pins: Sequence[str] | None = None,
+        cases: Sequence[str] | None = None,
+    ) -> DesignProblem:
+        """The problem of a study, whose files are named by absolute paths."""
+        some, those = (None if x is None else tuple(x) for x in (pins, cases))
+        path = study.path.absolute()
+        return cls(path, study.text, study.located, tuple(numbers), some, those)
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Some designs: their numbers from 0, and values (B, p) in SI."""
+
+    designs: tuple[int, ...]
+    values: tuple[tuple[float, ...], ...]
+
+    def halves(self) -> tuple[Batch, Batch]:
+        """The first and the second half of more than one."""
+        k = len(self.designs) // 2
+        return (
+            Batch(self.designs[:k], self.values[:k]),
+            Batch(self.designs[k:], self.values[k:]),
+        )
+
+
+@dataclass(frozen=True)
+class Done:
+    """The rows of a batch's designs, and the seconds that it took."""
+
+    batch: Batch
+    rows: Rows
+    seconds: float
+
+
+def solve_batch(problem: DesignProblem, batch: Batch) -> Done:
+    """Solve the designs of a batch, with one thread in each numeric library."""
+    from threadpoolctl import threadpool_limits
+
+    start = time.perf_counter()
+    with _ONE_AT_A_TIME, threadpool_limits(1):
+        evaluator = evaluator_of(problem)
+        rows = [evaluator.rows(values) for values in batch.values]
+    return Done(batch, rows, time.perf_counter() - start)
+
+
+@lru_cache(1)
+def evaluator_of(problem: DesignProblem) -> Evaluator:
+    """One in a process, which remembers what it solved."""
+    with noted_files() as files:
+        study = parse_study(problem.path, problem.text, problem.located)
+        found = Evaluator(study, problem.numbers, problem.pins, problem.cases)
+    found.files = tuple(sorted(files))
+    return found
+
+
+def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
+    """The designs (N, p) so that those with the same shapes follow each other, and those whose
+    meshes are moved from that of the same rounded shape.
+    """
+    shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
+    near = [np.array([step(x) for x in each]) for each in shape]
+    keys = [np.arange(len(values)), *reversed(shape), *reversed(near)]
+    return [int(i) for i in np.lexsort(keys)]
+
+
+def shapes(number: Number) -> bool:
+    """Whether pins are meshed or solved anew for another value of a number: not for strengths."""
+    table, last = number.path[0], number.path[-1]
+    return table == "pin" or (table == "material" and last not in UNSHAPED)
+
+
+def aim_of(at_once: int) -> float:
+    """Seconds of work in a batch where so many are solved at a time: batches are handed out one
+    after the other, to each process before it has solved its last one.
+    """
+    return max(AIM, TASK * at_once)
+
+
+class Batches:
+    """Batches of the designs that are left, as large as they should be by what earlier ones took.
+    at_once: how many are solved at a time.
+    """
+
+    def __init__(self, numbers: Sequence[Number], values: Floats, done: set[int], at_once: int):
+        self._values = values
+        self._left = [i for i in ordered(numbers, values) if i not in done]
+        self._left.reverse()
+        self._at_once = at_once
+        self._seconds, self._count = 0.0, 0
+
+    def __iter__(self) -> Iterator[Batch]:
+        while self._left:
+            yield self.next()
+
+    @property
+    def left(self) -> int:
+        """How many designs are in no batch yet."""
+        return len(self._left)
+
+    def learn(self, done: Done) -> None:
+        """Take note of what a batch took."""
+        self._seconds += done.seconds
+        self._count += len(done.batch.designs)
+
+    @property
+    def each(self) -> float | None:
+        """Seconds a design, as far as is known."""
+        return self._seconds / self._count if self._count else None
+
+    def next(self) -> Batch:
+        """The next batch: single designs until it is known what one takes, and at the end so few
+        that all processes end at about the same time.
+        """
+        size = 1
+        if self.each is not None:
+            size = min(math.ceil(aim_of(self._at_once) / max(self.each, 1e-9)), MOST)
+            size = max(1, min(size, -(-len(self._left) // (2 * self._at_once))))
+        taken = [self._left.pop() for _ in range(min(size, len(self._left)))]
+        rows = tuple(tuple(float(x) for x in self._values[i]) for i in taken)
+        return Batch(tuple(taken), rows)

@@ -1,0 +1,246 @@
+"""A scheduler of dask and its workers: whether they answer, are able, and have our versions."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import logging
+import time
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from distributed import CancelledError, Client, Future
+
+from pinstress.explore.sweep import versions as asking
+from pinstress.study.reading.errors import InputError
+
+ANSWERS = 10.0  # s within which a scheduler must answer
+WORKERS = 20.0  # s within which it must have a worker that works
+LOOK = 3.0  # s between two looks at it
+WITHIN = 0.2  # s between two looks before there is a worker
+NOISE = "Mismatched versions|Sending large graph"  # what dask warns of
+MOST_LISTED = 20  # workers in a message
+
+EXPRESSION = "[found := {}, exec(text, found), found['versions'](packages)][-1]"
+
+
+class Cluster:
+    """A connected scheduler. packages: of which workers must have our versions, as of pinstress and
+    Python. tell: called with what is odd.
+    """
+
+    patience = ANSWERS
+
+    def __init__(
+        self,
+        client: Client,
+        address: str,
+        packages: Sequence[str],
+        tell: Callable[[str], None],
+    ) -> None:
+        self.client, self.address = client, address
+        self._packages, self._expected = packages, asking.versions(packages)
+        self._tell = tell
+        self._same, self._paused, self._told = set[str](), set[str](), set[str]()
+        self._looked, self._able = 0.0, time.monotonic()
+        self.workers = 0
+        while not self.workers:
+            self.look(now=True)
+            time.sleep(0.0 if self.workers else WITHIN)
+
+    def look(self, now: bool = False) -> None:
+        """Look at the scheduler and its workers, at most every LOOK s.
+
+        Raises: InputError where it does not answer, no worker has worked for WORKERS s, or one has
+        other versions.
+        """
+        if not now and time.monotonic() - self._looked < LOOK:
+            return
+        found = self._identities()
+        self._looked = time.monotonic()
+        self._ask([address for address in found if address not in self._same])
+        self._same &= set(found)  # another one may come at the same address
+        self._tell_of_paused({a for a, worker in found.items() if worker["status"] == "paused"})
+        if any(_works(found[address]) for address in self._same):
+            self._able = time.monotonic()
+        elif time.monotonic() - self._able > WORKERS:
+            raise self._unable(len(found))
+        able = [address for address in self._same if found[address]["status"] == "running"]
+        self.workers = len(able) or self.workers
+
+    def rows(self, future: Future[Any]) -> Any:
+        """What came of a batch that is done; None where that went with its worker."""
+        try:
+            return future.result(timeout=ANSWERS)
+        except TimeoutError:
+            if future.status == "finished":
+                self._tell_once("a worker that has solved designs does not answer; still waiting")
+        except (CancelledError, OSError):
+            if self.client.status != "running":
+                raise lost_connection(self.address) from None
+        return None
+
+    def require_same(self, found: Mapping[str, Mapping[str, str] | BaseException]) -> None:
+        """Raises: InputError where workers have other versions. found: by worker."""
+        lines = [f"{who}: {other}" for who, has in found.items() if (other := self._other(has))]
+        if lines:
+            raise other_versions(lines)
+
+    def _other(self, found: Mapping[str, str] | BaseException) -> str:
+        if isinstance(found, BaseException):
+            return short(found)
+        return ", ".join(
+            f"{name} {found.get(name, asking.MISSING)} (here {mine})"
+            for name, mine in self._expected.items()
+            if found.get(name) != mine
+        )
+
+    def _identities(self) -> dict[str, Any]:
+        """What the scheduler says of each of its workers."""
+        try:
+            asked: Any = self.client.scheduler
+            said: dict[str, Any] = self.client.sync(asked.identity, callback_timeout=ANSWERS)
+        except TimeoutError:
+            if self.client.status != "running":  # it tries to connect again
+                raise lost_connection(self.address) from None
+            raise InputError(
+                f"--scheduler: the scheduler at {self.address} has not answered for {ANSWERS:g} s",
+                code="no-scheduler",
+            ) from None
+        except (OSError, CancelledError, RuntimeError):
+            raise lost_connection(self.address) from None
+        return dict(said["workers"])
+
+    def _ask(self, new: Sequence[str]) -> None:
+        """Ask workers for their versions; those that do not answer are asked again."""
+        asked = {"text": inspect.getsource(asking), "packages": self._packages}
+
+        async def one(address: str) -> Any:
+            with suppress(TimeoutError, OSError):
+                run: Any = self.client.run(
+                    eval, EXPRESSION, asked, workers=[address], on_error="return"
+                )
+                return (await asyncio.wait_for(run, ANSWERS)).get(address)
+            return None
+
+        async def all_() -> list[Any]:
+            return list(await asyncio.gather(*map(one, new)))
+
+        if not new:
+            return
+        answers = dict(zip(new, self.client.sync(all_), strict=True))
+        found = {a: x for a, x in answers.items() if x is not None and not isinstance(x, OSError)}
+        self.require_same(found)
+        self._same |= set(found)
+
+    def _tell_of_paused(self, paused: set[str]) -> None:
+        for address in sorted(paused):
+            self._tell_once(
+                f"the worker {address} is paused, since its memory is nearly full: it begins no "
+                "design until some is free (dask worker --memory-limit)"
+            )
+        self._paused = paused
+
+    def _tell_once(self, message: str) -> None:
+        if message not in self._told:
+            self._told.add(message)
+            self._tell(message)
+
+    def _unable(self, count: int) -> InputError:
+        """That no worker works. count: of the workers that the scheduler knows."""
+        what, code = f"has no worker that answers, for {WORKERS:g} s", "no-worker"
+        if not count:
+            what = f"has had no worker for {WORKERS:g} s; start one with: dask worker "
+            what += f"{self.address} --nthreads 1"
+        elif self._paused:
+            code = "workers-paused"
+            what = "has only workers that are paused, since their memory is nearly full, and none "
+            what += f"has worked for {WORKERS:g} s; give them more (dask worker --memory-limit)"
+        return InputError(f"--scheduler: the scheduler at {self.address} {what}", code=code)
+
+
+def _works(worker: Mapping[str, Any]) -> bool:
+    return bool(worker["status"] == "running" or worker["metrics"].get("executing"))
+
+
+@contextmanager
+def connected(
+    address: str, packages: Sequence[str], tell: Callable[[str], None]
+) -> Iterator[Cluster]:
+    """The user's cluster, whose workers have been asked. Raises: InputError where nothing answers,
+    or no worker is there, or one has other versions.
+    """
+    with _silent():
+        try:
+            client = _Closed(  # type: ignore[no-untyped-call]  # as all of dask
+                address, timeout=ANSWERS, set_as_default=False
+            )
+        except Exception as error:  # whatever dask raises for an address or what answers there
+            raise InputError(
+                f"--scheduler: no scheduler of dask answers at {address} within {ANSWERS:g} s "
+                f"({short(error)}); start one with: dask scheduler --host 127.0.0.1",
+                code="no-scheduler",
+            ) from None
+        try:
+            yield Cluster(client, address, packages, tell)
+        finally:
+            with suppress(TimeoutError, OSError):
+                client.close(timeout=1.0)  # type: ignore[no-untyped-call]
+
+
+class _Closed(Client):
+    """A client that is closed here, and not by Python where it has never been connected."""
+
+    def __del__(self) -> None:
+        pass
+
+
+def lost_connection(address: str) -> InputError:
+    """That the scheduler has ended, or cannot be reached."""
+    return InputError(
+        f"--scheduler: the connection to the scheduler at {address} is lost", code="no-scheduler"
+    )
+
+
+def other_versions(lines: Sequence[str]) -> InputError:
+    """That workers have other versions. lines: of each what is other."""
+    beyond = len(lines) - MOST_LISTED
+    more = [f"and {beyond} more"] if beyond > 0 else []
+    return InputError(
+        "\n".join(
+            [
+                "--scheduler: numbers could differ on workers with other versions than this "
+                "process has; install the same there, or end them",
+                *lines[:MOST_LISTED],
+                *more,
+            ]
+        ),
+        code="other-version",
+    )
+
+
+def short(error: BaseException) -> str:
+    """The first line of an error."""
+    return (str(error).strip() or type(error).__name__).splitlines()[0][:200]
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Without what dask logs of connections that end, and warns of: versions, which are compared
+    here, and the size of files that are sent.
+    """
+    parts = "worker", "nanny", "scheduler", "core", "comm", "client"
+    names = ("distributed", *(f"distributed.{part}" for part in parts), "tornado", "asyncio")
+    found = [logging.getLogger(name) for name in names]
+    before = [each.level for each in found]
+    for each in found:
+        each.setLevel(logging.CRITICAL + 1)
+    try:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message=f"(?s).*({NOISE})")
+            yield
+    finally:
+        for each, level in zip(found, before, strict=True):
+            each.setLevel(level)

@@ -1,0 +1,75 @@
+"""Parameters with normal laws that vary together: their matrix of correlation, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from pinstress.explore.sweep.laws import Floats, Normal
+from pinstress.explore.sweep.parameters import Parameter
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.shown import near, shown
+
+NEGATIVE = 1e-12  # an eigenvalue of round-off
+
+
+def correlations_of(
+    study: Study, parameters: Sequence[Parameter], sampled: bool = True
+) -> Floats | None:
+    """The matrix (p, p) of the parameters' normal variables; None where all are independent.
+    sampled: whether [vary] says which designs to make of them.
+
+    Raises: InputError for pairs that cannot be correlated, and for numbers that no variables have.
+    """
+    vary = study.table.vary
+    if vary is None or not vary.correlations:
+        return None
+    if sampled and vary.sample == "grid":
+        raise study.error(
+            "vary.correlations: a grid has all combinations, whatever their probability; choose "
+            'another sample, such as sample = "sobol"',
+            code="grid-with-correlations",
+        )
+    keys = [p.key for p in parameters]
+    matrix = np.eye(len(keys))
+    for i, pair in enumerate(vary.correlations, 1):
+        where = f"vary.correlations[{i}].between"
+        rows = []
+        for key in pair.between:
+            if key not in keys:
+                raise study.error(
+                    f"{where}: {shown(key)} is not in [vary.parameters]; {near(key, keys)}",
+                    code="unknown-parameter",
+                )
+            rows.append(keys.index(key))
+            law = parameters[rows[-1]].law
+            if not isinstance(law, Normal) or law.cut_off:
+                raise study.error(
+                    f"{where}: {shown(key)} has no normal law, or one that is cut off; only "
+                    "numbers with normal laws can be correlated",
+                    code="not-normal",
+                )
+        first, second = rows
+        if first == second or matrix[first, second]:
+            what = "twice the same key" if first == second else "the pair is given before"
+            raise study.error(f"{where}: {what}", code="duplicate-parameter")
+        matrix[first, second] = matrix[second, first] = pair.coefficient
+    least = float(np.linalg.eigvalsh(matrix)[0])
+    if least < -NEGATIVE:
+        raise study.error(
+            "vary.correlations: no variables have these correlations together (the least "
+            f"eigenvalue of their matrix is {least:.3g}, and must not be negative); if A goes with "
+            "B and B with C, A must go with C",
+            code="no-correlation-matrix",
+        )
+    return matrix
+
+
+def root_of(matrix: Floats) -> Floats:
+    """A matrix L (p, p) with L L^T = `matrix`, lower triangular unless that is singular."""
+    try:
+        return np.asarray(np.linalg.cholesky(matrix), np.float64)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(matrix)
+        return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)), np.float64)

@@ -1,0 +1,207 @@
+"""A number of a study by its key: where it stands, its dimension, and other values in its place.
+
+Any number of a study has a key, as messages spell it; what reads it says of which dimension it is.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pinbase.errors import ArgumentError
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study, raw_study
+from pinstress.study.reading.in_python import key_parts
+from pinstress.study.schema.shown import nearest, shown
+from pinstress.study.schema.types import Probe
+from pinstress.study.schema.units import DIMENSIONS, UNIT_NEEDED, USUAL, UnitSystem, split, to_si
+
+ANGLES = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
+SEVERAL = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
+RADIANS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
+
+Path = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of the study: its key, its path in what `raw_study` returns, its dimension (empty
+    of a number without one) and its value in SI. unit: of a design's values in tables, `factor` its
+    SI value; written: whether the study must give it as a text with that unit. others: paths of
+    numbers that are always the same: those of a key with a range, as "profile[1-3].diameter".
+    """
+
+    key: str
+    path: Path
+    dimension: str
+    nominal: float
+    unit: str = ""
+    factor: float = 1.0
+    written: bool = False
+    others: tuple[Path, ...] = ()
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """All places of the number."""
+        return self.path, *self.others
+
+    def in_study(self, value: float) -> float | str:
+        """A value in its unit (not SI) as the study may write it."""
+        return f"{value!r} {self.unit}" if self.written else value
+
+
+def number_at(study: Study, key: str) -> Number:
+    """The number with a key, or the one that several keys have in common.
+
+    Raises: InputError for a key that names no number, or different ones.
+    """
+    found = SEVERAL.search(key)
+    if found is None:
+        return _single(study, key)
+    first, last = (int(end) for end in found.groups())
+    if not 0 < first < last:
+        raise _no_number(study, key, f"[{first}-{last}] is no range; the smaller element first")
+    keys = [key[: found.start()] + f"[{i}]" + key[found.end() :] for i in range(first, last + 1)]
+    each = [number_at(study, one) for one in keys]
+    for one, number in zip(keys, each, strict=True):
+        if (number.nominal, number.dimension) != (each[0].nominal, each[0].dimension):
+            raise _no_number(study, key, f"{keys[0]} and {one} differ; only equal ones vary as one")
+    paths = tuple(dict.fromkeys(path for number in each for path in number.paths))
+    return replace(each[0], key=key, path=paths[0], others=paths[1:])
+
+
+def _single(study: Study, key: str) -> Number:
+    raw = raw_study(study)
+    path = _path(study, raw, key)
+    value = _at(raw, path)
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        what = "a table" if isinstance(value, Mapping) else "a list"
+        what = "true or false" if isinstance(value, bool) else what
+        raise _no_number(study, key, f"is {what}, not a number")
+    try:
+        return _number(study, raw, key, path, value)
+    except ArgumentError as error:
+        raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def put(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
+    """A copy of a study's raw content with another value at a path; the rest is shared."""
+    made = copy.copy(raw)
+    here: Any = made
+    for part in path[:-1]:
+        here[part] = copy.copy(here[part])
+        here = here[part]
+    here[path[-1]] = value
+    return made
+
+
+def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:
+    dimension = _dimension(study, raw, path)
+    if not dimension and isinstance(value, str):
+        found = split(value)
+        if found is None or not found[1]:
+            raise _no_number(study, key, f"is the text {shown(value)}, not a number")
+        dimension = _dimension_of_unit(found[1])
+        if not dimension:
+            raise _no_number(study, key, f"is {shown(value)}, whose unit has no known dimension")
+    if not dimension:
+        if isinstance(value, int) and _whole(study, raw, path):
+            raise _no_number(study, key, "is a whole number, which cannot vary continuously")
+        return Number(key, path, "", float(value))
+    nominal = to_si(value, dimension, study.system)
+    if dimension in ANGLES:
+        return Number(key, path, dimension, nominal, *ANGLES[dimension], written=True)
+    if dimension in UNIT_NEEDED:
+        return Number(key, path, dimension, nominal, RADIANS[dimension], written=True)
+    system = study.system
+    return Number(
+        key, path, dimension, nominal, unit_of(system, dimension), system.factor(dimension)
+    )
+
+
+def unit_of(system: UnitSystem, dimension: str) -> str:
+    """The name of a system's unit of a dimension, in length, force, time and stress."""
+    if dimension == "stress":
+        return system.stress
+    exponents, _ = DIMENSIONS[dimension]
+    names = (system.force, system.length, system.time)
+    powers = [(name, exponents[k]) for name, k in zip(names, (1, 0, 2), strict=True)]
+    above, below = (
+        " ".join(f"{n}^{abs(e)}" if abs(e) > 1 else n for n, e in powers if e * sign > 0)
+        for sign in (1, -1)
+    )
+    return f"{above or '1'}/{below}" if below else above
+
+
+def _dimension(study: Study, raw: dict[str, Any], path: Path) -> str:
+    probe = Probe(1.0)
+    _validate(study, put(raw, path, probe))
+    return probe.dimension
+
+
+def _whole(study: Study, raw: dict[str, Any], path: Path) -> bool:
+    """Whether nothing but a whole number may be there."""
+    found = _validate(study, put(raw, path, 0.5))
+    return any(kind in ("int_type", "int_from_float") for kind in found)
+
+
+def _validate(study: Study, raw: dict[str, Any]) -> list[str]:
+    """The kinds of errors."""
+    from pydantic import ValidationError
+
+    from pinstress.study.schema.tables import StudyTable
+
+    try:
+        StudyTable.model_validate(raw, context={"system": study.system})
+    except ValidationError as error:
+        return [each["type"] for each in error.errors()]
+    return []
+
+
+def _dimension_of_unit(unit: str) -> str:
+    return USUAL[unit][0] if unit in USUAL else ""
+
+
+def _path(study: Study, raw: Any, key: str) -> Path:
+    """In the raw content. A list of one element may be meant without its index, and a table where
+    there may be a list with [1].
+    """
+    found: list[str | int] = []
+    here = raw
+    for part in key_parts(study, key):
+        if isinstance(part, str) and isinstance(here, list) and len(here) == 1:
+            found.append(0)
+            here = here[0]
+        if part == 0 and isinstance(here, Mapping):
+            continue
+        there = here[part] if _has(here, part) else None
+        if there is None or (not found and part == "vary"):
+            if part == -1:
+                raise _no_number(study, key, "has the index 0; elements are counted from 1")
+            said = f"[{part + 1}]" if isinstance(part, int) else shown(part)
+            meant = nearest(part, here) if isinstance(here, Mapping) else None
+            hint = f"did you mean {meant!r}?" if meant else "write it in the study"
+            raise _no_number(study, key, f"the study has no {said} there; {hint}")
+        found.append(part)
+        here = there
+    return tuple(found)
+
+
+def _has(here: Any, part: str | int) -> bool:
+    if isinstance(part, int):
+        return isinstance(here, list) and 0 <= part < len(here)
+    return isinstance(here, Mapping) and part in here
+
+
+def _at(raw: Any, path: Path) -> Any:
+    for part in path:
+        raw = raw[part]
+    return raw
+
+
+def _no_number(study: Study, key: str, why: str) -> InputError:
+    return study.error(f"vary.parameters.{key}: {why}", code="not-a-varying-number")

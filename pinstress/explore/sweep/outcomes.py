@@ -1,0 +1,83 @@
+"""Whether a pin of a design meets its factor, judged as a run judges it.
+
+One thing is left to a run: the range over the joint of a pin with prescribed loads, a beam in
+assumed lugs that takes longer than the pin itself. Such a pin is at most "safe as described".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from fea.core.peak import Peak, decides
+from fea.solve.solve_pin import Solution
+from fea.support.contact.records import JointResult
+from fea.support.contact.solve_in_lugs import LugSolution
+from pinstress.analysis.gather.gather import landing_range
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.tasks import Task
+from pinstress.study.schema.units import UnitSystem
+from reports.data.decision import DEPENDS, in_words
+from reports.data.dependence import Judged, dependences
+from reports.data.in_units import in_units
+from reports.data.results import LandingRange, Units
+from reports.format.words import depends_words
+
+AS_DESCRIBED = "as described"
+
+
+@dataclass(frozen=True)
+class DesignAnswer:
+    """What is kept of a solved pin in a case: no meshes, zones, edges or cells."""
+
+    peak: Peak
+    joint: JointResult | None
+    landing: LandingRange | None
+
+
+def bare_answer(
+    task: Task, found: Solution | LugSolution, loads: Mapping[str, CaseLoads]
+) -> DesignAnswer:
+    """Of one solution of a task."""
+    if isinstance(found, LugSolution):
+        peak, joint = found.solution.peak, found.joint
+        joint = joint and replace(joint, along=None, bending_moments=())
+    else:
+        peak, joint = found.peak, None
+    places = peak.places
+    if places is not None and places.contact is not None:
+        places = replace(places, contact=replace(places.contact, edges=(), bands=()))
+    peak = replace(peak, history=(), singular_at=(), places=places)
+    return DesignAnswer(peak, joint, landing_range(loads, task, found))
+
+
+def outcome_of(
+    answer: DesignAnswer, task: Task, required: float | None, system: UnitSystem
+) -> tuple[str, str]:
+    """The outcome, and in words, in the units of a study, what it depends on."""
+    strength, around = task.material.yield_strength, task.surroundings
+    peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
+    decided = None if permitted is None else decides(peak, permitted)
+    found = in_words(decided, required)
+    if not decided or strength is None or permitted is None or not peak.max_von_mises:
+        return found, ""
+    judged = Judged(peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, True)
+    contact = peak.places.contact if peak.places else None
+    if on := dependences(judged, contact, answer.joint, answer.landing):
+        units = Units(system.length, system.force, system.stress, system.time)
+        own = [in_units(d, system.factor) for d in on]
+        return DEPENDS, depends_words(own, units)
+    joint_open = around is not None and around.pin is not None
+    return (f"{found} {AS_DESCRIBED}" if joint_open else found), ""
+
+
+def stress_at(peak: Peak) -> tuple[float | None, float | None, float | None, float | None]:
+    """The largest stress of surface and section and beneath contact, this with its error, Pa."""
+    places = peak.places
+    section, contact = (places.section, places.contact) if places else (None, None)
+    return (
+        places.surface.max_von_mises if places else None,
+        section.max_von_mises if section else None,
+        contact.beneath if contact else None,
+        contact.beneath_error if contact else None,
+    )

@@ -1,0 +1,228 @@
+"""The numbers of a study that vary, each by its law."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from pinbase.errors import ArgumentError
+from pinstress.explore.sweep.fits import limits_of
+from pinstress.explore.sweep.laws import (
+    Floats,
+    Law,
+    LogNormal,
+    Normal,
+    Triangular,
+    Uniform,
+    cut_off,
+    of_tolerance,
+)
+from pinstress.explore.sweep.number import Number, Path, number_at
+from pinstress.study.reading.errors import Errors
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.shown import shown
+from pinstress.study.schema.units import UnitSystem, to_si
+from pinstress.study.schema.vary import ParameterTable
+
+LITTLE = 1e-6  # of the probability: a law must not be cut off so far
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that varies by a law (SI). steps: how many values a grid has of it. source: the law
+    as the study gives it, where that says more than the law itself.
+    """
+
+    number: Number
+    law: Law
+    steps: int | None = None
+    source: str = ""
+
+    @property
+    def key(self) -> str:
+        """The number's."""
+        return self.number.key
+
+    @property
+    def dimension(self) -> str:
+        """The number's; empty of a number without one."""
+        return self.number.dimension
+
+    @property
+    def nominal(self) -> float:
+        """The number in the study, SI."""
+        return self.number.nominal
+
+    def quantile(self, u: Floats) -> Floats:
+        """Values (N,) in SI below which the number stays with probabilities u (N,)."""
+        return self.law.quantile(u)
+
+    def of_normal(self, z: Floats) -> Floats:
+        """Values (N,) in SI as likely to be exceeded as z (N,) by a standard normal variable."""
+        return self.law.of_normal(z)
+
+    @property
+    def law_text(self) -> str:
+        """The law in words, in the number's unit."""
+
+        def show(value: float) -> str:
+            return f"{value / self.number.factor:.6g} {self.number.unit}".rstrip()
+
+        text = self.law.text(show)
+        return f"{self.source}: {text}" if self.source else text
+
+
+def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
+    """The parameters of [vary] in their order. sampled: whether it must also say which designs to
+    make of them. Raises: InputError with all that is wrong, also for a study without [vary].
+    """
+    vary = study.table.vary
+    if vary is None:
+        raise study.error(
+            "the study has no [vary], which says what varies; for instance [vary.parameters] with "
+            f"{_example(study)} = {{ from = ..., to = ..., steps = 5 }}",
+            code="no-vary",
+        )
+    wrong = Errors(study.path)
+    found = [
+        wrong.attempt(partial(_parameter, study, key, table))
+        for key, table in vary.parameters.items()
+    ]
+    made = tuple(p for p in found if p is not None)
+    wrong.attempt(partial(_require_different, study, made))
+    wrong.tell()
+    if sampled and vary.sample == "grid":
+        _require_grid(study, made)
+    return made
+
+
+def require_laws(study: Study) -> None:
+    """Raises: InputError for numbers that vary without a law, for which there is no probability."""
+    for key, table in study.table.vary.parameters.items() if study.table.vary else ():
+        if table.from_ is not None:
+            raise study.error(
+                f"vary.parameters.{key}: from and to say between what the number lies, not how "
+                "likely its values are; reliability needs a law, such as normal = [mean, "
+                "deviation], or uniform = [least, largest] if all are equally likely",
+                code="no-law",
+            )
+
+
+def _require_different(study: Study, made: Iterable[Parameter]) -> None:
+    known: dict[Path, str] = {}
+    for parameter, path in ((p, path) for p in made for path in p.number.paths):
+        other = known.setdefault(path, parameter.key)
+        if other != parameter.key:
+            raise study.error(
+                f"vary.parameters.{parameter.key}: names the same number as {shown(other)}; "
+                "give one of them",
+                code="duplicate-parameter",
+            )
+
+
+def _require_grid(study: Study, made: Iterable[Parameter]) -> None:
+    """Raises: InputError for a grid without steps or with too many."""
+    from pinstress.study.schema.vary import MOST_DESIGNS
+
+    count = 1
+    for parameter in made:
+        if parameter.steps is None:
+            raise study.error(
+                f"vary.parameters.{parameter.key}: a grid needs steps, the number of values; or "
+                'choose another sample, such as sample = "sobol"',
+                code="missing-steps",
+            )
+        count *= parameter.steps
+    if count > MOST_DESIGNS:
+        raise study.error(
+            f"vary: the grid has {count:,} designs; the limit is {MOST_DESIGNS:,}: take fewer "
+            'steps, or sample = "sobol" with a count',
+            code="too-large",
+        )
+
+
+def _example(study: Study) -> str:
+    for name, pin in study.table.pin.items():
+        if pin.profile:
+            return f'"pin.{name}.profile[1].diameter"'
+    return '"analysis.tolerance"'
+
+
+def _parameter(study: Study, key: str, table: ParameterTable) -> Parameter:
+    number = number_at(study, key)
+    try:
+        law = _law(study.system, number, table)
+    except ArgumentError as error:
+        raise study.error(f"vary.parameters.{key}: {error}", code=error.code) from None
+    return Parameter(number, law, table.steps, table.tolerance or "")
+
+
+def _law(system: UnitSystem, number: Number, table: ParameterTable) -> Law:
+    def si(name: str, values: Iterable[float | str]) -> list[float]:
+        return [_si(system, number, name, value) for value in values]
+
+    if table.tolerance is not None:
+        return of_tolerance(*limits_of(table.tolerance, number, system))
+    if table.triangular is not None:
+        low, mode, high = si("triangular", table.triangular)
+        if not (low <= mode <= high and low < high):
+            raise ArgumentError(
+                "triangular: must be the least, the most likely and the largest value, in this "
+                "order",
+                "limits-out-of-order",
+            )
+        return Triangular(low, mode, high)
+    if table.normal is not None or table.lognormal is not None:
+        return _bell(si, table)
+    if table.uniform is not None:
+        name, (low, high) = "uniform", si("uniform", table.uniform)
+    else:
+        assert table.from_ is not None
+        assert table.to is not None
+        name, low, high = "to", *si("from", [table.from_]), *si("to", [table.to])
+    one = table.steps == 1 and low == high
+    if not (low < high or one):
+        raise ArgumentError(
+            f"{name}: the largest value must exceed the least one", "limits-out-of-order"
+        )
+    return Uniform(low, high)
+
+
+def _bell(si: Any, table: ParameterTable) -> Law:
+    name = "normal" if table.normal is not None else "lognormal"
+    mean, deviation = si(name, table.normal or table.lognormal)
+    if not deviation > 0.0:
+        raise ArgumentError(f"{name}: the deviation must be positive", "not-positive")
+    if name == "lognormal" and not mean > 0.0:
+        raise ArgumentError("lognormal: the mean must be positive", "not-positive")
+    law = Normal(mean, deviation) if name == "normal" else LogNormal(mean, deviation)
+    if table.within is None:
+        return law
+    low, high = si("within", table.within)
+    if not low < high:
+        raise ArgumentError(
+            "within: the largest value must exceed the least one", "limits-out-of-order"
+        )
+    law = cut_off(law, low, high)
+    if law.within < LITTLE:
+        raise ArgumentError(
+            f"within: has only {law.within:.1e} of the law's probability", "limits-far-off"
+        )
+    return law
+
+
+def _si(system: UnitSystem, number: Number, name: str, value: float | str) -> float:
+    try:
+        if number.dimension:
+            return to_si(value, number.dimension, system)
+        if isinstance(value, str):
+            raise ArgumentError(
+                f"{shown(value)}: the number has no unit in the study; give a number without "
+                "quotes",
+                "not-a-number",
+            )
+    except ArgumentError as error:
+        raise ArgumentError(f"{name}: {error}", error.code) from None
+    return float(value)

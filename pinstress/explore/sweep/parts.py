@@ -1,0 +1,203 @@
+"""The designs that are solved so far, each batch in a file of its own, so that a sweep that is
+interrupted, in whatever way, loses no more than the batches in work.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pinstress.explore.sweep.table import read_table, write_table
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs
+from reports.folder.inside import write_inside
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+FOLDER = "parts"
+STATED = "sweep.json"  # what is swept, in the folder of parts
+SCHEMA = "pinstress-sweep/1"
+SUFFIX = ".parquet"
+TABLE = "designs.parquet"
+CONTINUED = "sobol", "random"  # samples of which more begin with the same designs
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What is swept: a hash of all on which numbers depend; of all but the number of designs; that
+    number; and the kind of sample.
+    """
+
+    sweep: str
+    but_count: str
+    count: int
+    sample: str
+
+
+class Parts:
+    """Files in a folder `parts` of an output folder, of one sweep. sweep: its identity."""
+
+    def __init__(self, directory: Path, identity: Identity) -> None:
+        self.folder, self.identity = directory / FOLDER, identity
+        self.sweep = identity.sweep
+
+    def begin(self) -> None:
+        """Make the folder, with nothing in it but what is swept."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        mine = self.identity
+        stated = {"sweep": mine.sweep, "but_count": mine.but_count, "count": mine.count}
+        text = json.dumps({"schema": SCHEMA, **stated}, indent=1) + "\n"
+        write_inside(self.folder, STATED, text.encode())
+
+    def there(self) -> bool:
+        """Whether a sweep was begun here."""
+        return stated(self.folder) is not None
+
+    @property
+    def finished(self) -> bool:
+        """Whether the folder has this sweep's whole table."""
+        return not self.there() and stated(self.folder.parent) == self.sweep
+
+    def require_same(self) -> None:
+        """Raises: InputError where the parts are of another sweep."""
+        found, mine, before = self._stated, self.identity, self.count_before
+        if not found:
+            raise InputError(
+                f"--resume: {self.folder.parent} has no sweep to go on with; leave out --resume",
+                code="nothing-to-resume",
+            )
+        if before is not None and mine.sample not in CONTINUED:
+            raise InputError(
+                f"--resume: the sweep in {self.folder.parent} has count = {before}, the study "
+                f"{mine.count}: a {mine.sample} sample of another count has other designs, so that "
+                f"only {' and '.join(CONTINUED)} ones can be continued; choose another folder",
+                code="other-count",
+            )
+        if before is not None and before > mine.count:
+            raise InputError(
+                f"--resume: the sweep in {self.folder.parent} has count = {before}, more than the "
+                f"study's {mine.count}: it can only be continued, to more designs; choose another "
+                "folder",
+                code="fewer-designs",
+            )
+        if found.get("sweep") != self.sweep and before is None:
+            raise InputError(
+                f"--resume: the sweep in {self.folder.parent} is of another study, other [vary], "
+                "pins or cases, other tables, or of another version of pinstress; go on with "
+                "those, or choose another folder",
+                code="other-sweep",
+            )
+
+    @property
+    def _stated(self) -> dict[str, Any]:
+        """Of the sweep that is here."""
+        return _read(self.folder) or _read(self.folder.parent)
+
+    @property
+    def count_before(self) -> int | None:
+        """Of a sweep that is here and differs in nothing but the number of its designs: this."""
+        found, mine = self._stated, self.identity
+        other = found.get("sweep") != mine.sweep and found.get("but_count") == mine.but_count
+        return int(found["count"]) if other else None
+
+    def continue_with(self, schema: pa.Schema) -> None:
+        """Take over the designs of a sweep with fewer: its batches, or its whole table. Killed
+        meanwhile it is taken over again.
+        """
+        from pyarrow import parquet
+
+        if self.there():
+            tables = [parquet.read_table(path) for path in sorted(self.folder.glob(f"*{SUFFIX}"))]
+        else:
+            tables = [read_table(self.folder.parent / TABLE)]
+        self.folder.mkdir(exist_ok=True)
+        for table in tables:
+            if table.schema.equals(schema):
+                self.write(table.replace_schema_metadata(schema.metadata))
+        self.begin()
+
+    def write(self, table: pa.Table) -> None:
+        """Keep a batch, named by its first design; its file is complete or absent."""
+        number = min(table["design"].to_pylist())
+        write_table(table, self.folder / f"{number:08d}{SUFFIX}")
+
+    def read(self, schema: pa.Schema) -> list[pa.Table]:
+        """All batches; a file that is damaged, or of other columns, is removed and solved anew."""
+        from pyarrow import ArrowException, parquet
+
+        found = []
+        for path in sorted(self.folder.glob(f"*{SUFFIX}")):
+            try:
+                table = parquet.read_table(path)
+            except (ArrowException, OSError):
+                table = None
+            if table is not None and table.schema.equals(schema, check_metadata=True):
+                found.append(table)
+            else:
+                path.unlink(missing_ok=True)
+        return found
+
+    @property
+    def count(self) -> int:
+        """How many batches there are."""
+        return len(list(self.folder.glob(f"*{SUFFIX}")))
+
+    def finish(self) -> None:
+        """When the whole table is written; what was swept stays beside that."""
+        (self.folder / STATED).replace(self.folder.parent / STATED)
+        self.remove()
+
+    def remove(self) -> None:
+        """Remove the files and the folder."""
+        for path in (*self.folder.glob(f"*{SUFFIX}*"), *self.folder.glob(f"{STATED}*")):
+            path.unlink(missing_ok=True)
+        self.folder.rmdir()
+
+
+def is_ours(name: str) -> bool:
+    """Whether an entry of an output folder is of its parts."""
+    if name == f"{FOLDER}/":
+        return True
+    folder, _, file = name.partition("/")
+    bare = file.removesuffix(".partial")
+    return folder == FOLDER and (
+        bare == STATED or (bare.endswith(SUFFIX) and bare.removesuffix(SUFFIX).isdecimal())
+    )
+
+
+def identity(study: Study, *chosen: object) -> Identity:
+    """Of a study; the hashes are of all on which a sweep's numbers depend. chosen: pins, cases."""
+    import tomlkit
+
+    from pinstress.analysis.cache.store import program
+
+    vary = study.table.vary  # a sweep of a study without is refused by who reads its parameters
+    document = tomlkit.parse(study.text)
+    document.get("vary", {}).pop("count", None)
+    values, version = inputs(study), program()
+    others = {key: value for key, value in values.items() if key != "vary.count"}
+    asked = study.text, values, chosen, version
+    but_count = tomlkit.dumps(document), others, chosen, version
+    whole, but = (hashlib.sha256(repr(x).encode()).hexdigest() for x in (asked, but_count))
+    return Identity(whole, but, *((vary.count, vary.sample) if vary else (0, "")))
+
+
+def stated(folder: Path) -> str | None:
+    """The identity of the sweep whose parts a folder has."""
+    found: str | None = _read(folder).get("sweep")
+    return found
+
+
+def _read(folder: Path) -> dict[str, Any]:
+    """What a folder states of its sweep; empty if nothing."""
+    try:
+        found: Any = json.loads((folder / STATED).read_text(encoding="utf-8"))
+        ours = found["schema"] == SCHEMA and isinstance(found["sweep"], str)
+        return dict(found) if ours else {}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}

@@ -1,0 +1,153 @@
+"""Batches solved on the user's own cluster: a scheduler of dask and its workers.
+
+Before a worker's rows are kept, it has said that it has the same versions as this process, and the
+files that the study names are sent to it: what lies at the same paths there is not read.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from distributed import Future, KilledWorker, get_worker
+
+from loads import FileError, read_regular, sent_files
+from pinstress.analysis.cache.store import PACKAGES
+from pinstress.explore.sweep.batches import Batch, DesignProblem, Done, solve_batch
+from pinstress.explore.sweep.cluster import (
+    Cluster,
+    connected,
+    lost_connection,
+    other_versions,
+    short,
+)
+from pinstress.explore.sweep.versions import versions
+from pinstress.explore.sweep.workers import BatchQueue
+from pinstress.study.model.imported_pin import LARGEST_BODY
+from pinstress.study.reading.errors import InputError
+
+AHEAD = 2  # batches for each worker: one that is solved and one that waits
+WAITING = "pending", "lost"  # states of a batch that is solved, or must be once more
+POLL = 0.05  # s between two looks at which batches are done
+NUMERIC = (*(name for name in PACKAGES if name != "pinstress"), "distributed")
+
+# A worker without pinstress can begin it, and says what it misses; reading our own task it ends.
+EXPRESSION = "(lambda do, *what: do(*what))(*__import__('pickle').loads(sent))"
+
+Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
+
+
+@dataclass(frozen=True)
+class WorkerAnswer:
+    """Of a worker: its address and versions; what was solved, None if it first needs the files."""
+
+    worker: str
+    versions: dict[str, str]
+    done: Done | None
+
+
+_contents: dict[str, Contents] = {}  # in a worker: of the study that is solved, by their hash
+
+
+def solve_on(
+    address: str,
+    problem: DesignProblem,
+    files: tuple[Path, ...],
+    work_of: Callable[[int], BatchQueue],
+    tell: Callable[[str], None],
+) -> None:
+    """Solve batches on the cluster whose scheduler has an address. files: those that the study
+    names. work_of: what is to be solved by so many workers. tell: called with what is odd.
+
+    Raises: InputError where there is no scheduler, no worker, or one with other versions, also
+    later; what was kept by then is kept.
+    """
+    contents = _read(files)
+    problem = replace(problem, files=_hash(contents))
+    with connected(address, NUMERIC, tell) as cluster:
+        running: dict[Future[WorkerAnswer], Batch] = {}
+        work = work_of(cluster.workers)
+
+        def start(batch: Batch, given: Contents | None) -> None:
+            sent = {"sent": pickle.dumps((solve_there, problem, given, batch))}
+            running[cluster.client.submit(eval, EXPRESSION, sent, pure=False)] = batch
+
+        while True:
+            while len(running) < AHEAD * cluster.workers and (new := work.take()) is not None:
+                start(new, None)
+            if not running:
+                return
+            time.sleep(POLL)
+            cluster.look()
+            for future in [each for each in running if each.status not in WAITING]:
+                outcome = _outcome(cluster, future)
+                if outcome is None:
+                    continue  # its worker has gone with it: it is solved again
+                batch = running.pop(future)
+                if isinstance(outcome, KilledWorker):
+                    work.died(batch)
+                elif outcome.done is None:
+                    start(batch, contents)
+                else:
+                    cluster.require_same({outcome.worker: outcome.versions})
+                    work.done(outcome.done)
+
+
+def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch) -> WorkerAnswer:
+    """In a worker: solve a batch, with the contents of the study's files, if they are given or were
+    before.
+    """
+    if contents is not None:
+        _contents.clear()
+        _contents[problem.files] = contents
+    known = _contents.get(problem.files) if problem.files != _hash(()) else ()
+    done = None
+    if known is not None:
+        with sent_files(dict(known)):
+            done = solve_batch(problem, batch)
+    return WorkerAnswer(get_worker().address, _versions_here(), done)
+
+
+@lru_cache(1)
+def _versions_here() -> dict[str, str]:
+    return versions(NUMERIC)
+
+
+def _read(files: tuple[Path, ...]) -> Contents:
+    try:
+        return tuple((str(path), read_regular(path, LARGEST_BODY)) for path in files)
+    except (OSError, FileError) as error:
+        raise InputError(
+            f"--scheduler: a file of the study cannot be read ({error})", code="unreadable"
+        ) from None
+
+
+def _hash(contents: Contents) -> str:
+    return hashlib.sha256(
+        repr([(path, hashlib.sha256(content).hexdigest()) for path, content in contents]).encode()
+    ).hexdigest()
+
+
+def _outcome(cluster: Cluster, future: Future[WorkerAnswer]) -> WorkerAnswer | KilledWorker | None:
+    """Of a batch that is done; None where its rows went with the worker that had them.
+
+    Raises: InputError where the connection is lost, or a worker cannot do it.
+    """
+    if future.status == "finished":
+        found: WorkerAnswer | None = cluster.rows(future)
+        return found
+    if future.status != "error":  # cancelled: the scheduler has ended
+        raise lost_connection(cluster.address)
+    error: Any = future.exception(timeout=cluster.patience)
+    if isinstance(error, KilledWorker):
+        return error
+    if isinstance(error, ImportError | AttributeError):  # solve_there, or what it needs
+        cluster.look(now=True)  # which names a worker that has just come
+        raise other_versions([f"a worker cannot import what this process can: {short(error)}"])
+    raise error

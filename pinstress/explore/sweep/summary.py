@@ -1,0 +1,101 @@
+"""What a sweep says, on the terminal."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table as Grid
+
+from pinstress.explore.sweep.table import facts
+from reports.format.numbers import DASH, engineering
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+REASONS = 3  # that are printed, the commonest
+UNSOLVED = ("failed", "rigid")  # verdicts without numbers
+LONGEST = 100  # characters of a reason
+
+
+def summary(table: pa.Table, console: Console) -> None:
+    """Print how many designs there are and failed, why, and by pin the range of its factor (of its
+    maximum without a yield strength) with the worst and the best design.
+    """
+    stated = facts(table)
+    rows: list[dict[str, Any]] = table.select(
+        ["design", "pin", "max_von_mises", "safety_factor", "verdict", "reason", "code"]
+    ).to_pylist()
+    designs = {row["design"] for row in rows}
+    failed = {row["design"] for row in rows if row["verdict"] == "failed"}
+    console.print(
+        f"{len(designs):,} design{'s' * (len(designs) != 1)}, {len(failed):,} failed"
+        + (" in some row" if len({row["pin"] for row in rows}) > 1 else ""),
+        highlight=False,
+    )
+    for line in _reasons(rows):
+        console.print(line, highlight=False, markup=False)
+    grid = Grid(box=None, pad_edge=False)
+    unit = table.schema.field("max_von_mises").metadata[b"unit"].decode()
+    for name in ("pin", "safety factor", "worst design", "best design", f"largest [{unit}]"):
+        grid.add_column(name.replace("[", "\\["), justify="left" if name == "pin" else "right")
+    required = stated.get("required_safety_factor")
+    short: list[str] = []
+    for pin in dict.fromkeys(row["pin"] for row in rows):
+        mine = [row for row in rows if row["pin"] == pin]
+        grid.add_row(pin, *_range(mine))
+        if required is not None:
+            below = {r["design"] for r in mine if (r["safety_factor"] or required) < required}
+            solved = len({r["design"] for r in mine if r["verdict"] not in UNSOLVED})
+            of = f" of {solved:,} solved" if solved < len(designs) else ""
+            short.append(f"{pin} {len(below):,}{of}")
+    console.print(grid)
+    if short:
+        console.print(
+            f"designs below the required factor of {required:g}: {', '.join(short)}",
+            highlight=False,
+            markup=False,
+        )
+    rough = Counter(row["pin"] for row in rows if row["verdict"] in ("unconverged", "singular"))
+    if rough:
+        console.print(
+            "rows without a converged maximum (verdict, error_estimate): "
+            + ", ".join(f"{pin} {count:,}" for pin, count in rough.items()),
+            highlight=False,
+            markup=False,
+        )
+
+
+def _reasons(rows: list[dict[str, Any]]) -> list[str]:
+    """The commonest reasons of failure, by code, each with an example."""
+    failed = [row for row in rows if row["verdict"] == "failed"]
+    found = Counter(row["code"] for row in failed)
+    lines = []
+    for code, _ in found.most_common(REASONS):
+        mine = [row for row in failed if row["code"] == code]
+        many = len({row["design"] for row in mine})
+        text = mine[0]["reason"]
+        text = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+        lines.append(f"  {many:,} {code}: for instance design {mine[0]['design']}, {text}")
+    if len(found) > REASONS:
+        lines.append(f"  and {len(found) - REASONS} other reasons")
+    return lines
+
+
+def _range(rows: list[dict[str, Any]]) -> tuple[str, str, str, str]:
+    """Of a pin: its factors, the worst and best design by their worst case, and its maximum."""
+    solved = [row for row in rows if row["max_von_mises"]]
+    if not solved:
+        return DASH, DASH, DASH, DASH
+    worst_of: dict[int, float] = {}
+    for row in solved:
+        number, stress = row["design"], row["max_von_mises"]
+        size = -row["safety_factor"] if row["safety_factor"] is not None else stress
+        worst_of[number] = max(worst_of.get(number, -float("inf")), size)
+    worst = max(worst_of, key=lambda number: worst_of[number])
+    best = min(worst_of, key=lambda number: worst_of[number])
+    factors = [-x for x in worst_of.values() if x < 0.0]
+    between = f"{engineering(min(factors))} to {engineering(max(factors))}" if factors else DASH
+    most = max(row["max_von_mises"] for row in solved)
+    return between, f"{worst}", f"{best}", engineering(most)

@@ -1,0 +1,168 @@
+"""A sweep from a study with [vary] to the table of its designs."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
+
+from pinbase.processes.pool import cores
+from pinstress.explore.sweep.batches import Batches, DesignProblem, Done, evaluator_of
+from pinstress.explore.sweep.correlations import correlations_of
+from pinstress.explore.sweep.laws import Floats
+from pinstress.explore.sweep.parameters import Parameter, parameters_of
+from pinstress.explore.sweep.sample import designs_of
+from pinstress.explore.sweep.table import assembled, table_of
+from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
+from pinstress.study.reading.choices import require_count
+from pinstress.study.reading.extras import require_package
+from pinstress.study.reading.file import Study
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+Report = Callable[[int, int], None]
+
+log = logging.getLogger(__name__)
+
+
+class Store(Protocol):
+    """Where batches are kept."""
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        ...
+
+    def write(self, table: pa.Table) -> None:
+        """Keep one."""
+        ...
+
+    def read(self, schema: pa.Schema) -> list[pa.Table]:
+        """All that are kept."""
+        ...
+
+
+class Kept:
+    """Batches in memory."""
+
+    def __init__(self) -> None:
+        self._tables: list[pa.Table] = []
+
+    @property
+    def count(self) -> int:
+        """As that of Store."""
+        return len(self._tables)
+
+    def write(self, table: pa.Table) -> None:
+        """As that of Store."""
+        self._tables.append(table)
+
+    def read(self, schema: pa.Schema) -> list[pa.Table]:
+        """As that of Store."""
+        return self._tables
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is swept: parameters, and the designs' values (N, p) in SI."""
+
+    study: Study
+    parameters: tuple[Parameter, ...]
+    values: Floats
+    problem: DesignProblem
+
+
+def planned(
+    study: Study, pins: Sequence[str] | None = None, cases: Sequence[str] | None = None
+) -> Sweep:
+    """The designs of a study with [vary]; the study itself is read and found usable.
+
+    Raises: InputError.
+    """
+    parameters = parameters_of(study)
+    correlations = correlations_of(study, parameters)
+    assert study.table.vary is not None
+    values = designs_of(study.table.vary, parameters, correlations)
+    problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
+    evaluator_of(problem)
+    return Sweep(study, parameters, values, problem)
+
+
+def solved(
+    sweep: Sweep,
+    store: Store,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    report: Report = lambda _, __: None,
+    tell: Callable[[str], None] = log.warning,
+) -> pa.Table:
+    """The table of all designs, of which those in the store are not solved again. jobs: processes
+    on this machine, by default as many as there are cores; scheduler: address of a cluster of dask
+    instead. report: called with the number of designs that are solved, and of all. tell: called
+    with what is odd about a cluster.
+
+    Raises: InputError.
+    """
+    require_count("jobs", jobs)
+    if scheduler is not None:
+        require_package("distributed", "--scheduler")
+    done = set[int]()
+    if store.count:
+        schema = table_of(sweep.study, sweep.parameters, []).schema
+        done = {i - 1 for part in store.read(schema) for i in part["design"].unique().to_pylist()}
+    total, count = len(sweep.values), len(done)
+    report(count, total)
+
+    def keep(found: Done) -> None:
+        nonlocal count
+        each = zip(found.batch.designs, found.batch.values, found.rows, strict=True)
+        rising = sorted(each, key=lambda design: design[0])
+        store.write(
+            table_of(sweep.study, sweep.parameters, [(i + 1, v, rows) for i, v, rows in rising])
+        )
+        count += len(rising)
+        report(count, total)
+
+    evaluator = evaluator_of(sweep.problem)  # for forked processes, too, before Arrow has threads
+
+    def batches(at_once: int) -> Batches:
+        return Batches(sweep.problem.numbers, sweep.values, done, at_once)
+
+    def work(at_once: int) -> BatchQueue:
+        return BatchQueue(batches(at_once), keep, partial(failed_rows, evaluator.table))
+
+    most = min(jobs or cores(), total - count)
+    if scheduler is not None and count < total:
+        from pinstress.explore.sweep.scheduler import (
+            solve_on,  # dask, which takes a second to import
+        )
+
+        solve_on(scheduler, sweep.problem, evaluator.files, work, tell)
+    elif most > 1:
+        solve_side_by_side(sweep.problem, work(most), most, lambda: report(count, total))
+    else:
+        solve_here(sweep.problem, batches(1), keep)
+    return assembled(store.read(table_of(sweep.study, sweep.parameters, []).schema))
+
+
+def sweep(
+    study: Study,
+    *,
+    pins: Iterable[str] | None = None,
+    cases: Iterable[str] | None = None,
+    jobs: int | None = 1,
+    scheduler: str | None = None,
+) -> pa.Table:
+    """Solve the designs of a study's [vary]; a table with a row for each design, pin and case, as
+    designs.parquet has it (docs/sweep.md).
+
+    pins, cases: names; all by default. jobs: number of processes (None: number of cores).
+    scheduler: address of a scheduler of dask instead.
+
+    Raises: InputError for bad input. A design that fails is a row with its reason.
+    """
+    names = [None if x is None else list(x) for x in (pins, cases)]
+    return solved(planned(study, *names), Kept(), jobs, scheduler)

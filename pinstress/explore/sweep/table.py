@@ -1,0 +1,140 @@
+"""The table of a sweep as Arrow and Parquet have it, in the study's units.
+
+A row for each design, pin and case. The file has no times, versions of ours or names of machines:
+the same study gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pinstress.explore.sweep.evaluate import DesignRow
+from pinstress.explore.sweep.number import unit_of
+from pinstress.explore.sweep.parameters import Parameter
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+from reports.folder.inside import write_inside
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+METADATA = b"pinstress"  # of the schema, a JSON text
+RESULTS = {  # by column: the dimension, or None of a text; SI in a DesignRow
+    "max_von_mises": "stress",
+    "error_estimate": "stress",
+    "safety_factor": "",
+    "outcome": None,
+    "depends_on": None,
+    "verdict": None,
+    "governing_time": "time",
+    "mass": "mass",
+    "reason": None,
+    "code": None,
+    "governs": None,
+    "surface": "stress",
+    "section": "stress",
+    "beneath": "stress",
+    "beneath_error": "stress",
+}
+
+
+def table_of(
+    study: Study,
+    parameters: Sequence[Parameter],
+    designs: Sequence[tuple[int, Sequence[float], Sequence[DesignRow]]],
+) -> pa.Table:
+    """The table of some designs: of each its number from 1, its values (p,) in SI and its rows."""
+    import pyarrow as pa
+
+    schema = _schema(study, parameters)
+    flat = [(number, values, row) for number, values, rows in designs for row in rows]
+    columns: list[list[Any]] = [
+        [number for number, _, _ in flat],
+        [row.pin for _, _, row in flat],
+        [row.case for _, _, row in flat],
+    ]
+    for k, parameter in enumerate(parameters):
+        factor = parameter.number.factor
+        columns.append([float(values[k]) / factor for _, values, _ in flat])
+    for name, dimension in RESULTS.items():
+        factor = study.system.factor(dimension) if dimension else 1.0
+        cells = [getattr(row, name) for _, _, row in flat]
+        if dimension is not None:
+            cells = [None if cell is None else cell / factor for cell in cells]
+        columns.append(cells)
+    arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
+    return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def assembled(parts: Sequence[pa.Table]) -> pa.Table:
+    """All parts in the order of the designs."""
+    import pyarrow as pa
+
+    whole = pa.concat_tables(parts)
+    order = sorted(range(len(parts)), key=lambda i: parts[i]["design"][0].as_py())
+    rising = pa.concat_tables([parts[i] for i in order])["design"]
+    if rising.to_pylist() == sorted(rising.to_pylist()):
+        return pa.concat_tables([parts[i] for i in order]).combine_chunks()
+    import pyarrow.compute as pc
+
+    return whole.take(pc.sort_indices(whole["design"])).combine_chunks()
+
+
+def write_table(table: pa.Table, path: Path) -> None:
+    """Write a table so that its file is complete or absent. Raises: OSError, also for a link."""
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    content = pa.BufferOutputStream()
+    parquet.write_table(table, content, compression="zstd", row_group_size=100_000)
+    write_inside(path.parent, path.name, memoryview(content.getvalue()))
+
+
+def read_table(path: Path) -> pa.Table:
+    """What was written. Raises: InputError where it cannot be read."""
+    from pyarrow import ArrowException, parquet
+
+    try:
+        return parquet.read_table(path)
+    except (ArrowException, OSError) as error:
+        raise InputError(
+            f"--resume: {path} cannot be read ({str(error).splitlines()[0][:200]}); leave out "
+            "--resume, to sweep again",
+            code="damaged-table",
+        ) from None
+
+
+def facts(table: pa.Table) -> dict[str, Any]:
+    """The study, hash, units and parameters that a table of a sweep names; empty of any other."""
+    stated = (table.schema.metadata or {}).get(METADATA)
+    found: dict[str, Any] = json.loads(stated) if stated else {}
+    return found
+
+
+def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
+    import pyarrow as pa
+
+    fields = [_field("design", pa.int64()), _field("pin", pa.string()), _field("case", pa.string())]
+    fields += [_field(p.key, pa.float64(), p.number.unit) for p in parameters]
+    for name, dimension in RESULTS.items():
+        unit = unit_of(study.system, dimension) if dimension else ""
+        fields.append(_field(name, pa.string() if dimension is None else pa.float64(), unit))
+    stated = {
+        "study": study.name,
+        "title": study.table.title,
+        "hash": study.sha256,
+        "units": study.system.name,
+        "parameters": {p.key: {"unit": p.number.unit, "law": p.law_text} for p in parameters},
+        "required_safety_factor": study.table.analysis.required_safety_factor,
+    }
+    return pa.schema(fields, metadata={METADATA: json.dumps(stated, ensure_ascii=False).encode()})
+
+
+def _field(name: str, kind: pa.DataType, unit: str = "") -> pa.Field:
+    import pyarrow as pa
+
+    metadata: Mapping[str, str] = {"unit": unit}
+    return pa.field(name, kind, metadata=dict(metadata))

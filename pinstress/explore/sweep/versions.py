@@ -1,0 +1,62 @@
+"""The versions on which numbers depend, told by a Python that may have no pinstress.
+
+Its text is sent to other computers and run there: it imports nothing but the standard library.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from importlib import metadata, util
+from pathlib import Path
+
+OURS = (
+    "pinstress",
+    "pinbase",
+    "loads",
+    "geometry",
+    "fea",
+    "assess",
+    "reports",
+)  # whose source makes numbers and outcomes
+MISSING = "missing"
+SHOWN = 8  # digits of the hash of a source
+
+
+def versions(packages: Sequence[str]) -> dict[str, str]:
+    """The versions of Python, of this program with the start of the hash of its source, and of
+    packages, MISSING for what cannot be imported; and which code a system makes the program take
+    (pinbase.processes.system), whose numbers differ in their last digits.
+    """
+    portable = sys.platform != "linux" or os.environ.get("PINSTRESS_PORTABLE") == "1"
+    own = {
+        "Python": f"{sys.version_info.major}.{sys.version_info.minor}",
+        "code for": "all systems" if portable else "Linux",
+        "pinstress": _ours(),
+    }
+    return own | {name: _version(name) for name in packages}
+
+
+def _ours() -> str:
+    found = hashlib.sha256()
+    for name in OURS:
+        spec = util.find_spec(name)
+        if spec is None or not spec.submodule_search_locations:
+            return MISSING
+        for path, content in _sources(Path(next(iter(spec.submodule_search_locations)))):
+            found.update(f"{name}/{path} {len(content)}\n".encode() + content)
+    return f"{_version('pinstress')}, source {found.hexdigest()[:SHOWN]}"
+
+
+def _sources(root: Path) -> Iterator[tuple[str, bytes]]:
+    paths = {path.relative_to(root).as_posix(): path for path in root.rglob("*.py")}
+    return ((name, paths[name].read_bytes().replace(b"\r\n", b"\n")) for name in sorted(paths))
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return MISSING

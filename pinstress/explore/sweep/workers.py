@@ -1,0 +1,111 @@
+"""Processes of this machine that solve batches: this one, or several over pipes. No network."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from pinbase.processes.pool import Died, Tell, preload, served
+from pinbase.processes.threads import hold_threads
+from pinstress.explore.sweep.batches import Batch, Batches, DesignProblem, Done, solve_batch
+from pinstress.explore.sweep.evaluate import DesignRow
+
+LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod"  # that solving imports on demand
+
+Keep = Callable[[Done], None]
+Lost = Callable[[Batch], Done]
+
+
+class BatchQueue:
+    """The batches that are to be solved, with those whose process ended by itself.
+
+    Such a batch is halved until the design is known; that one is solved alone, since the process
+    may have ended by another one's need of memory, and given up if it ends its process again.
+    keep: called with each batch as it ends, in any order. lost: the rows of a design given up.
+    """
+
+    def __init__(self, batches: Batches, keep: Keep, lost: Lost) -> None:
+        self._batches, self._keep, self._lost = batches, keep, lost
+        self._again: list[Batch] = []
+        self._suspects: list[Batch] = []
+        self._alone: set[tuple[int, ...]] = set()
+        self._in_work = 0
+
+    def take(self) -> Batch | None:
+        """The next to be solved; None while there is none, or one that must be solved alone."""
+        if self._again:
+            found = self._again.pop()
+        elif self._batches.left:
+            found = self._batches.next()
+        elif self._suspects and not self._in_work:
+            found = self._suspects.pop()
+            self._alone.add(found.designs)
+        else:
+            return None
+        self._in_work += 1
+        return found
+
+    def done(self, done: Done) -> None:
+        """Keep what was solved."""
+        self._in_work -= 1
+        self._batches.learn(done)
+        self._keep(done)
+
+    def died(self, batch: Batch) -> None:
+        """Take note that its process ended by itself."""
+        self._in_work -= 1
+        if len(batch.designs) > 1:
+            self._again += batch.halves()
+        elif batch.designs in self._alone:
+            self._keep(self._lost(batch))
+        else:
+            self._suspects.append(batch)
+
+
+def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
+    """Solve batches in this process, one after the other."""
+    for batch in batches:
+        done = solve_batch(problem, batch)
+        batches.learn(done)
+        keep(done)
+
+
+def solve_side_by_side(
+    problem: DesignProblem, work: BatchQueue, jobs: int, tick: Callable[[], None] = lambda: None
+) -> None:
+    """Solve batches in `jobs` processes of this machine, which keep what they have meshed. tick:
+    called several times in a second.
+    """
+    hold_threads()
+    preload(*LIBRARIES)
+
+    def take() -> tuple[str, Batch] | None:
+        batch = work.take()
+        return None if batch is None else (f"designs {min(batch.designs) + 1} ...", batch)
+
+    def give(batch: Batch, outcome: Done | Died) -> None:
+        if isinstance(outcome, Died):
+            work.died(batch)
+        else:
+            work.done(outcome)
+
+    served(partial(_solve, problem), take, give, jobs, lambda _: tick())
+
+
+def _solve(problem: DesignProblem, batch: Batch, _: Tell) -> Done:
+    return solve_batch(problem, batch)
+
+
+def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> Done:
+    """The rows of designs whose process died. table: pin and case of each row."""
+    row = partial(
+        DesignRow,
+        max_von_mises=None,
+        error_estimate=None,
+        safety_factor=None,
+        verdict="failed",
+        reason="the process that solved it ended by itself, out of memory or by a crash",
+        code="process-died",
+    )
+    rows = [[row(pin=pin, case=case) for pin, case in table] for _ in batch.designs]
+    return Done(batch, rows, 0.0)

@@ -1,1 +1,0 @@
-"""Checks of strength of a study's pins."""

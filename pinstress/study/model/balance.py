@@ -1,0 +1,150 @@
+"""What the loads of unconstrained pins leave over, in words (the rule: fea.core.equilibrium)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from fea.core.equilibrium import Balance, closing, out_of_balance
+from fea.core.pin_loads import PinLoads
+from fea.support.lugs.fit import carried
+from geometry import ArgumentError, GeometryError, PinLike
+from loads import TableError
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.given import given_case
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.tasks import Task, tasks
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import GivenCase
+
+TOLD = 1e-4  # share from which a part is reported beside a larger one
+
+
+def unheld(study: Study, task: Task) -> list[str]:
+    """Why a pin would not be solved, by case."""
+    how = "not held by its lugs" if task.lugs else "unconstrained"
+    return [
+        f"pin {task.pin.name} is {how} in case {case.case}: {balance.refusal}"
+        + _closed_by(study, task.pin, case, balance)
+        for case, balance in _balances(study, task)
+        if balance.refusal
+    ]
+
+
+def given_warnings(study: Study) -> list[str]:
+    """A warning for every pin and case whose loads leave over more than round-off, but no more than
+    bands share: of given forces on pins with a profile, which take no time to find.
+    """
+    given = {name: x for name, x in study.table.case.items() if isinstance(x, GivenCase)}
+    return [text for name in given for text in _quietly(partial(_of_given, study, name))]
+
+
+def other_warnings(study: Study, todo: list[Task]) -> list[str]:
+    """The same of all else, from what is to be solved."""
+    found = ((task.pin.name, *each) for task in todo for each in _reacted(study, task).items())
+    return [text for pin, case, text in found if not _stated(study, pin, case)]
+
+
+def _stated(study: Study, pin: str, case: str) -> bool:
+    """Whether `given_warnings` sees to a pin in a case."""
+    return isinstance(study.table.case[case], GivenCase) and study.table.pin[pin].geometry is None
+
+
+def _reacted(study: Study, task: Task) -> dict[str, str]:
+    return {
+        case.case: str(study.error(_shared(study, task, case, balance)))
+        for case, balance in _balances(study, task)
+        if balance.notable and not balance.refusal
+    }
+
+
+def _of_given(study: Study, name: str) -> list[str]:
+    case = study.table.case[name]
+    assert isinstance(case, GivenCase)
+    loads = CaseLoads(given_case(study, name, case))
+    loaded = {*loads.reactions.connections}
+    unclamped = [p for p, x in study.table.pin.items() if _stated(study, p, name) and not x.clamp]
+    return [
+        text
+        for p in unclamped
+        for text in _quietly(partial(_of_pin, study, p, name, loads, loaded))
+    ]
+
+
+def _of_pin(study: Study, name: str, case: str, loads: CaseLoads, loaded: set[str]) -> list[str]:
+    """Nothing of a pin that the case does not load, of which others would say so."""
+    pin = pin_of(study, name)
+    if not loaded & {*pin.connections}:
+        return []
+    todo = tasks(study, [pin], {case: loads})
+    return [text for task in todo for text in _reacted(study, task).values()]
+
+
+def _quietly(warnings: Callable[[], list[str]]) -> list[str]:
+    try:
+        return warnings()
+    except (TableError, InputError, ArgumentError, GeometryError):
+        return []  # whoever needs the case or the pin says what is wrong with it
+
+
+def _balances(study: Study, task: Task) -> list[tuple[PinLoads, Balance]]:
+    if task.clamps:
+        return []
+    beam = study.table.analysis.joints == "foundation"
+    held = carried(task.pin, task.lugs, beam)
+    density = task.material.density
+    return [(case, out_of_balance(task.pin, case, density, held)) for case in task.loads]
+
+
+def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
+    """What is left over of a case, and what would close it."""
+    (force, couple, torque), size = balance.shares, study.system.factor
+    n, nm = study.system.force, study.system.unit("energy")
+    by = "of the largest force times the length of the pin"
+    found = (
+        (force, f"a force of {_shown(balance.left[0] / size('force'))} {n} ({force:.1%} of the "
+         "largest)"),
+        (couple, f"a couple across the axis of {_shown(balance.left[1] / size('moment'))} {nm} "
+         f"({couple:.1%} {by})"),
+        (torque, f"a torque of {_shown(balance.left[2] / size('moment'))} {nm} ({torque:.1%} of "
+         "the largest)"),
+    )  # fmt: skip
+    parts = [text for share, text in found if share > TOLD]
+    where = "links" if task.lugs else "bands"
+    return (
+        f"case.{case.case}: the loads on pin {task.pin.name} are not quite in equilibrium"
+        f"{_when(case, balance)}: {_and(parts)} {'are' if len(parts) > 1 else 'is'} left over, "
+        f"which its {where} share{_closed_by(study, task.pin, case, balance)}"
+    )
+
+
+def _shown(x: float) -> str:
+    return f"{float(f'{x:.3g}'):,.15g}"
+
+
+def _when(case: PinLoads, balance: Balance) -> str:
+    many = case.times is not None and len(case) > 1
+    return f" at t = {case.times[balance.instant]:.4g} s" if many else ""  # type: ignore[index]
+
+
+def _closed_by(study: Study, pin: PinLike, case: PinLoads, balance: Balance) -> str:
+    """What would put the forces in balance, of a case that states them."""
+    force, couple, _ = balance.shares
+    if not isinstance(study.table.case[case.case], GivenCase) or max(force, couple) == 0.0:
+        return ""
+    change = closing(pin, case, balance.instant)
+    if change is None:
+        return ""
+    size, unit = study.system.factor("force"), study.system.force
+    parts = []
+    for name, by in change.items():
+        now = case.forces[balance.instant, case.surfaces.index(name)]
+        x, y, z = ((now[0] + by[0]) / size, (now[1] + by[1]) / size, now[2] / size)
+        shown = ", ".join(f"{v + 0.0:.6g}" for v in ((x, y, z) if z else (x, y)))
+        parts.append(f"{name} = [{shown}] {unit}")
+    return f"; in equilibrium with, for example, {_and(parts)}"
+
+
+def _and(parts: list[str]) -> str:
+    return " and ".join(parts)

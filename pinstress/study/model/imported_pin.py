@@ -1,0 +1,143 @@
+"""A pin's shape read from its file, in a separate process with limits of time and memory.
+
+OpenCASCADE crashes on some damaged files and hangs on others; a mesh of a few bytes may request
+more memory than there is.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from geometry import CutPin, GeometryError, Pin, PinLike
+from geometry.imported.body_file import BodyFile
+from geometry.imported.imported_pin import MEASURE, SolidBody
+from geometry.imported.recognise import NotTurnedError, Turned, turned
+from geometry.mesh.solid_mesh import MeshError
+from geometry.shape.polyline import Stripe, with_stripes
+from loads import FileError, require_regular
+from pinbase.processes.limits import MB, Limits
+from pinbase.processes.pool import Died, Job, Tell, can_fork, side_by_side
+from pinbase.processes.system import portable
+
+KINDS = "hole", "flat", "slot", "passage"
+LARGEST_BODY = 1024 * MB
+MEMORY = 4096 * MB
+
+Work = Callable[..., Any]
+
+CAD = Limits(30, 300, MEMORY)  # to measure it; a sound pin takes about a second
+LARGE = Limits(600, 6000, MEMORY)  # for a mesh file, and to mesh a CAD file more finely
+
+
+def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
+    """The body in the file: a profile, with cuts, if it is one and its bands and clamps
+    (by name) are on it; otherwise a solid, with its bands measured.
+
+    Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
+    large, or cannot be read within the limits.
+    """
+    require_readable(file)
+    if file.meshed or not file.path.is_file():
+        return SolidBody(file, apart)
+    try:
+        return _profiled(file, turned_apart(file), set(clamps))
+    except NotTurnedError as error:
+        return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
+
+
+def turned_apart(file: BodyFile, upright: bool = True) -> Turned:
+    """As `geometry.imported.recognise.turned`, in another process.
+
+    Raises: as that and `apart`.
+    """
+    found: Turned = apart(turned, file, upright)
+    return found
+
+
+def require_readable(file: BodyFile) -> None:
+    """Raises: GeometryError if the file cannot be read, or is too large."""
+    try:
+        require_regular(file.path, LARGEST_BODY)
+    except FileError as error:
+        raise GeometryError(f"pin {file.name}: {file.path.name} {error}", error.code) from None
+    except FileNotFoundError:
+        pass  # which SolidBody reports
+    except OSError as error:
+        raise GeometryError(
+            f"pin {file.name}: {file.path.name} cannot be read ({error.strerror})", "unreadable"
+        ) from None
+
+
+def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
+    """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
+    start, stripes = found.start * file.unit, []
+    for place in file.places:
+        at = found.surfaces.get(place.surface or "")
+        if place.z is not None:
+            at = place.z[0] - start, place.z[1] - start
+        if at is None:
+            why = f"surface {place.surface} of band {place.name} is no whole cylinder"
+            raise NotTurnedError(file.name, file.path.name, why)
+        stripes.append(Stripe(place.name, *at, place.connection))
+    named = {place.name for place in file.places}
+    stripes += [Stripe(c, *found.surfaces[c], False) for c in clamps - named if c in found.surfaces]
+    try:
+        profile = with_stripes(found.pin(file.name), stripes)
+        pin = CutPin.of(profile, found.cuts)
+        for clamp in clamps:
+            pin.surface(clamp)
+    except GeometryError as error:
+        raise NotTurnedError(file.name, file.path.name, str(error)) from None
+    counted = (
+        (len(profile.segments), "segment"),
+        *((sum(c.what == kind for c in found.cuts), kind) for kind in KINDS),
+    )
+    parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
+    source = f"{file.path.name} is taken as a profile: {parts}"
+    if found.start:
+        source += f"; z counts from its start face, at z = {found.start:g} of the file"
+    profile = replace(profile, source=source)
+    return replace(pin, profile=profile) if found.cuts else profile
+
+
+def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
+    """The result of `work(file, ...)`, run in another process.
+
+    Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
+    """
+    quick = work is turned or arguments in ((), (MEASURE,))
+    limits = CAD if quick and not file.meshed else LARGE
+    job: Job[Any] = Job(
+        f"pin {file.name}", partial(_read, work, file, arguments, limits.memory), limits
+    )
+    (made,) = side_by_side([job], 2, anew=not can_fork())
+    if isinstance(made, Died):
+        why = made.reason
+        if made.status == -signal.SIGABRT and not portable():
+            why += f"; its memory limit is {limits.memory / 2**30:g} GB"
+        raise GeometryError(
+            f"pin {file.name}: reading {file.path.name} failed ({why}): it is "
+            "damaged, too large, or has very small faces or edges; repair and export it again, "
+            "or mesh it in another program and give the mesh",
+            "reading-crashed",
+        )
+    return made
+
+
+def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:
+    """Run `work` in the other process, whose limit of memory is so many bytes."""
+    try:
+        return work(file, *arguments)
+    except (MemoryError, GeometryError, MeshError) as error:
+        code = "out-of-memory"
+        if getattr(error, "code", code) != code:  # gmsh's error has it
+            raise
+        raise GeometryError(
+            f"pin {file.name}: reading {file.path.name} needs more than the limit of "
+            f"{memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser mesh",
+            code,
+        ) from None

@@ -1,0 +1,167 @@
+"""The loads of a case on its mechanism, and what impulses among them do alone and over ranges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from loads import Applied, Linkage, Load, Motion, Reactions, impulse_force, motion_reactions
+from pinbase.arrays import Floats
+from pinstress.study.model.mechanism.forces import load, springs
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import (
+    ApplyTable,
+    ImpulseTable,
+    InstantCase,
+    MechanismCase,
+    StaticCase,
+)
+
+
+@dataclass(frozen=True)
+class ImpulseLoads:
+    """Reactions over combinations of impulse time (s), velocity change (m/s) and pulse, an instant
+    each: times and velocities (P,), P pulses, forces (P,) N. nominal, nominal_pulse: of the case.
+    """
+
+    times: Floats
+    velocities: Floats
+    pulses: tuple[str, ...]
+    forces: Floats
+    reactions: Reactions
+    nominal: tuple[float, float]
+    nominal_pulse: str
+
+
+@dataclass(frozen=True)
+class ImpulseShare:
+    """Reactions without an impulse and with it, two instants; time: of the impulse, s."""
+
+    time: float
+    reactions: Reactions
+
+
+def applied_loads(
+    study: Study, name: str, case: MechanismCase, mechanism: Linkage
+) -> tuple[tuple[Load, ...], str]:
+    """The loads of a case with the mechanism's springs, and how impulses among them came about."""
+    made = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
+    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(made)]
+    notes = [_impulse_note(study, x) for x in case.apply if x.impulse is not None]
+    return tuple(loads), " ".join(notes)
+
+
+def _load(
+    study: Study,
+    name: str,
+    case: MechanismCase,
+    which: int,
+    mechanism: Linkage,
+    size: float | None = None,
+) -> tuple[Applied, ...]:
+    """One of the loads; size: of its impulse, N, by default as stated."""
+    table = case.apply[which]
+    force = table.force or (0.0, 0.0)
+    if (impulse := table.impulse) is not None:
+        own = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+        force = _directed(impulse.direction, own if size is None else size)
+    elif table.direction is not None:
+        force = _directed(table.direction, 1.0)
+    return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
+
+
+def _size(impulse: ImpulseTable, velocity: float, time: float, pulse: str = "") -> float:
+    mass = impulse.mass
+    if mass is None:
+        mass = (impulse.weight or 0.0) / impulse.gravity
+    return impulse_force(mass, velocity, time, pulse or impulse.pulse)
+
+
+def _directed(direction: tuple[float, float], size: float) -> tuple[float, float]:
+    x, y = np.array(direction) / np.hypot(*direction)
+    return float(size * x), float(size * y)
+
+
+def _impulse_note(study: Study, load: ApplyTable) -> str:
+    impulse = load.impulse
+    assert impulse is not None
+    size = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+    unit, factor = study.system.force, study.system.factor("force")
+    mean = "the mean force" if impulse.pulse == "rectangular" else f"the peak of a {impulse.pulse}"
+    return (
+        f"Impulse estimate on {load.body}: {size / factor:,.1f} {unit}, {mean} over "
+        f"{impulse.impulse_time:g} s."
+    )
+
+
+def over_range(
+    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
+) -> ImpulseLoads | None:
+    """The case again for every combination in the ranges of its impulse, if it has any.
+
+    Raises: InputError where several impulses have ranges.
+    """
+    ranged = [k for k, x in enumerate(case.apply) if x.impulse and x.impulse.range]
+    if not ranged:
+        return None
+    if len(ranged) > 1:
+        raise study.error(
+            f"case.{name}: only one impulse of a case may have a range", code="several-ranges"
+        )
+    impulse = case.apply[ranged[0]].impulse
+    assert impulse is not None
+    assert impulse.range is not None
+    pulses = tuple(dict.fromkeys((impulse.pulse, *(impulse.range.pulse or ()))))
+    points = [
+        (time, velocity, pulse)
+        for pulse in pulses
+        for velocity in impulse.range.velocity_change
+        for time in impulse.range.impulse_time
+    ]
+    sizes = np.array([_size(impulse, v, t, pulse) for t, v, pulse in points])
+    return ImpulseLoads(
+        np.array([t for t, _, _ in points]),
+        np.array([v for _, v, _ in points]),
+        tuple(pulse for *_, pulse in points),
+        sizes,
+        _of_sizes(study, name, motion, ranged[0], sizes),
+        (impulse.impulse_time, impulse.velocity_change),
+        impulse.pulse,
+    )
+
+
+def with_impulse(
+    study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
+) -> ImpulseShare | None:
+    """The case without its impulse and with it, if it has one."""
+    which = [k for k, load in enumerate(case.apply) if load.impulse]
+    if len(which) != 1 or (impulse := case.apply[which[0]].impulse) is None:
+        return None
+    sizes = np.array([0.0, _size(impulse, impulse.velocity_change, impulse.impulse_time)])
+    return ImpulseShare(impulse.impulse_time, _of_sizes(study, name, motion, which[0], sizes))
+
+
+def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats) -> Reactions:
+    """Reactions with an impulse of these sizes (P,) N, an instant each."""
+    case, mechanism = study.table.case[name], motion.linkage
+    assert isinstance(case, MechanismCase)
+    hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
+    others: list[Load] = [*springs(study, mechanism)]
+    for k in range(len(case.apply)):
+        others += _load(study, name, case, k, mechanism) if k != which else ()
+    found = [
+        motion_reactions(
+            name,
+            motion,
+            [*others, *_load(study, name, case, which, mechanism, size)],
+            timed=False,
+            hold=hold,
+        ).reactions
+        for size in sizes.tolist()
+    ]
+    forces, moments, turn = (
+        np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
+    )
+    return replace(found[0], forces=forces, moments=moments, turn=turn)

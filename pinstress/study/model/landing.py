@@ -1,0 +1,223 @@
+"""From a study's drop to the fallen leg, and to where it touches the ground in its mechanism."""
+
+from __future__ import annotations
+
+from loads import Applied, Law, Linkage, LinkageError, StateDrive
+from loads.landing import (
+    DROPS,
+    GROUND_RULES,
+    Drop,
+    GasSpring,
+    Landing,
+    LandingError,
+    Levered,
+    LinearSpring,
+    Oil,
+    PowerTyre,
+    Strut,
+    TableTyre,
+    Telescopic,
+    Touchdown,
+    Wheel,
+    axes,
+    effective_mass,
+    land,
+    required_velocity,
+    travel,
+)
+from loads.landing.requirements import GroundRule
+from pinbase.errors import ArgumentError
+from pinstress.study.model.mechanism.drives import state
+from pinstress.study.model.mechanism.linkage import STANDARD_GRAVITY, linkage
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
+
+AGREES = 0.1  # of the mechanism's unsprung mass, which changes by as much along a stroke
+
+
+def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
+    """Where the ground pushes. Raises: InputError."""
+    try:
+        up, aft = axes(mechanism, case.forward)
+    except ArgumentError as error:
+        raise study.error(f"case.{name}: {error}", code=error.code) from None
+    strut = getattr(case, "strut", None)
+    number = None if strut is None else mechanism.driven.index(strut.drive)
+    extended = tuple(value for value, _, _ in state(study, name, case, mechanism))
+    return Touchdown(case.body, case.at, up, aft, number, extended)
+
+
+def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:
+    """A leg that can fall, and where it touches. Raises: InputError, LinkageError."""
+    where = place(study, name, case, mechanism)
+    key = "case." + name
+    try:
+        key = f"case.{name}.strut"
+        strut = None if case.strut is None else _strut(case.strut)
+        rises: Telescopic | Levered = Telescopic()
+        if case.strut is not None:
+            rises = travel(mechanism, where, case.strut.stroke)
+        key = f"case.{name}.tyre"
+        tyre = _tyre(case.tyre)
+        key = f"case.{name}"
+        own = case.unsprung or _unsprung(case, mechanism, where)
+        return _drop(case, mechanism, strut, rises, tyre, own), where
+    except ArgumentError as error:
+        raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
+    """That of the mechanism, kg. Raises: ArgumentError where it has none."""
+    if case.strut is None:
+        raise ArgumentError(
+            "give unsprung: without a strut nothing in the mechanism moves with the axle",
+            "no-unsprung",
+        )
+    found = effective_mass(mechanism, where, case.strut.stroke)
+    if found <= 0.0:
+        raise ArgumentError(
+            "give unsprung, or masses of the bodies that move with the axle: the mechanism has "
+            "none",
+            "no-unsprung",
+        )
+    return found
+
+
+def unsprung_warnings(study: Study) -> list[str]:
+    """For every drop whose unsprung mass is not that of its mechanism, with both."""
+    drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
+    found = []
+    for name, case in drops.items():
+        if case.unsprung is None or case.strut is None:
+            continue
+        try:
+            mechanism = linkage(study)
+            own = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
+        except (InputError, LinkageError, ArgumentError):
+            continue  # whoever needs the case says what is wrong with it
+        if abs(case.unsprung - own) > AGREES * own:
+            text = (
+                f"case.{name}.unsprung: {case.unsprung:.4g} kg is stated, but the mechanism's "
+                f"bodies move with the axle like {own:.4g} kg; the stated mass is used for the "
+                "fall, the bodies' for the forces in the leg. Remove it to use that of the "
+                "mechanism, or correct the masses"
+            )
+            found.append(str(study.error(text)))
+    return found
+
+
+def _drop(
+    case: DropCase,
+    mechanism: Linkage,
+    strut: Strut | None,
+    rises: Telescopic | Levered,
+    tyre: PowerTyre | TableTyre,
+    unsprung: float,
+) -> Drop:
+    g = (mechanism.gravity[0] ** 2 + mechanism.gravity[1] ** 2) ** 0.5
+    mass = case.mass if case.mass is not None else (case.weight or 0.0) / STANDARD_GRAVITY
+    if unsprung >= mass:
+        raise ArgumentError(
+            f"unsprung, {unsprung:.6g} kg, is part of the mass on the leg, {mass:g} kg, and "
+            "must be smaller",
+            "unsprung-too-large",
+        )
+    rule = None if case.rule is None else DROPS[case.rule]
+    velocity = case.velocity
+    if velocity is None:
+        assert case.rule is not None
+        velocity = required_velocity(case.rule, case.wing_loading)
+    lift = case.lift if case.lift is not None else (0.0 if rule is None else rule.lift)
+    return Drop(
+        sprung=mass - unsprung,
+        unsprung=unsprung,
+        velocity=velocity,
+        tyre=tyre,
+        strut=strut,
+        wheel=_wheel(case, unsprung),
+        lift=lift,
+        gravity=g,
+        duration=case.duration,
+        travel=rises,
+    )
+
+
+def _strut(table: StrutTable) -> Strut:
+    spring: GasSpring | LinearSpring
+    if table.gas is not None:
+        gas = table.gas
+        spring = GasSpring(gas.pressure, gas.volume, gas.area, gas.exponent, gas.ambient)
+    else:
+        assert table.spring is not None
+        spring = LinearSpring(table.spring.stiffness, table.spring.preload)
+    oil = table.oil
+    made = None
+    if oil is not None:
+        made = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
+    return Strut(spring, table.stroke, made, table.friction)
+
+
+def _tyre(table: TyreTable) -> PowerTyre | TableTyre:
+    if table.at is not None:
+        deflection, force = table.at
+        return PowerTyre(force / deflection**table.exponent, table.exponent, table.damping)
+    return TableTyre(tuple(table.deflection or ()), tuple(table.force or ()), table.damping)
+
+
+def _wheel(case: DropCase, unsprung: float) -> Wheel | None:
+    w = case.wheel
+    if w is None:
+        return None
+    mass = unsprung if w.mass is None else w.mass
+    return Wheel(w.inertia, w.radius, w.speed, w.friction, w.stiffness, mass, w.damping)
+
+
+def fallen(study: Study, name: str, leg: Drop) -> Landing:
+    """The drop's course. Raises: InputError where the leg does not survive it."""
+    try:
+        return land(leg)
+    except LandingError as error:
+        raise study.error(f"case.{name}: {error}", code=error.code) from None
+
+
+def drop_note(case: DropCase, leg: Drop) -> str:
+    """The clause of a drop, and its unsprung mass where the mechanism gives it."""
+    clause = "" if case.rule is None else f"{DROPS[case.rule].clause}."
+    if case.unsprung is not None:
+        return clause
+    return f"{clause} Unsprung mass {leg.unsprung:.4g} kg, of the mechanism's bodies.".strip()
+
+
+def still(where: Touchdown) -> list[Law]:
+    """Laws that keep all drives as with the strut extended."""
+    return [StateDrive(value) for value in where.extended]
+
+
+def ground_load(
+    where: Touchdown, rule: GroundRule, reference: float, mechanism: Linkage
+) -> Applied:
+    """What the ground does to the wheel in the plane of the mechanism, by a rule."""
+    x, y = (
+        reference * (rule.vertical * u + rule.drag * a)
+        for u, a in zip(where.up, where.aft, strict=True)
+    )
+    return Applied(where.body, mechanism.joint(where.joint).at, (x, y))
+
+
+def ground_note(study: Study, case: GroundCase, reference: float) -> str:
+    """Clause and components of a rule's load."""
+    rule, force = GROUND_RULES[case.rule], study.system.factor("force")
+    parts = {
+        "vertical": rule.vertical,
+        "aft" if rule.drag >= 0.0 else "forward": abs(rule.drag),
+        "side": rule.side,
+    }
+    shown = ", ".join(
+        f"{name} {part * reference / force:,.1f} {study.system.force}"
+        for name, part in parts.items()
+        if part
+    )
+    side = " The side load is not in the plane of the mechanism and is not applied: bring its "
+    side += "effect on the pins in by a case of kind given."
+    return f"{rule.clause}: {shown}.{side if rule.side else ''}"

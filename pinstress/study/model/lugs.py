@@ -1,0 +1,236 @@
+"""From a study to the lugs in which its pins sit, or may sit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from fea.core.material import Material
+from fea.cut.inside import crosses_end
+from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
+from fea.support.lugs.lug import Bushing, Lug, LugRange
+from geometry import ArgumentError, Band, Cut, CutPin, Hole, Pin, PinLike
+from pinstress.study.model.pins import material
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.pins import LugRangeTable, LugTable, PinTable
+
+EYE = 2.5  # outer diameter over the band's
+CLAMP_DISTANCE = (
+    0.8  # of the outer diameter: distance from the bore's centre to where the link clamps the eye
+)
+
+
+def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
+    """Those of a pin, one for every connection and those of a structure that are named, if they
+    support it; else none.
+
+    Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
+    """
+    table, joints = study.table.pin[pin.name], study.table.analysis.joints
+    if joints == "prescribed" or (not table.lug and (joints == "auto" or clamps)):
+        return ()
+    at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
+    instead = 'or set analysis.joints = "prescribed"'
+    pin = _in_contact(study, pin, f"remove its lugs, {instead}")
+    if clamps:
+        raise study.error(
+            f"pin {pin.name} is clamped at {', '.join(clamps)}, and also supported by lugs: "
+            f"remove the clamp or the lugs, {instead}",
+            at,
+            "clamped-in-lugs",
+        )
+    out = _fitting(study, pin, at)
+    if joints == "foundation" and (reason := beyond_foundations(pin, out)):
+        raise study.error(
+            f'pin {pin.name} on foundations: {reason}; use analysis.joints = "contact"',
+            at,
+            "beyond-foundations",
+        )
+    return out
+
+
+def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lug, ...]:
+    """Those of a pin that the study gives, which checks know whatever holds the pin. holding: its
+    `lugs`, where these hold it.
+
+    Raises: InputError for impossible ones.
+    """
+    given = study.table.pin[pin.name].lug
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if not given or not isinstance(profile, Pin):
+        return ()
+    every = holding or _fitting(study, profile, f"pin.{pin.name}.lug")
+    return tuple(lug for lug in every if lug.connection in given)
+
+
+def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
+    """One for every connection and those of a structure. at: their key. Raises: InputError for
+    impossible ones.
+    """
+    table = study.table.pin[pin.name]
+    made_of = material(study, table.material)
+    out = []
+    for connection in _held(pin, table):
+        try:
+            out.append(_lug(study, pin, connection, _given(table, connection), made_of))
+        except ArgumentError as error:
+            raise study.error(str(error), f"{at}.{connection}", error.code) from None
+    try:
+        for tried in (out, *_ends_of_clearance(out)):
+            fitted(on_structure(pin, tried), made_of, tried)
+    except ArgumentError as error:
+        raise study.error(str(error), at, error.code) from None
+    return tuple(out)
+
+
+def lugs_about(study: Study, pin: Pin) -> tuple[Lug, ...]:
+    """The same of a pin that is known to sit in lugs. Raises: ArgumentError for impossible ones."""
+    table = study.table.pin[pin.name]
+    made_of = material(study, table.material)
+    each = _held(pin, table)
+    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in each)
+
+
+def _held(pin: Pin, table: PinTable) -> tuple[str, ...]:
+    """Where there are lugs, the structure's last."""
+    return *pin.connections, *(name for name in table.lug if name not in pin.connections)
+
+
+def _given(table: PinTable, connection: str) -> LugTable:
+    return table.lug.get(connection, LugTable())
+
+
+def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
+    """The profile of a pin that lugs can hold. Raises: InputError for another."""
+    table, joints = study.table.pin[pin.name], study.table.analysis.joints
+    at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
+    if isinstance(pin, CutPin) and joints == "foundation":
+        raise study.error(
+            f"pin {pin.name} has cuts, which a beam on foundations leaves out; use "
+            'analysis.joints = "contact"',
+            at,
+            "not-axisymmetric",
+        )
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    if not isinstance(profile, Pin):
+        raise study.error(
+            f"pin {pin.name} is from a file that is no profile; lugs require a profile, which may "
+            f"have holes, flats, slots and passages: {instead}",
+            at,
+            "not-axisymmetric",
+        )
+    cuts = pin.cuts if isinstance(pin, CutPin) else {}
+    for cut, feature in cuts.items():
+        for name in dict.fromkeys((*profile.connections, *table.lug)):
+            band = profile.band(name)
+            if crosses_end(feature, profile, band.z0, band.z1):
+                raise study.error(
+                    f"pin {pin.name}: {cut} lies at the edge of the lug of {name}, where stress "
+                    f"has no bound: {_clear_of(feature, band)}, {instead}",
+                    at,
+                    f"{feature.what}-at-end",
+                )
+    return profile
+
+
+def _clear_of(cut: Cut, band: Band) -> str:
+    """What keeps a cut clear of the edges of a lug."""
+    low, high = cut.opens
+    if isinstance(cut, Hole):
+        return "move it"
+    if low <= band.z0 and band.z1 <= high:
+        return "it goes through the whole lug; end it inside of the lug or leave the lug out of it"
+    if high <= band.z1 or band.z0 <= low:
+        return "end it inside of the lug, by a tenth of its width, or outside of it"
+    return "shorten it"
+
+
+def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
+    """The lugs at either end of the ranges of their clearances that the study gives."""
+    return [
+        [replace(x, clearance=(x.range.clearance or (x.clearance,) * 2)[end]) for x in lugs]
+        for end in (0, 1)
+    ]
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Lugs in which a pin may sit that the study loads and clamps otherwise: pin, with its clamped
+    segments as bands on which no link bears. assumed: whether no lug is given. why: there are none.
+    """
+
+    pin: Pin | None = None
+    lugs: tuple[Lug, ...] = ()
+    assumed: bool = True
+    why: str = ""
+
+
+def surroundings(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Surroundings:
+    """A lug at every connection, and one of the structure at every clamped segment, with the
+    defaults for what the study does not say.
+    """
+    if not isinstance(pin, Pin):
+        return Surroundings(why="the pin has cuts or is from a file")
+    clamped = [pin.surface(name) for name in clamps]
+    bare = [name for name in clamped if name not in pin.labels]
+    if bare:
+        return Surroundings(why=f"no lug surrounds its clamp ({', '.join(bare)})")
+    table = study.table.pin[pin.name]
+    free = _freed(pin, clamped)
+    names = dict.fromkeys([*free.connections, *clamped, *table.lug])
+    if len(names) < 2:
+        return Surroundings(why="one band alone does not show how the pin is supported")
+    made_of = material(study, table.material)
+    try:
+        found = tuple(
+            _lug(study, pin, name, table.lug.get(name, LugTable()), made_of) for name in names
+        )
+    except ArgumentError as error:
+        return Surroundings(why=str(error))
+    return Surroundings(free, found, not table.lug)
+
+
+def _freed(pin: Pin, clamped: list[str]) -> Pin:
+    """With clamped segments on which no link bears."""
+    segments = zip(pin.segments, pin.labels, strict=True)
+    return replace(
+        pin,
+        segments=tuple(
+            replace(s, name=label, connection=None) if label in clamped else s
+            for s, label in segments
+        ),
+    )
+
+
+def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Material) -> Lug:
+    band = pin.band(connection)
+    outer = given.outer_diameter or EYE * 2.0 * band.radius
+    made_of = of_pin if given.material is None else material(study, given.material)
+    tilt = _bending(made_of, outer, band.length) if given.tilt is None else _stiffness(given.tilt)
+    ring = given.bushing
+    bushing = None if ring is None else Bushing(ring.thickness, material(study, ring.material))
+    return Lug(
+        connection,
+        outer,
+        made_of,
+        given.clearance,
+        given.edge_radius,
+        tilt,
+        bushing,
+        _range(given.range),
+    )
+
+
+def _range(given: LugRangeTable) -> LugRange:
+    tilt = None if given.tilt is None else (_stiffness(given.tilt[0]), _stiffness(given.tilt[1]))
+    return LugRange(given.clearance, given.stiffness, tilt)
+
+
+def _stiffness(tilt: str | float) -> float:
+    """N m/rad, of a tilt in words or as a stiffness."""
+    return {"guided": math.inf, "free": 0.0}[tilt] if isinstance(tilt, str) else tilt
+
+
+def _bending(material: Material, outer: float, thickness: float) -> float:
+    """Of a shank as wide as the eye, N m/rad."""
+    return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE * outer)

@@ -1,0 +1,35 @@
+"""The mechanism as drawn: where its joints are, and which bodies are on them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from loads import LinkageError
+from pinstress.study.model.mechanism.joint_layout import Point
+from pinstress.study.schema.mechanism import MechanismTable
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """at: of the joints, m. shown: a length (m) as text."""
+
+    mechanism: MechanismTable
+    at: dict[str, Point]
+    shown: Callable[[float], str]
+
+    def on(self, joint: str) -> list[str]:
+        """The bodies at a joint, the one that carries the pin among them."""
+        j = self.mechanism.joint[joint]
+        return ([j.fixed_in] if j.fixed_in else []) + list(j.connections.values())
+
+    def require_on(self, joint: str, body: str, at: tuple[str, str], right: str) -> None:
+        """Raises: LinkageError where the body is not at the joint; at: the key in question, right:
+        what to do.
+        """
+        if body not in (on := self.on(joint)):
+            raise LinkageError(
+                f"{' '.join(at)}: joint {joint} is not on {body} but on {', '.join(on)}; {right}",
+                "joint-not-on-body",
+                at,
+            )

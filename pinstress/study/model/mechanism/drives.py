@@ -1,0 +1,148 @@
+"""From a study's drives to their laws, and to their values in a case."""
+
+from __future__ import annotations
+
+import math
+
+from loads import (
+    ArgumentError,
+    ConstantDrive,
+    CosineDrive,
+    CycloidalDrive,
+    Law,
+    Linkage,
+    LinkageError,
+    TableDrive,
+    TableError,
+    read_table,
+)
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import Coordinates, InstantCase, StaticCase
+from pinstress.study.schema.landing import AtWheel
+from pinstress.study.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive, drive_name
+from pinstress.study.schema.units import to_si
+
+LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
+    "cosine": CosineDrive,
+    "cycloidal": CycloidalDrive,
+    "constant": ConstantDrive,
+}
+AnyDriveTable = SliderDrive | RotaryDrive
+
+
+def mechanism_of(study: Study) -> MechanismTable:
+    """The study's mechanism. Raises: InputError where it has none."""
+    if study.table.mechanism is None:
+        raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
+    return study.table.mechanism
+
+
+def laws(study: Study) -> tuple[Law, ...]:
+    """The law of every drive. Raises: InputError for a table that cannot be used."""
+    return tuple(_law(study, d) for d in mechanism_of(study).drive)
+
+
+def offsets(study: Study) -> dict[str, float]:
+    """The offset subtracted from each driven slider's length to display its position, m."""
+    drives = mechanism_of(study).drive
+    return {d.slider: d.position_offset for d in drives if isinstance(d, SliderDrive)}
+
+
+def _law(study: Study, drive: AnyDriveTable) -> Law:
+    if drive.law == "table":
+        return drive_table(study, drive)
+    assert drive.start is not None
+    assert drive.end is not None
+    assert drive.duration is not None
+    return LAWS[drive.law](drive.start, drive.end, drive.duration, drive.begin)
+
+
+def span(study: Study) -> float:
+    """Time at which the last drive ends, s."""
+    return max(float(law.finish) for law in laws(study))  # type: ignore[attr-defined]
+
+
+def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
+    """The law of a drive with a table. Raises: InputError."""
+    path = study.path_to(drive.table or "")
+    slides = isinstance(drive, SliderDrive)
+    length, time = study.system.factor("length"), study.system.factor("time")
+    value = "position" if slides else "position_deg"
+    unit, rates = (length, length) if slides else (math.pi / 180.0, 1.0)
+    units = {
+        "time": time,
+        value: unit,
+        "velocity": rates / time,
+        "acceleration": rates / time**2,
+    }
+    try:
+        rows = list(read_table(path, ("time", value), ("velocity", "acceleration")))
+        columns = [c for c in units if c in rows[0].cells]
+        if len(columns) == 3:
+            raise TableError(
+                f"{path}: give both velocity and acceleration, or neither", "give-both"
+            )
+        return TableDrive(*(tuple(row.number(c) * units[c] for row in rows) for c in columns))
+    except TableError as error:
+        raise study.table_error("mechanism.drive.table", error) from None
+    except LinkageError as error:
+        raise InputError(f"{path}: {error}", code=error.code) from None
+
+
+def state(
+    study: Study, name: str, case: StaticCase | InstantCase | AtWheel, drawn: Linkage
+) -> list[tuple[float, float, float]]:
+    """Position, velocity and acceleration of every drive in a case, SI. Raises: InputError."""
+    drives = mechanism_of(study).drive
+    rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
+    return [
+        (
+            _coordinate(study, name, "position", case.position, drive, drawn.drives[k].drawn),
+            _coordinate(study, name, "velocity", rates[0], drive, 0.0),
+            _coordinate(study, name, "acceleration", rates[1], drive, 0.0),
+        )
+        for k, drive in enumerate(drives)
+    ]
+
+
+DIMENSION = {
+    "position": ("length", "angle"),
+    "velocity": ("velocity", "angular velocity"),
+    "acceleration": ("acceleration", "angular acceleration"),
+}
+
+
+def _coordinate(
+    study: Study,
+    case: str,
+    key: str,
+    value: Coordinates | None,
+    drive: AnyDriveTable,
+    default: float,
+) -> float:
+    where = f"case.{case}.{key}"
+    names = [drive_name(d) for d in mechanism_of(study).drive]
+    if isinstance(value, dict):
+        unknown = [n for n in value if n not in names]
+        if unknown:
+            raise study.error(
+                f"{where}: no drive {unknown[0]!r}; there are {', '.join(names)}",
+                code="unknown-drive",
+            )
+        value = value.get(drive_name(drive))
+    elif value not in (None, 0.0) and len(names) > 1:
+        raise study.error(
+            f"{where}: there are several drives; give {{ {names[0]} = ..., {names[1]} = ... }}",
+            code="drive-not-named",
+        )
+    if value is None or (value == 0.0 and key != "position"):
+        return default
+    slides = isinstance(drive, SliderDrive)
+    try:
+        found = to_si(value, DIMENSION[key][0 if slides else 1], study.system)
+    except ArgumentError as error:
+        raise study.error(f"{where}: {error}", code=error.code) from None
+    if key == "position" and isinstance(drive, RotaryDrive) and drive.line is not None:
+        found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
+    return found

@@ -1,0 +1,74 @@
+"""From a study's gears and racks to teeth that mesh."""
+
+from __future__ import annotations
+
+import math
+
+from loads import Gear, LinkageError, Rack, Slider, Teeth, gear_pair, rack_and_pinion
+from pinstress.study.model.mechanism.drawing import Drawing
+from pinstress.study.schema.gears import GearTable, RackTable
+
+REACHES = 1e-3  # of the distance of the centres: by so much pitch radii may miss each other
+CENTRE = "name the joint about which it turns"
+
+
+def gears(name: str, table: GearTable, drawing: Drawing) -> Teeth:
+    """A pair of gears. Raises: LinkageError."""
+    key = ("gear", name)
+    for body, joint in zip(table.bodies, table.joints, strict=True):
+        drawing.require_on(joint, body, key, CENTRE)
+    first, second = (drawing.on(joint) for joint in table.joints)
+    carriers = [b for b in first if b in second and b not in table.bodies]
+    if not carriers:
+        raise LinkageError(
+            f"gear {name}: no third body has both joints {' and '.join(table.joints)}, which would "
+            "keep the centres at their distance; add such a carrier (or the ground) to them",
+            "no-carrier",
+            key,
+        )
+    sizes = table.teeth or table.radii or (1.0, 1.0)
+    sign = (1.0, 1.0)
+    if table.internal:
+        sign = (-1.0, 1.0) if sizes[0] > sizes[1] else (1.0, -1.0)
+    radii = (sign[0] * sizes[0], sign[1] * sizes[1])
+    centres = (drawing.at[table.joints[0]], drawing.at[table.joints[1]])
+    if table.teeth is None or table.module is not None:
+        unit = 1.0 if table.module is None else 0.5 * table.module
+        _require_reach(name, math.dist(*centres), abs(unit * sum(radii)), drawing)
+    pair = (Gear(table.bodies[0], table.joints[0]), Gear(table.bodies[1], table.joints[1]))
+    return gear_pair(name, pair, carriers[0], centres, radii, table.pressure_angle)
+
+
+def _require_reach(name: str, distance: float, needed: float, drawing: Drawing) -> None:
+    if abs(needed - distance) > REACHES * distance:
+        shown = drawing.shown
+        raise LinkageError(
+            f"gear {name}: the pitch circles touch when their centres are {shown(needed)} apart, "
+            f"but the joints are {shown(distance)} apart; correct one of them (of gears with "
+            "shifted profiles give teeth alone, and the pressure angle at work)",
+            "gears-apart",
+            ("gear", name),
+        )
+
+
+def rack(name: str, table: RackTable, drawing: Drawing, sliders: tuple[Slider, ...]) -> Teeth:
+    """A gear and a rack. Raises: LinkageError."""
+    key = ("rack", name)
+    drawing.require_on(table.joint, table.pinion, key, CENTRE)
+    slider = next(s for s in sliders if s.name == table.slider)
+    pair = (slider.base, slider.moving)
+    carriers = [b for b in pair if b in drawing.on(table.joint)]
+    if len(carriers) != 1 or table.pinion in pair:
+        raise LinkageError(
+            f"rack {name}: slider {slider.name} joins {' and '.join(pair)}; one of them must have "
+            f"joint {table.joint}, about which {table.pinion} turns, and the other is the rack",
+            "no-carrier",
+            key,
+        )
+    toothed = pair[1] if carriers[0] == pair[0] else pair[0]
+    radius = table.radius or 0.5 * (table.module or 0.0) * (table.teeth or 0)
+    x, y = slider.axis
+    left = radius if table.side == "left" else -radius
+    sides = (Gear(table.pinion, table.joint), Rack(toothed, slider.name))
+    centre, to_rack = drawing.at[table.joint], (-left * y, left * x)
+    return rack_and_pinion(name, sides, carriers[0], centre, to_rack, table.pressure_angle)

@@ -1,0 +1,66 @@
+"""What acts on the pins of a motion at any time: polynomials between instants at which the
+mechanism was solved, so dense that they give the rest (loads.motion.refine).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
+
+from loads import Dynamics, Reactions, Resolved, resolved
+from pinbase.arrays import Floats
+
+Acting = tuple[Reactions, Floats]  # with the accelerations (T, J, 2) m/s^2 of the joints
+
+
+def acting(dynamics: Dynamics) -> Acting:
+    """The reactions of a mechanism, and the accelerations of its joints in their order."""
+    motion = dynamics.motion
+    joints = [motion.joint(joint.name)[2] for joint in motion.linkage.joints]
+    return dynamics.reactions, np.stack(joints, axis=1)
+
+
+class MovingLoads:
+    """A motion's reactions and the accelerations of its joints.
+
+    solve: of both at times (T,) s, in any order. times: samples, s. corners: where something may
+    jump, s.
+    """
+
+    def __init__(
+        self,
+        solve: Callable[[Floats], Acting],
+        times: Floats,
+        corners: Floats | tuple[float, ...] = (),
+    ) -> None:
+        self._solve, self._times, self._corners = solve, times, corners
+
+    @cached_property
+    def _resolved(self) -> Resolved:
+        def values(times: Floats) -> Floats:
+            """(T, K): forces, moments, turn by connection; acceleration by joint."""
+            r, joints = self._solve(times)
+            parts = (r.forces, r.moments, r.turn, joints)
+            return np.concatenate([x.reshape(len(times), -1) for x in parts], axis=1)
+
+        return resolved(self._times, values, self._corners)
+
+    @cached_property
+    def _first(self) -> Reactions:
+        return self._solve(self._times[:1])[0]
+
+    @cached_property
+    def instants(self) -> Floats:
+        """(N,) s: the samples and others, so dense that little happens between them."""
+        return np.union1d(self._times, self._resolved.nodes)
+
+    def at(self, times: Floats) -> Acting:
+        """At times (T,) s, by the polynomials."""
+        r = self._first
+        count, values = len(r.connections), self._resolved.interpolate(times)
+        forces, moments, turn, joints = np.split(values, np.cumsum([3, 3, 1]) * count, axis=1)
+        forces, moments = (x.reshape(len(times), count, 3) for x in (forces, moments))
+        found = Reactions(r.case, times, r.connections, r.bodies, forces, moments, turn)
+        return found, joints.reshape(len(times), -1, 2)

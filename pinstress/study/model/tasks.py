@@ -1,0 +1,162 @@
+"""What is to be solved: each pin, its constraints, and its loads in every case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.over_time import Between
+from fea.core.pin_loads import Distribution, Floats, PinLoads
+from fea.support.lugs.lug import Lug
+from geometry import PinLike
+from loads import Reactions
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.lugs import Surroundings, given_lugs, lugs, surroundings
+from pinstress.study.model.moving_loads import MovingLoads
+from pinstress.study.model.pins import material
+from pinstress.study.reading.file import Study
+
+
+@dataclass(frozen=True)
+class PinImpulse:
+    """Loads on a pin without an impulse and with it, two instants; time: of the impulse, s."""
+
+    time: float
+    loads: PinLoads
+
+
+@dataclass(frozen=True)
+class Task:
+    """One pin of a material, clamped in one way, with its loads in all the cases where it is.
+
+    left_out: by case, the connections whose force and moment are not applied because their band is
+    clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
+    are motions, the loads at any times. lugs: that support the pin, if any; surroundings: in which
+    it may sit where none do. impulses: by case, of those that have one. given: the lugs that the
+    study gives, whether they support the pin or not.
+    """
+
+    pin: PinLike
+    material: Material
+    clamps: tuple[str, ...]
+    loads: tuple[PinLoads, ...]
+    left_out: dict[str, tuple[str, ...]]
+    ranges: dict[str, PinLoads]
+    between: dict[str, Between]
+    lugs: tuple[Lug, ...] = ()
+    surroundings: Surroundings | None = None
+    impulses: dict[str, PinImpulse] = field(default_factory=dict)
+    given: tuple[Lug, ...] = ()
+
+
+def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
+    """What is to be solved: the pins that any case loads.
+
+    Raises: InputError when there is nothing to solve, or when all loads on a pin are at its clamps.
+    """
+    out = []
+    for pin in pins:
+        ways = dict.fromkeys(study.clamps(pin.name, case) for case in loads)
+        for clamps in ways:
+            task = _task(study, pin, clamps, loads)
+            if task.loads:
+                out.append(task)
+    if not study.table.pin:
+        raise study.error(
+            "the study has no pins; use pinstress loads for the reactions only", code="no-pins"
+        )
+    if not out:
+        many = "s" if len(loads) > 1 else ""
+        raise study.error(
+            f"case{many} {', '.join(loads)} {'do' if many else 'does'} not load "
+            f"pin{'s' if len(pins) > 1 else ''} {', '.join(pin.name for pin in pins)}",
+            code="not-loaded",
+        )
+    return out
+
+
+def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, CaseLoads]) -> Task:
+    constrained = {pin.surface(c) for c in clamps}
+    made_of = material(study, study.table.pin[pin.name].material)
+    cases: list[PinLoads] = []
+    left_out: dict[str, tuple[str, ...]] = {}
+    ranges: dict[str, PinLoads] = {}
+    between: dict[str, Between] = {}
+    impulses: dict[str, PinImpulse] = {}
+    for case, given in loads.items():
+        here = [c for c in pin.connections if c in given.reactions.connections]
+        if not here or study.clamps(pin.name, case) != clamps:
+            continue
+        applied = [c for c in here if c not in constrained]
+        if not applied:
+            raise study.error(
+                f"case.{case}: every load on pin {pin.name} is at a clamped band "
+                f"({', '.join(here)}), so no load acts on it; clamp another surface",
+                code="not-loaded",
+            )
+        left_out[case] = tuple(c for c in here if c in constrained)
+        spread = study.table.case[case].distribution
+        heavy = not clamps and bool(made_of.density)
+        made = partial(_pin_loads, case, given, applied, spread, heavy)
+        if given.moving is None:
+            cases.append(made(given.reactions))
+        else:
+            between[case] = partial(_at, made, given.moving)
+            cases.append(between[case](given.moving.instants))
+        if given.range is not None:
+            ranges[case] = made(given.range.reactions)
+        if given.impulse is not None:
+            impulses[case] = PinImpulse(given.impulse.time, made(given.impulse.reactions))
+    in_lugs = lugs(study, pin, clamps) if cases else ()
+    around = surroundings(study, pin, clamps) if cases and not in_lugs else None
+    given_ones = given_lugs(study, pin, in_lugs) if cases else ()
+    return Task(
+        pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
+        given_ones,
+    )  # fmt: skip
+
+
+def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:
+    return made(*moving.at(times))
+
+
+def _pin_loads(
+    case: str,
+    given: CaseLoads,
+    applied: list[str],
+    distribution: Distribution,
+    heavy: bool,
+    reactions: Reactions,
+    accelerations: Floats | None = None,
+) -> PinLoads:
+    """Loads on a pin at some connections. heavy: whether its own weight acts. accelerations:
+    (T, J, 2) m/s^2 of the joints, by default those of the case's instants.
+    """
+    body = _own_weight(given, applied[0], reactions, accelerations) if heavy else np.zeros(3)
+    forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
+    moments = np.stack([reactions.moment_in_pin_axes(c) for c in applied], axis=1)
+    return PinLoads(
+        case, tuple(applied), forces, moments, distribution, body, times=reactions.times
+    )
+
+
+def _own_weight(
+    case: CaseLoads, connection: str, reactions: Reactions, accelerations: Floats | None
+) -> Floats:
+    """Gravity less the pin's acceleration, (T, 3) m/s^2 in its own axes, where a mechanism moves
+    it; else zero. A clamped pin's weight goes into its clamp, as the loads there do.
+    """
+    if case.dynamics is None:
+        return np.zeros(3)
+    motion = case.dynamics.motion
+    for k, joint in enumerate(motion.linkage.joints):
+        if any(c.name == connection for c in joint.connections):
+            own = motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
+            across = np.zeros((len(reactions), 3))
+            across[:, :2] = np.array(motion.linkage.gravity) - own
+            return reactions.turned_back(across, connection)
+    return np.zeros(3)

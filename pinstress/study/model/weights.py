@@ -1,0 +1,57 @@
+"""Stated weights of floating pins compared with those of their profiles."""
+
+from __future__ import annotations
+
+import math
+
+from pinstress.study.model.mechanism.linkage import STANDARD_GRAVITY
+from pinstress.study.model.pins import pin, weight
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+
+AGREES = 0.02  # of the profile's weight
+
+
+def weight_warnings(study: Study) -> list[str]:
+    """For every joint whose weight is not that of its pin's shape both, with the one that is used;
+    and weights that are not used at all.
+    """
+    mechanism = study.table.mechanism
+    if mechanism is None:
+        return []
+    gravity = math.hypot(*mechanism.gravity) or STANDARD_GRAVITY
+    found = []
+    for name, joint in mechanism.joint.items():
+        if joint.weight is not None:
+            said = _idle(name, joint.fixed_in) or _differs(study, name, joint.weight, gravity)
+            found += [str(study.error(f"mechanism.joint.{name}.weight: {said}"))] if said else []
+    return found
+
+
+def _idle(name: str, fixed_in: str | None) -> str:
+    if fixed_in is None:
+        return ""
+    return (
+        f"pin {name} is fixed in {fixed_in}, whose weight includes it, so this weight is not "
+        "used; remove it"
+    )
+
+
+def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
+    if name not in study.table.pin:
+        return ""
+    density = study.table.material[study.table.pin[name].material].density
+    if not density:
+        return ""
+    try:
+        own = weight(pin(study, name), density, gravity)
+    except InputError:
+        return ""  # whoever needs the pin says what is wrong with it
+    if abs(stated - own) <= AGREES * own:
+        return ""
+    unit, factor = study.system.force, study.system.factor("force")
+    return (
+        f"{stated / factor:.4g} {unit} is stated, but the pin's shape and density give "
+        f"{own / factor:.4g} {unit}; the stated weight is used. Remove it to use the weight of the "
+        "shape, or correct the shape or the density"
+    )

@@ -1,0 +1,1 @@
+"""Reading a study file, and what is wrong with it, by line."""

@@ -1,0 +1,115 @@
+"""Options of an analysis in addition to its study, checked for the command line and for Python."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Iterable
+from numbers import Integral, Real
+from typing import TYPE_CHECKING, TypedDict, TypeVar, get_args
+
+from pinstress.study.reading.errors import InputError
+from pinstress.study.schema.shown import listed, near, shown
+
+if TYPE_CHECKING:
+    from fea.solve.solve_pin import Model
+
+
+V = TypeVar("V")
+LARGEST = sys.float_info.max
+
+
+class Chosen(TypedDict, total=False):
+    """Keywords of analysis.plan.prepare; None: as in the study."""
+
+    pins: Iterable[str] | None
+    cases: Iterable[str] | None
+    model: Model | None
+    tolerance: float | None
+    memory: float | None
+    limit_load: bool
+
+
+class ChoiceError(InputError):
+    """A bad argument, which the message begins with: an option on the command line."""
+
+    @property
+    def of_option(self) -> str:
+        """The message with the option's name."""
+        argument, _, message = str(self).partition(":")
+        return f"--{argument.replace('_', '-')}:{message}"
+
+
+def select(
+    names: Iterable[str], wanted: Iterable[str] | None, what: str, argument: str = ""
+) -> list[str]:
+    """The wanted names in their order, or all. argument: by which they were given, {what}s by
+    default.
+
+    Raises: ChoiceError for an unknown name, or an empty list.
+    """
+    known = dict.fromkeys(names)
+    if wanted is None:
+        return list(known)
+    argument = argument or f"{what}s"
+    if isinstance(wanted, str | bytes) or not isinstance(wanted, Iterable):
+        like = next(iter(known), "A")
+        raise ChoiceError(
+            f"{argument}: must be a list of names such as [{like!r}], not {shown(wanted)}",
+            code="not-a-list",
+        )
+    asked: list[object] = list(wanted)
+    if not asked:
+        raise ChoiceError(
+            f"{argument}: the list is empty; choose among {listed(known)}", code="empty"
+        )
+    for name in asked:
+        if not isinstance(name, str) or name not in known:
+            hint = near(name, known)
+            raise ChoiceError(
+                f"{argument}: the study has no {what} {shown(name)}; {hint}", code=f"unknown-{what}"
+            )
+    chosen = set(asked)
+    return [name for name in known if name in chosen]
+
+
+def require_model(model: Model | None) -> Model | None:
+    """The same. Raises: ChoiceError for an unknown model."""
+    from fea.solve.solve_pin import Model  # which is slow to import
+
+    must = f"must be one of {listed(get_args(Model))}"
+    right = model is None or model in get_args(Model)
+    return _require(right, "model", model, must, "unknown-model")
+
+
+def require_tolerance(tolerance: float | None) -> float | None:
+    """The same. Raises: ChoiceError unless it is between 0 and 1."""
+    right = tolerance is None or (_is_number(tolerance) and 0.0 < tolerance < 1.0)
+    return _require(right, "tolerance", tolerance, "must be between 0 and 1", "out-of-range")
+
+
+def require_positive(argument: str, value: float | None, endless: bool = False) -> float | None:
+    """The same. endless: whether it may be infinite. Raises: ChoiceError unless it is positive."""
+    most = math.inf if endless else LARGEST
+    right = value is None or (_is_number(value) and 0.0 < value <= most)
+    return _require(right, argument, value, "must be a positive number", "not-positive")
+
+
+def require_count(argument: str, value: int | None) -> int | None:
+    """The same. Raises: ChoiceError unless it is a whole number from 1 on."""
+    right = value is None or _is_count(value)
+    return _require(right, argument, value, "must be a whole number of at least 1", "not-a-count")
+
+
+def _require(right: bool, argument: str, value: V, must: str, code: str) -> V:
+    if not right:
+        raise ChoiceError(f"{argument}: {must}, not {shown(value)}", code=code)
+    return value
+
+
+def _is_count(value: object) -> bool:
+    return not isinstance(value, bool) and isinstance(value, Integral) and int(value) >= 1
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)

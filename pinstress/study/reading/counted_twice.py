@@ -1,0 +1,75 @@
+"""Factors that a study gives twice: in its required safety factor, and for its margins.
+
+The required factor compares yield with the stress under the loads of the study as they are. Limit,
+ultimate and fitting factors multiply these loads in the margins of safety. Who puts one of them
+into the required factor, too, has it in both: 14 CFR 25.305 lets a pin yield beyond limit load.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+
+from pinstress.study.schema.tables import AnalysisTable
+
+REQUIRED = "analysis.required_safety_factor"
+LEVELS = "limit_factor", "ultimate_factor"
+FITTING = "fitting_factor"
+USUAL_FITTING = 1.15  # 14 CFR 25.625, 23.625
+SAME = 0.005  # relative: factors that differ by no more are one
+IN_WORDS = {
+    "ultimate_factor": re.compile(r"ultimate (load|factor)|\b2[3579]\.303\b", re.IGNORECASE),
+    FITTING: re.compile(r"\bfitting\b|\b2[3579]\.625\b", re.IGNORECASE),
+}
+
+
+def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, ...]:
+    """Which factors of margins the required factor looks to contain, in a sentence. notes: by key,
+    where a number comes from; one that names no such factor settles it.
+    """
+    required, note = table.required_safety_factor, notes.get(REQUIRED, "")
+    if required is None or required <= 1.0:
+        return ()
+    keys = _in_words(table, note) if note else _in_numbers(table, required)
+    if not keys:
+        return ()
+    values = {key: getattr(table, key) for key in keys}
+    factors = [f"{key} {value:g}" for key, value in values.items()]
+    rest = required / math.prod(values.values())
+    times = [] if note or abs(rest - 1.0) <= SAME else [f"{rest:.3g}"]
+    found = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
+    return (
+        f"{REQUIRED}: {required:g} {found}{' by its note' * bool(note)}, and the margins of safety "
+        f"already contain {' and '.join(keys)}; the required factor compares yield with the stress "
+        "under the loads of the study as they are (1: no yielding at limit load); if it is another "
+        "factor, say in its note where it comes from",
+    )
+
+
+def _in_words(table: AnalysisTable, note: str) -> list[str]:
+    """The factors that a note names and margins contain."""
+    return [k for k, words in IN_WORDS.items() if words.search(note) and getattr(table, k) > 1.0]
+
+
+def _in_numbers(table: AnalysisTable, required: float) -> list[str]:
+    """The factors of which the required one is the product, with one at least that is stated."""
+    stated = table.model_fields_set
+    fits = [keys for keys, value in _products(table) if abs(required / value - 1.0) <= SAME]
+    return max((x for x in fits if stated & set(x)), key=lambda x: len(stated & set(x)), default=[])
+
+
+def _products(table: AnalysisTable) -> Iterator[tuple[list[str], float]]:
+    """Of limit or ultimate factor and fitting factor, those above 1; also with the usual fitting
+    factor where margins have none.
+    """
+    fitting = table.fitting_factor
+    if fitting > 1.0:
+        yield [FITTING], fitting
+    for level in LEVELS:
+        value: float = getattr(table, level)
+        if value > 1.0:
+            yield [level], value
+            yield ([level, FITTING], value * fitting) if fitting > 1.0 else (
+                [level], value * USUAL_FITTING,
+            )  # fmt: skip

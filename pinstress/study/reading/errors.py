@@ -1,0 +1,106 @@
+"""Errors that end a command with a message instead of a traceback."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from pinstress.study.schema.shown import ELLIPSIS
+
+T = TypeVar("T")
+
+MOST_LISTED = 20  # errors in a message; it counts the others
+LONGEST_LINE = 800  # characters; a longer line loses its middle
+
+
+class InputError(Exception):
+    """Bad input: the message names the file, the key and what would be right. Exit status 2.
+
+    code: short and stable, for programs. lines: the errors, one by one, by their codes in `codes`;
+    more: the number of further errors.
+    """
+
+    def __init__(
+        self, message: str, listed: Iterable[tuple[str, str]] = (), more: int = 0, code: str = ""
+    ) -> None:
+        super().__init__("\n".join(map(clipped, message.split("\n"))))
+        errors = tuple(listed) or ((str(self), code),)
+        self.lines = tuple(line for line, _ in errors)
+        self.codes = tuple(each for _, each in errors)
+        self.more = more
+
+    @property
+    def code(self) -> str:
+        """The code of the first error."""
+        return self.codes[0]
+
+
+def clipped(line: str) -> str:
+    """The beginning, which says where, and the end, which says what would be right."""
+    if len(line) <= LONGEST_LINE:
+        return line
+    half = LONGEST_LINE // 2
+    return f"{line[:half]} {ELLIPSIS} {line[-half:]}"
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """An error: a message that begins with its key, or the key `at` to point at. hint: a
+    likely intended name, which takes time to find: only errors that are printed search for it.
+    """
+
+    message: str
+    hint: Callable[[], str] = str
+    at: str = ""
+    code: str = ""
+
+
+def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
+    """The errors of a valid TOML text, the first of them in the order of the file, each with its
+    line as "file:line: key: remedy".
+    """
+    from pinstress.study.reading.toml_lines import lines_of  # only for studies that are wrong
+
+    lines = lines_of(text, [f"{w.at}:" if w.at else w.message for w in wrong])
+    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[:MOST_LISTED]
+    listed = []
+    for line, w in first:
+        where = f"{path}:{line}" if line else f"{path}"
+        listed.append((f"{where}: {w.message}{w.hint()}", w.code))
+    return _listed(path, listed, len(wrong) - len(listed))
+
+
+def _listed(path: Path, listed: Sequence[tuple[str, str]], more: int) -> InputError:
+    lines = [line for line, _ in listed]
+    if len(listed) + more > 1:
+        lines.insert(0, f"{path}: {len(listed) + more:,} errors")
+    if more:
+        lines.append(f"{path}: and {more:,} more")
+    return InputError("\n".join(lines), listed, more)
+
+
+class Errors:
+    """Errors of parts of a study that can be read independently, reported together."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.lines: dict[str, str] = {}  # codes by message: one part may be read twice
+        self.more = 0
+
+    def attempt(self, make: Callable[[], T]) -> T | None:
+        """What is made, or None when the input for it is wrong."""
+        try:
+            return make()
+        except InputError as error:
+            self.lines |= dict(zip(error.lines, error.codes, strict=True))
+            self.more += error.more
+            return None
+
+    def tell(self) -> None:
+        """Raises: InputError with all errors, if there are any."""
+        if self.lines:
+            listed = list(self.lines.items())
+            beyond = max(len(listed) - MOST_LISTED, 0)
+            raise _listed(self.path, listed[:MOST_LISTED], self.more + beyond) from None

@@ -1,0 +1,264 @@
+"""Reading a study file: TOML, validated, in SI, every cross-reference checked."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import ValidationError
+
+from loads import MB, FileError, TableError, read_regular
+from pinstress.study.reading.cases_of_tables import with_cases_of_tables
+from pinstress.study.reading.counted_twice import counted_twice
+from pinstress.study.reading.errors import InputError, Wrong, study_error
+from pinstress.study.reading.file_names import same_files
+from pinstress.study.reading.limits import control_characters, texts, too_many
+from pinstress.study.reading.plausible import questions
+from pinstress.study.reading.references import cross_references
+from pinstress.study.reading.toml_text import read_toml
+from pinstress.study.reading.validation import explain
+from pinstress.study.schema.shown import LISTED, cut, in_toml, shown
+from pinstress.study.schema.tables import StudyTable
+from pinstress.study.schema.types import KINDS
+from pinstress.study.schema.units import SYSTEMS, UnitSystem
+
+LARGEST_STUDY = 16 * MB
+LONGEST_PATH = 4096  # as Linux has it
+MOST_ITEMS = 200_000  # of a list
+LONGEST_KEY = 200  # characters; no name is longer, and messages have it in full
+
+
+@dataclass(frozen=True)
+class Sourced:
+    """Where a number of the study comes from; value: as the study writes it, of a whole table its
+    numbers with their keys.
+    """
+
+    key: str
+    kind: str
+    note: str
+    value: str = ""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A valid study. table: its content in SI. questions: implausible values, each after its key.
+    located: whether messages give lines of its text, which the user did not write if the study was
+    made in Python.
+    """
+
+    path: Path
+    text: str
+    table: StudyTable
+    provenance: tuple[Sourced, ...]
+    questions: tuple[str, ...] = ()
+    located: bool = True
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Implausible values, each with its line: the first ones, and the number of others."""
+        if not self.questions:
+            return ()
+        found = self.errors([Wrong(question) for question in self.questions])
+        return found.lines + ((f"{self.path}: and {found.more:,} more",) if found.more else ())
+
+    @property
+    def system(self) -> UnitSystem:
+        """The study's unit system."""
+        return SYSTEMS[self.table.units]
+
+    @property
+    def meshes(self) -> Literal["own", "moved"]:
+        """Of sections: each shape's own, or those of near shapes with their nodes moved."""
+        return self.table.analysis.meshes or ("moved" if self.table.vary else "own")
+
+    @property
+    def name(self) -> str:
+        """The file's name without its suffix."""
+        return self.path.stem
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the study file."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    def path_to(self, name: str) -> Path:
+        """Path of a file that the study refers to. Raises: InputError for an impossible name."""
+        if "\0" in name or len(name) > LONGEST_PATH:
+            raise self.error(f"{shown(name)} is not a file name", code="not-a-file-name")
+        return self.path.parent / name
+
+    def error(self, message: str, at: str = "", code: str = "") -> InputError:
+        """An error of this study, with the line of the key that the message begins with, or of the
+        key `at`.
+        """
+        return self.errors([Wrong(message, at=at, code=code)])
+
+    def errors(self, wrong: Sequence[Wrong]) -> InputError:
+        """The same for several."""
+        return study_error(self.path, self._lines, wrong)
+
+    def table_error(self, key: str, error: TableError) -> InputError:
+        """The error of a table that is named at `key`: of one that is missing, with this key."""
+        if error.code == "no-such-file":
+            return self.error(f"{key}: {error}", code=error.code)
+        return InputError(str(error), code=error.code)
+
+    @property
+    def _lines(self) -> str:
+        return self.text if self.located else ""
+
+    def clamps(self, pin: str, case: str) -> tuple[str, ...]:
+        """Clamped surfaces of a pin in a case, as named in the study."""
+        return tuple(self.table.case[case].clamp.get(pin, self.table.pin[pin].clamp))
+
+    def connections(self, pin: str) -> tuple[str, ...]:
+        """Connections that bear on a pin."""
+        return tuple(name for _, name in self.table.pin[pin].connections)
+
+
+def load_study(path: str | os.PathLike[str]) -> Study:
+    """Read and validate a study file.
+
+    Raises: InputError naming the file, the keys and what would be right.
+    """
+    if not isinstance(path, str | os.PathLike):
+        raise InputError(
+            f"{shown(path)} is not the path of a study file; give a string or a Path",
+            code="not-a-path",
+        )
+    path = Path(path)
+    try:
+        text = read_regular(path, LARGEST_STUDY).decode("utf-8-sig")
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file", code="no-such-file") from None
+    except FileError as error:
+        raise InputError(f"{path}: {error}", code=error.code) from None
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: is not UTF-8 text ({error}); save it with this encoding", code="unreadable"
+        ) from None
+    except (OSError, ValueError) as error:  # ValueError: no file's name
+        raise InputError(f"{path}: cannot be read ({error})", code="unreadable") from None
+    return parse_study(path, text)
+
+
+def parse_study(path: Path, text: str, located: bool = True) -> Study:
+    """Validate the text of a study file at `path`. located: as a Study's. Raises: InputError as
+    load_study.
+    """
+    lines = text if located else ""
+    provenance: list[Sourced] = []
+    long: list[Wrong] = []
+    raw = unwrapped(read_toml(path, text), "", provenance, long)
+    if long:
+        raise study_error(path, lines, long)
+    wrong = [
+        Wrong(
+            f"{s.key}: provenance must be given, derived, fitted or assumed, not {shown(s.kind)}",
+            code="not-a-choice",
+        )
+        for s in provenance
+        if s.kind not in KINDS
+    ]
+    table = _table(path, lines, raw, wrong)
+    wrong += control_characters([*texts(raw), *((s.key, s.note) for s in provenance)])
+    notes = {s.key: s.note for s in provenance}
+    doubtful = questions(table, raw, _system(raw)) + counted_twice(table.analysis, notes)
+    if beyond := list(too_many(table)):
+        wrong += [Wrong(text, code="too-large") for text in beyond]
+        wrong += [Wrong(text, code="doubtful") for text in doubtful]  # a wrong unit may be why
+    if not wrong:
+        same = same_files(table.pin, table.case)
+        wrong += [Wrong(text, code="same-file-names") for text in same]
+    if wrong:
+        raise study_error(path, lines, wrong)
+    return Study(path, text, table, tuple(provenance), doubtful, located)
+
+
+def raw_study(study: Study) -> dict[str, Any]:
+    """What the study's file has, without provenance and notes."""
+    raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
+    return raw
+
+
+def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
+    """The study with other numbers in what `raw_study` returned, validated without a way through
+    text; implausible ones are not looked for.
+
+    Raises: InputError as load_study.
+    """
+    lines = study.text if study.located else ""
+    wrong: list[Wrong] = []
+    table = _table(study.path, lines, raw, wrong)
+    wrong += [Wrong(text, code="too-large") for text in too_many(table)]
+    if wrong:
+        raise study_error(study.path, lines, wrong)
+    return replace(study, table=table, questions=())
+
+
+def _system(raw: Mapping[str, Any]) -> UnitSystem:
+    units = raw.get("units")
+    return SYSTEMS.get(units if isinstance(units, str) else "", SYSTEMS["m-N-s"])
+
+
+def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -> StudyTable:
+    """The content in SI. wrong: earlier errors, to which those of references are added. Raises:
+    InputError for content of the wrong form.
+    """
+    try:
+        table = StudyTable.model_validate(raw, context={"system": _system(raw)})
+    except ValidationError as error:
+        raise study_error(path, lines, wrong + explain(error)) from None
+    table = with_cases_of_tables(table, path.parent, wrong)
+    wrong += cross_references(table)
+    return table
+
+
+def _written(value: Any) -> str:
+    """A value as the study writes it, shortened; of a table its values with their keys."""
+    if isinstance(value, dict):
+        own = ((k, v) for k, v in value.items() if not isinstance(v, dict))
+        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(own, LISTED))
+    if isinstance(value, list):
+        more = ", ..." * (len(value) > LISTED)
+        return f"[{', '.join(map(_written, value[:LISTED]))}{more}]"
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    return cut(value) if isinstance(value, str) else in_toml(value)
+
+
+def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
+    """The same tree without provenance and notes, which go to `found`; of { value, provenance,
+    note } the value remains. long: where keys go that are too long.
+    """
+    if isinstance(node, list):
+        if len(node) > MOST_ITEMS:
+            long.append(
+                Wrong(
+                    f"{key}: {len(node):,} elements; the limit is {MOST_ITEMS:,}", code="too-many"
+                )
+            )
+            return []
+        return [unwrapped(v, f"{key}[{i}]", found, long) for i, v in enumerate(node, 1)]
+    if not isinstance(node, dict):
+        return node
+    if isinstance(node.get("provenance"), str):
+        kind, note = node["provenance"], str(node.get("note", ""))
+        node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
+        found.append(Sourced(key, kind, note, _written(node.get("value", node))))
+        if set(node) == {"value"}:
+            return node["value"]
+    long += [
+        Wrong(f"{key}{': ' * bool(key)}the name {shown(k)} has {len(k):,} characters; the limit is "
+              f"{LONGEST_KEY}", code="too-long")
+        for k in node if len(k) > LONGEST_KEY
+    ]  # fmt: skip
+    inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= LONGEST_KEY}
+    return {k: unwrapped(node[k], place, found, long) for k, place in inner.items()}

@@ -1,0 +1,112 @@
+"""Studies made in Python: from tables as a study file has them, and from another study."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study, parse_study
+from pinstress.study.schema.shown import shown
+
+PART = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
+INDEX = re.compile(r"\[(\d+)\]")
+
+
+def study_from(
+    tables: Mapping[str, Any] | str, folder: str | os.PathLike[str] = ".", name: str = "study"
+) -> Study:
+    """A study from a dict with the keys of a study file (docs/study-file.md), in which None means
+    that the key is absent, or from the text of such a file.
+
+    folder: folder of the files that the study refers to. name: name of the study in messages and
+    results.
+
+    Raises: InputError as load_study.
+    """
+    path = Path(folder) / name
+    if isinstance(tables, str):
+        return parse_study(path, tables)
+    if not isinstance(tables, Mapping):
+        raise InputError(
+            f"{shown(tables)} is not a study: give a dict or the text of a study file",
+            code="not-a-study",
+        )
+    import tomlkit
+
+    return parse_study(path, tomlkit.dumps(_plain(tables, name)), located=False)
+
+
+def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
+    """The study with other values, by key as in messages: {"pin.E.profile[2].diameter":
+    "1.5 in", "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced
+    values is removed; comments are kept.
+
+    Raises: InputError as load_study, and for a key that does not exist in the study.
+    """
+    import tomlkit
+
+    document: Any = tomlkit.parse(study.text)
+    for key, value in changes.items():
+        *parents, last = key_parts(study, key)
+        table = document
+        for part in parents:
+            table = _inside(study, table, part, key)
+        if isinstance(last, int):
+            _inside(study, table, last, key)  # an item that is there
+        table[last] = _plain(value, key)
+    return parse_study(study.path, tomlkit.dumps(document), study.located)
+
+
+def key_parts(study: Study, key: str) -> list[str | int]:
+    """The parts of a key: names, and indices from 0. Raises: InputError."""
+    found: list[str | int] = []
+    at = 0
+    while at < len(key):
+        match = PART.match(key, at)
+        if match is None:
+            raise study.error(
+                f"{shown(key)} is not a key; a key looks like pin.E.profile[2].diameter",
+                code="not-a-key",
+            )
+        found.append(match[1] if match[1] is not None else match[2])
+        found += [int(i) - 1 for i in INDEX.findall(match[3])]
+        at = match.end()
+    if not found:
+        raise study.error("'' is not a key", code="not-a-key")
+    return found
+
+
+def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
+    if isinstance(table, Mapping) and "value" in table and "provenance" in table:
+        table = table["value"]
+    try:
+        if isinstance(part, int) and part < 0:
+            raise IndexError
+        return table[part]
+    except (KeyError, IndexError, TypeError):
+        there = part + 1 if isinstance(part, int) else part
+        raise study.error(
+            f"{key}: the study has no {shown(there)} there", code="unknown-key"
+        ) from None
+
+
+def _plain(value: Any, key: str) -> Any:
+    """As TOML has it: numbers of numpy, tuples and paths too. Raises: InputError for others."""
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v, f"{key}.{k}") for k, v in value.items() if v is not None}
+    if isinstance(value, bool | int | float | str):
+        return value
+    if hasattr(value, "tolist"):  # of numpy
+        return _plain(value.tolist(), key)
+    if isinstance(value, tuple | list):
+        return [_plain(v, f"{key}[{i}]") for i, v in enumerate(value, 1)]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise InputError(
+        f"{key}: {shown(value)} cannot be a value in a study: give a number, text or table",
+        code="not-a-value",
+    )

@@ -1,0 +1,55 @@
+"""All values of a study by their keys, as results.json has them, so that runs can be compared."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from typing import Any
+
+from loads import MB, FileError, read_regular
+from pinstress.study.reading.file import LONGEST_PATH, Study, raw_study
+from pinstress.study.schema.shown import in_toml
+
+LARGEST_TABLE = 256 * MB
+DIGITS = 12  # of the hash of a file
+APART = "title", "report", "assumptions"  # texts that change no result
+
+
+def inputs(study: Study) -> dict[str, str]:
+    """By key, as the study writes them; of a file that it names also the start of its SHA-256."""
+    raw = raw_study(study)
+    return {
+        key: _written(study, value)
+        for key, value in _leaves(raw, "")
+        if key.split(".")[0].split("[")[0] not in APART
+    }
+
+
+def _leaves(node: Any, key: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(node, dict):
+        for name, inner in node.items():
+            yield from _leaves(inner, f"{key}.{name}" if key else name)
+    elif isinstance(node, list) and any(isinstance(x, dict) for x in node):
+        for k, inner in enumerate(node, 1):
+            yield from _leaves(inner, f"{key}[{k}]")
+    else:
+        yield key, node
+
+
+def _written(study: Study, value: Any) -> str:
+    if not isinstance(value, str):
+        return in_toml(value)
+    content = _file(study, value)
+    if content is None:
+        return value
+    return f"{value} (SHA-256 {hashlib.sha256(content).hexdigest()[:DIGITS]})"
+
+
+def _file(study: Study, name: str) -> bytes | None:
+    """Its content, if a file of the study has that name."""
+    if "." not in name or "\0" in name or len(name) > LONGEST_PATH:
+        return None
+    try:
+        return read_regular(study.path.parent / name, LARGEST_TABLE)
+    except (OSError, FileError, ValueError):
+        return None

@@ -1,0 +1,83 @@
+"""Limits on the size of a study: more would take hours, or more memory than machines have."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sized
+from typing import Any
+
+from pinstress.study.reading.errors import Wrong
+from pinstress.study.schema.tables import StudyTable
+
+CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # all but tab and line ends
+
+MOST_PINS = MOST_CASES = 1000
+MOST_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
+MOST_LOADS = 1000  # of a case
+MOST_SLENDER = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
+MOST_STEPPED = 3000.0  # largest diameter over smallest
+MOST_BODIES = 500  # and joints: three unknowns each, in dense equations
+
+
+def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
+    """The texts of a study, each with its key."""
+    if isinstance(node, str):
+        yield key, node
+    elif isinstance(node, list):
+        for i, each in enumerate(node, 1):
+            yield from texts(each, f"{key}[{i}]")
+    elif isinstance(node, dict):
+        for name, each in node.items():
+            yield from texts(each, f"{key}.{name}" if key else name)
+
+
+def control_characters(found: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
+    """Errors for texts with characters that command terminals and that PDF and XML cannot show."""
+    for key, text in found:
+        if bad := CONTROL.search(text):
+            what = f"has the control character U+{ord(bad[0]):04X}"
+            yield Wrong(f"{key}: {what}; remove it", code="control-character")
+
+
+def too_many(table: StudyTable) -> Iterator[str]:
+    """Errors for whatever exceeds a limit."""
+    for key, what, there, most in _counted(table):
+        if len(there) > most:
+            yield f"{key}: {len(there):,} {what}; the limit is {most:,}"
+    for name, pin in table.pin.items():
+        diameters = [d for d in pin.diameters if d]
+        if not diameters:
+            continue
+        key = f"pin.{name}.{'meridian' if pin.profile is None else 'profile'}"
+        length = pin.meridian[-1][0] if pin.meridian else sum(s.length for s in pin.profile or ())
+        slender = length / max(diameters)
+        if slender > MOST_SLENDER:
+            yield f"{key}: {_odd('as long as it is wide', slender, MOST_SLENDER)}"
+        stepped = max(diameters) / min(diameters)
+        if stepped > MOST_STEPPED:
+            yield f"{key}: {_odd('as wide as elsewhere', stepped, MOST_STEPPED)}"
+
+
+def _odd(what: str, found: float, most: float) -> str:
+    return f"the pin is {found:,.0f} times {what}; the limit is {most:,.0f}; check the units"
+
+
+def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
+    yield "pin", "pins", table.pin, MOST_PINS
+    yield "case", "cases", table.case, MOST_CASES
+    for name, pin in table.pin.items():
+        yield f"pin.{name}.profile", "segments", pin.profile or (), MOST_PARTS
+        yield f"pin.{name}.meridian", "corners", pin.meridian or (), MOST_PARTS
+        yield f"pin.{name}.bore_meridian", "corners", pin.bore_meridian or (), MOST_PARTS
+        yield f"pin.{name}.hole", "holes", pin.hole, MOST_PARTS
+        yield f"pin.{name}.flat", "flats", pin.flat, MOST_PARTS
+        yield f"pin.{name}.slot", "slots", pin.slot, MOST_PARTS
+        yield f"pin.{name}.passage", "passages", pin.passage, MOST_PARTS
+        yield f"pin.{name}.band", "bands", pin.band, MOST_PARTS
+    for name, case in table.case.items():
+        yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MOST_LOADS
+    if (mechanism := table.mechanism) is not None:
+        yield "mechanism.joint", "joints", mechanism.joint, MOST_BODIES
+        yield "mechanism.body", "bodies", mechanism.body, MOST_BODIES
+        yield "mechanism.slider", "sliders", mechanism.slider, MOST_BODIES
+        yield "mechanism.drive", "drives", mechanism.drive, MOST_BODIES

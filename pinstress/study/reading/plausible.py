@@ -1,0 +1,161 @@
+"""Numbers of a study that can be and are hardly meant: mostly their unit is another one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.shown import shown
+from pinstress.study.schema.tables import StudyTable
+from pinstress.study.schema.units import SYSTEMS, UnitSystem, split, to_si
+
+
+@dataclass(frozen=True)
+class Usual:
+    """What a quantity lies between, in SI, of whose, and near what; and the units in which it is
+    stated, metric and imperial, the first to say it in.
+    """
+
+    dimension: str
+    low: float
+    high: float
+    typical: float
+    whose: str
+    metric: tuple[str, ...]
+    imperial: tuple[str, ...]
+
+
+LENGTHS = ("mm", "m", "cm"), ("in", "ft")
+IMPERIAL_STRESSES = "ksi", "psi", "Msi"
+USUAL = {
+    "modulus": Usual(
+        "stress", 1e9, 1.2e12, 2e11, "a structural material", ("GPa", "MPa", "Pa"),
+        IMPERIAL_STRESSES,
+    ),
+    "strength": Usual(
+        "stress", 1e6, 6e9, 5e8, "a structural material", ("MPa", "GPa", "Pa"), IMPERIAL_STRESSES
+    ),
+    "density": Usual(
+        "density", 1e2, 2.3e4, 7850.0, "a solid material", ("kg/m^3", "g/cm^3", "t/mm^3"),
+        ("lb/in^3", "lb/ft^3"),
+    ),
+    "diameter": Usual("length", 1e-4, 3.0, 0.03, "a pin", *LENGTHS),
+    "length": Usual("length", 1e-5, 10.0, 0.03, "a pin", *LENGTHS),
+    "gravity": Usual(
+        "acceleration", 1.0, 200.0, 9.81, "a machine", ("m/s^2", "mm/s^2"), ("ft/s^2", "in/s^2")
+    ),
+}  # fmt: skip
+MOST_STRAIN = 1.0 / 20.0  # at which a material yields
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A number of the study: a key of USUAL, its own key, its value in SI and as it is written;
+    most: in SI, where less than the usual is plausible.
+    """
+
+    kind: str
+    key: str
+    value: float
+    written: Any
+    most: float = math.inf
+
+    @property
+    def usual(self) -> Usual:
+        """What it usually is."""
+        return USUAL[self.kind]
+
+    def plausible(self, value: float) -> bool:
+        """Whether a value (SI) would be."""
+        return self.usual.low <= value <= min(self.usual.high, self.most)
+
+
+def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
+    """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
+    return tuple(text for each in _numbers(table, raw) if (text := _question(each, system)))
+
+
+def _numbers(table: StudyTable, raw: Any) -> Iterator[Stated]:
+    """Everything that has a usual range."""
+    for name, material in table.material.items():
+        yield from _of_material(f"material.{name}", material, raw["material"][name])
+    for name, pin in table.pin.items():
+        yield from _of_pin(f"pin.{name}", pin, raw["pin"][name])
+    if table.mechanism is not None:
+        if gravity := raw["mechanism"].get("gravity"):
+            x, y = table.mechanism.gravity
+            written = gravity[abs(y) >= abs(x)]
+            yield Stated("gravity", "mechanism.gravity", math.hypot(x, y), written)
+        for name, body in table.mechanism.body.items():
+            if body.bar is not None:
+                written = raw["mechanism"]["body"][name]["bar"]["density"]
+                key = f"mechanism.body.{name}.bar.density"
+                yield Stated("density", key, body.bar.density, written)
+    if table.spatial_leg is not None and "gravity" in raw["spatial_leg"]:
+        written = raw["spatial_leg"]["gravity"]
+        yield Stated("gravity", "spatial_leg.gravity", table.spatial_leg.gravity, written)
+
+
+def _of_material(key: str, material: MaterialTable, raw: dict[str, Any]) -> Iterator[Stated]:
+    E, strength = material.youngs_modulus, material.yield_strength
+    modulus = Stated("modulus", f"{key}.youngs_modulus", E, raw["youngs_modulus"])
+    yield modulus
+    if material.density is not None:
+        yield Stated("density", f"{key}.density", material.density, raw["density"])
+    if strength is not None:
+        most = MOST_STRAIN * E if modulus.plausible(E) else math.inf
+        yield Stated("strength", f"{key}.yield_strength", strength, raw["yield_strength"], most)
+
+
+def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[Stated]:
+    for i, segment in enumerate(pin.profile or ()):
+        at, written = f"{key}.profile[{i + 1}]", raw["profile"][i]
+        yield Stated("length", f"{at}.length", segment.length, written["length"])
+        if not isinstance(segment.diameter, tuple):
+            yield Stated("diameter", f"{at}.diameter", segment.diameter, written["diameter"])
+            continue
+        for k, value in enumerate(segment.diameter):
+            yield Stated("diameter", f"{at}.diameter[{k + 1}]", value, written["diameter"][k])
+
+
+def _question(stated: Stated, system: UnitSystem) -> str:
+    usual = stated.usual
+    if stated.value == 0.0 or stated.plausible(abs(stated.value)):
+        return ""
+    unit, ends = usual.metric[0], (usual.low, min(usual.high, stated.most))
+    one = to_si(f"1 {unit}", usual.dimension, system)
+    if usual.low <= stated.value <= usual.high:  # then the modulus may as well be wrong
+        return (
+            f"{stated.key}: {shown(stated.written)} is {stated.value / one:,.4g} {unit}, more than "
+            f"{MOST_STRAIN:.0%} of youngs_modulus ({stated.most / MOST_STRAIN / one:,.4g} {unit}); "
+            "check the units of both"
+        )
+    is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, *ends))
+    hint = f"; did you mean {likely}?" if (likely := _likely(stated, system)) else ""
+    return (
+        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, but the usual range for "
+        f"{usual.whose} is {low} to {most} {unit}{hint}"
+    )
+
+
+def _likely(stated: Stated, system: UnitSystem) -> str:
+    """The number as it is written with the unit in which it is most usual, if there is one: of the
+    units of its own kind the one nearest to the typical value, else of the others.
+    """
+    found = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
+    if found is None:
+        return ""
+    (number, unit), usual = found, stated.usual
+    kinds = [usual.metric, usual.imperial]
+    if unit in usual.imperial or (not unit and system is SYSTEMS["in-lbf-s"]):
+        kinds.reverse()
+    for units in kinds:
+        values = {u: abs(number) * to_si(f"1 {u}", usual.dimension, system) for u in units}
+        usable = {u: v for u, v in values.items() if stated.plausible(v)}
+        if usable:
+            best = min(usable, key=lambda u: abs(math.log(usable[u] / usual.typical)))
+            return f'"{number:.10g} {best}"'
+    return ""

@@ -1,0 +1,337 @@
+"""References by name within a study: each must exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import partial
+
+from assess.fatigue.flight import flight
+from pinbase.errors import ArgumentError
+from pinstress.study.reading.errors import Wrong
+from pinstress.study.schema.cases import (
+    ApplyTable,
+    GivenCase,
+    InstantCase,
+    LegCase,
+    MotionCase,
+    StaticCase,
+)
+from pinstress.study.schema.fatigue import FatigueTable
+from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase
+from pinstress.study.schema.mechanism import (
+    MechanismTable,
+    RotaryDrive,
+    SliderDrive,
+    drive_name,
+)
+from pinstress.study.schema.pins import MaterialTable
+from pinstress.study.schema.shown import near, shown
+from pinstress.study.schema.tables import StudyTable
+
+
+def cross_references(table: StudyTable) -> Iterator[Wrong]:
+    """References to things that do not exist."""
+    bears: dict[str, str] = {}
+    for name, pin in table.pin.items():
+        yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
+        own = dict.fromkeys(connection for _, connection in pin.connections)
+        own |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
+        own |= dict.fromkeys(pin.band)
+        for connection, lug in pin.lug.items():
+            key = f"pin.{name}.lug.{connection}"
+            yield from _known(key, "connection or segment", connection, own)
+            for at, made_of in (
+                ("material", lug.material),
+                ("bushing.material", None if lug.bushing is None else lug.bushing.material),
+            ):
+                if made_of is not None:
+                    yield from _known(f"{key}.{at}", "material", made_of, table.material)
+        for key, connection in pin.connections:
+            if connection in bears:
+                yield Wrong(
+                    f"pin.{name}.{key}: connection {shown(connection)} already bears on pin "
+                    f"{bears[connection]}; a connection bears on one pin only",
+                    code="duplicate-connection",
+                )
+            bears[connection] = name
+    yield from _of_bearing(table)
+    limited = table.analysis.limit_load
+    for pin_name in limited if isinstance(limited, list) else ():
+        yield from _known("analysis.limit_load", "pin", pin_name, table.pin)
+    yield from _of_cases(table, bears)
+    yield from _of_sequences(table)
+    if table.mechanism is not None:
+        yield from _of_pins(table, table.mechanism, bears)
+        yield from _of_mechanism(table.mechanism)
+        yield from _of_its_cases(table, table.mechanism)
+    if table.fatigue is not None:
+        yield from _of_fatigue(table, table.fatigue)
+    for key, check, pools in (
+        ("beam_check", table.beam_check, (("pin", table.pin), ("case", table.case))),
+        ("motion_check", table.motion_check, (("case", table.case),)),
+    ):
+        for field, pool in pools:
+            if check is not None:
+                yield from _known(f"{key}.{field}", field, getattr(check, field), pool)
+
+
+def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
+    """Bearing strengths with which no pressure is compared: of materials of no pin on which a link
+    bears, and of no lug or bushing.
+    """
+    bears: set[str | None] = set()
+    for pin in table.pin.values():
+        lugs = pin.lug.values()
+        bears |= {lug.material for lug in lugs}
+        bears |= {lug.bushing.material for lug in lugs if lug.bushing is not None}
+        if pin.connections or lugs:
+            bears.add(pin.material)
+    for name, material in table.material.items():
+        if material.bearing_strength is not None and name not in bears:
+            yield Wrong(
+                f"material.{name}.bearing_strength: no lug bears on a pin of this material, and no "
+                "lug or bushing is made of it; give pin.NAME.lug.CONNECTION.material, or remove "
+                "this",
+                code="bearing-strength-without-lug",
+            )
+
+
+def _known(where: str, what: str, name: str, names: Mapping[str, object]) -> Iterator[Wrong]:
+    if name not in names:
+        code = f"unknown-{what.split()[-1]}"
+        yield Wrong(f"{where}: no {what} {shown(name)}; ", partial(near, name, names), code=code)
+
+
+def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
+    for name, case in table.case.items():
+        for pin in case.clamp:
+            yield from _known(f"case.{name}.clamp", "pin", pin, table.pin)
+        if isinstance(case, GivenCase):
+            for key, given in (("forces", case.forces), ("moments", case.moments)):
+                for connection in given or ():
+                    what = "pin has a connection"
+                    yield from _known(f"case.{name}.{key}", what, connection, bears)
+        elif isinstance(case, LegCase):
+            if table.spatial_leg is None:
+                yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")
+        elif table.mechanism is None:
+            yield Wrong(f"case.{name}: kind {case.kind!r} needs a [mechanism]", code="no-mechanism")
+
+
+def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
+    for name, sequence in table.sequence.items():
+        if name in table.case:
+            text = f"sequence.{name}: a case has this name too; rename one"
+            yield Wrong(text, code="duplicate-case")
+        for i, step in enumerate(sequence.steps, 1):
+            where = f"sequence.{name}.steps[{i}]"
+            yield from _known(f"{where}.case", "case", step.case, table.case)
+            case = table.case.get(step.case)
+            if isinstance(case, InstantCase):
+                text = f"{where}.case: an instant of a motion does not last; name the motion"
+                yield Wrong(text, code="not-in-sequences")
+            elif isinstance(case, MotionCase | DropCase | LegCase) and step.duration is not None:
+                text = f"{where}.duration: {shown(step.case)} has its own time; remove this"
+                yield Wrong(text, code="key-not-applicable")
+            elif isinstance(case, StaticCase | GroundCase) and step.duration is None:
+                text = f"{where}: {shown(step.case)} is at rest; give its duration"
+                yield Wrong(text, code="missing-key")
+
+
+METHODS = {"signed-von-mises": "fatigue", "critical-plane": "fatigue", "fkm-p-ram": "fkm"}
+
+
+def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
+    """A spectrum of cases that exist, and data for its method in some material of a pin."""
+    for case in fatigue.occurrences:
+        known = {**table.case, **table.sequence}
+        yield from _known(f"fatigue.occurrences.{case}", "case", case, known)
+    try:
+        flight([*fatigue.occurrences.values()])
+    except ArgumentError as error:
+        yield Wrong(f"fatigue.occurrences: {error}", code=error.code)
+    if fatigue.method == "fkm-p-ram" and (fatigue.failure_probability or 0.0) > 0.5:
+        text = 'fatigue.failure_probability: must be at most 0.5 for method "fkm-p-ram"'
+        yield Wrong(text, code="out-of-range")
+    needs, used = METHODS[fatigue.method], {pin.material for pin in table.pin.values()}
+    given = [name for name in used & table.material.keys() if getattr(table.material[name], needs)]
+    if not given:
+        yield Wrong(
+            f"fatigue.method: {fatigue.method!r} needs material.NAME.{needs} of the material of a "
+            "pin",
+            code="no-fatigue-data",
+        )
+    for name in sorted(given):
+        for key, value in _parameters(table.material[name], fatigue).items():
+            if value is None:
+                yield Wrong(f"material.{name}.{key} is missing", code="missing-key")
+
+
+def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, float | None]:
+    """What else a method needs, by key."""
+    ultimate = {"ultimate_strength": material.ultimate_strength}
+    sn = material.fatigue
+    if fatigue.method == "fkm-p-ram" or sn is None:
+        return ultimate
+    asked = fatigue.failure_probability
+    scattered = asked is not None and asked != sn.failure_probability
+    scatter = {"fatigue.scatter": sn.scatter} if scattered else {}
+    sensitivity = {"fatigue.mean_stress_sensitivity": sn.mean_stress_sensitivity}
+    if fatigue.method == "critical-plane":
+        return sensitivity | scatter
+    walker = {"fatigue.walker_exponent": sn.walker_exponent}
+    rules = {"fkm": sensitivity, "goodman": ultimate, "walker": walker}
+    return rules.get(sn.mean_stress, {}) | scatter
+
+
+def _of_pins(
+    table: StudyTable, mechanism: MechanismTable, bears: dict[str, str]
+) -> Iterator[Wrong]:
+    have = dict.fromkeys(c for joint in mechanism.joint.values() for c in joint.connections)
+    if all(isinstance(case, GivenCase | LegCase) for case in table.case.values()):
+        return
+    for connection, pin in bears.items():
+        if connection not in have:
+            text = f"pin.{pin}: connection {shown(connection)} is not in the mechanism; "
+            yield Wrong(text, partial(near, connection, have), code="unknown-connection")
+
+
+def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
+    """Every key below [mechanism] that names a joint, with the name."""
+    for name, slider in mechanism.slider.items():
+        for joint in slider.joints:
+            if isinstance(joint, str):
+                yield f"slider.{name}.joints", joint
+    for name, body in mechanism.body.items():
+        for joint in body.bar.joints if body.bar is not None else ():
+            yield f"body.{name}.bar.joints", joint
+    for i, drive in enumerate(mechanism.drive, 1):
+        for joint in () if isinstance(drive, SliderDrive) else _lines(drive):
+            yield f"drive[{i}].line" if len(mechanism.drive) > 1 else "drive.line", joint
+    for name, point in mechanism.point.items():
+        if isinstance(point.at, str):
+            yield f"point.{name}.at", point.at
+    for name, spring in mechanism.spring.items():
+        for end in spring.joints or ():
+            if isinstance(end, str):
+                yield f"spring.{name}.joints", end
+    for name, gear in mechanism.gear.items():
+        for joint in gear.joints:
+            yield f"gear.{name}.joints", joint
+    for name, rack in mechanism.rack.items():
+        yield f"rack.{name}.joint", rack.joint
+
+
+def _lines(drive: RotaryDrive) -> tuple[str, ...]:
+    return (drive.line or ()) + (drive.against_line or ())
+
+
+def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
+    bodies = dict.fromkeys(["ground", *mechanism.body])
+    for name, joint in mechanism.joint.items():
+        where = f"mechanism.joint.{name}"
+        if joint.fixed_in is not None:
+            yield from _known(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
+        for connection, body in joint.connections.items():
+            yield from _known(f"{where}.connections.{connection}", "body", body, bodies)
+    for place, named in named_joints(mechanism):
+        yield from _known(f"mechanism.{place}", "joint", named, mechanism.joint)
+    for i, drive in enumerate(mechanism.drive, 1):
+        where = "mechanism.drive" + (f"[{i}]" if len(mechanism.drive) > 1 else "")
+        if isinstance(drive, SliderDrive):
+            yield from _known(f"{where}.slider", "slider", drive.slider, mechanism.slider)
+            continue
+        yield from _known(f"{where}.body", "body", drive.body, bodies)
+        yield from _known(f"{where}.against", "body", drive.against, bodies)
+    for name, spring in mechanism.spring.items():
+        where = f"mechanism.spring.{name}"
+        if spring.slider is not None:
+            yield from _known(f"{where}.slider", "slider", spring.slider, mechanism.slider)
+        yield from _two_bodies(where, spring.bodies, bodies)
+    for name, point in mechanism.point.items():
+        yield from _known(f"mechanism.point.{name}.body", "body", point.body, mechanism.body)
+    for name, stop in mechanism.stop.items():
+        yield from _two_bodies(f"mechanism.stop.{name}", stop.bodies, bodies)
+    for name, gear in mechanism.gear.items():
+        yield from _two_bodies(f"mechanism.gear.{name}", gear.bodies, bodies)
+    for name, rack in mechanism.rack.items():
+        where = f"mechanism.rack.{name}"
+        yield from _known(f"{where}.pinion", "body", rack.pinion, bodies)
+        yield from _known(f"{where}.slider", "slider", rack.slider, mechanism.slider)
+    for name, torsion in mechanism.torsion_spring.items():
+        yield from _two_bodies(f"mechanism.torsion_spring.{name}", torsion.bodies, bodies)
+
+
+def _two_bodies(
+    where: str, pair: tuple[str, str] | None, bodies: Mapping[str, object]
+) -> Iterator[Wrong]:
+    for body in pair or ():
+        yield from _known(f"{where}.bodies", "body", body, bodies)
+    if pair is not None and pair[0] == pair[1]:
+        text = f"{where}.bodies: {shown(pair[0])} twice; name two different bodies"
+        yield Wrong(text, code="same-body")
+
+
+def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wrong]:
+    moves = all(d.moves for d in mechanism.drive)
+    holders = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.slider, *mechanism.stop])
+    for name, case in table.case.items():
+        for each in (case.hold or ()) if isinstance(case, StaticCase) else ():
+            what = "drive, slider or stop"
+            yield from _known(f"case.{name}.hold", what, each, holders)
+        if isinstance(case, MotionCase) and not moves:
+            yield Wrong(
+                f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",
+                code="drive-without-motion",
+            )
+        for i, load in enumerate(getattr(case, "apply", ()), 1):
+            where = f"case.{name}.apply[{i}]"
+            yield from _known(f"{where}.body", "body", load.body, mechanism.body)
+            if isinstance(load.at, str):
+                yield from _known(f"{where}.at", "joint", load.at, mechanism.joint)
+            yield from _of_laws(where, load, mechanism, isinstance(case, MotionCase))
+        if isinstance(case, AtWheel):
+            yield from _of_wheel(f"case.{name}", case, table, mechanism)
+    if (check := table.motion_check) is not None:
+        for field in ("joint", "pivot"):
+            where = f"motion_check.{field}"
+            yield from _known(where, "joint", getattr(check, field), mechanism.joint)
+
+
+def _of_laws(
+    where: str, load: ApplyTable, mechanism: MechanismTable, moves: bool
+) -> Iterator[Wrong]:
+    """Arguments of the tables of a load, and its switches."""
+    positions = {**mechanism.slider, **dict.fromkeys(map(drive_name, mechanism.drive))}
+    timed = [key for key in ("begin", "end") if getattr(load, key) is not None]
+    for key in ("force_law", "couple_law"):
+        law = getattr(load, key)
+        if law is None:
+            continue
+        here = f"{where}.{key}"
+        if law.position_of is not None:
+            what = "drive or slider"
+            yield from _known(f"{here}.position_of", what, law.position_of, positions)
+        for joint in law.length_between or ():
+            yield from _known(f"{here}.length_between", "joint", joint, mechanism.joint)
+        if law.position_of is None and law.length_between is None:
+            timed.append(key)
+    if timed and not moves:
+        yield Wrong(
+            f'{where}.{timed[0]}: depends on time, which only a case of kind "motion" has; for a '
+            "table of another argument give position_of or length_between",
+            code="needs-motion",
+        )
+
+
+def _of_wheel(
+    key: str, case: AtWheel, table: StudyTable, mechanism: MechanismTable
+) -> Iterator[Wrong]:
+    yield from _known(f"{key}.body", "body", case.body, mechanism.body)
+    yield from _known(f"{key}.at", "joint", case.at, mechanism.joint)
+    if isinstance(case, DropCase) and case.strut is not None:
+        slides = {d.slider: d for d in mechanism.drive if isinstance(d, SliderDrive)}
+        yield from _known(f"{key}.strut.drive", "slider drive", case.strut.drive, slides)
+    if isinstance(case, GroundCase) and case.drop is not None:
+        drops = {name: c for name, c in table.case.items() if isinstance(c, DropCase)}
+        yield from _known(f"{key}.drop", "drop case", case.drop, drops)

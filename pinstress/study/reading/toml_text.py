@@ -1,0 +1,73 @@
+"""The TOML of a study file, read in a time that is proportional to its length.
+
+tomllib takes minutes and gigabytes for a key of ten thousand parts, so such text, which no study
+needs, is refused by its tokens before tomllib reads it.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.toml_lines import TOKEN
+from pinstress.study.schema.shown import cut
+
+DEEPEST = 50  # tables and arrays inside each other, or parts of a dotted key
+LONGEST_WORD = 1000  # characters of a number or of a key without quotes
+
+
+def read_toml(path: Path, text: str) -> dict[str, Any]:
+    """The content of a text. Raises: InputError with the line."""
+    _require_moderate(path, text)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        place = re.search(r"at line (\d+)", str(error))
+        line = int(place[1]) if place else text.rstrip().count("\n") + 1  # "at end of document"
+        raise InputError(f"{path}:{line}: not valid TOML: {error}", code="not-toml") from None
+
+
+def _require_moderate(path: Path, text: str) -> None:
+    """Raises: InputError for tables nested too deeply and for words too long."""
+    line, at = 1, 0
+    open_: list[int] = [0]  # by bracket that is open, outermost first: dots of the key before it
+    depth = 0  # brackets and dots together
+    for match in TOKEN.finditer(text):
+        token = match[0]
+        line += text.count("\n", at, match.start())
+        at = match.start()
+        if token in "[{":
+            open_.append(0)
+            depth += 1
+        elif token in "]}":
+            if len(open_) > 1:
+                depth -= 1 + open_.pop()
+        elif token in ",\n":
+            depth -= open_[-1]
+            open_[-1] = 0
+        elif token == ".":
+            open_[-1] += 1
+            depth += 1
+        elif len(token) > LONGEST_WORD and token[0] not in "\"'#":
+            raise InputError(
+                f"{path}:{line}: not valid TOML: {_too_long(text, match)}", code="not-toml"
+            )
+        if depth > DEEPEST:
+            raise InputError(
+                f"{path}:{line}: not valid TOML: brackets or dots more than {DEEPEST} deep",
+                code="not-toml",
+            )
+
+
+def _too_long(text: str, word: re.Match[str]) -> str:
+    number = word[0][0] in "+-0123456789"
+    whole = "." not in (text[word.start() - 1 : word.start()], text[word.end() : word.end() + 1])
+    what = (
+        f"a {'whole ' * whole}number with too many digits" if number else "a key that is too long"
+    )
+    return (
+        f"{what}, {cut(word[0], 40)!r} ({len(word[0]):,} characters; the limit is {LONGEST_WORD:,})"
+    )

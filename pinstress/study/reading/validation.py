@@ -1,0 +1,85 @@
+"""What pydantic finds wrong with a study, in our words: none of its own reach a user."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from pydantic import ValidationError
+
+from pinstress.study.reading.errors import Wrong
+from pinstress.study.schema.shown import in_toml
+from pinstress.study.schema.types import UNKNOWN_KEY, hint_for_key
+
+# By pydantic's type of error: our code, and what would be right. Its other types need a field of a
+# type that no table has; a test feeds every kind of mistake to every key.
+RIGHT = {
+    "missing": ("missing-key", "is missing"),
+    "string_type": ("not-a-text", "must be a text in quotes"),
+    "string_too_long": ("too-long", "must have at most {max_length} characters"),
+    "bool_type": ("not-true-or-false", "must be true or false, without quotes"),
+    "int_type": ("not-a-whole-number", "must be a whole number"),
+    "int_from_float": ("not-a-whole-number", "must be a whole number"),
+    "int_parsing_size": ("not-a-whole-number", "must be a smaller whole number"),
+    "float_type": ("not-a-number", "must be a number without a unit or quotes"),
+    "finite_number": ("not-finite", "must be a finite number"),
+    "greater_than": ("out-of-range", "must be greater than {gt:g}"),
+    "greater_than_equal": ("out-of-range", "must be at least {ge:g}"),
+    "less_than": ("out-of-range", "must be less than {lt:g}"),
+    "less_than_equal": ("out-of-range", "must be at most {le:,}"),
+    "literal_error": ("not-a-choice", "must be {expected}"),
+    "list_type": ("not-a-list", "must be a list in brackets: [a, b, ...]"),
+    "tuple_type": ("not-a-list", "must be a list in brackets: [a, b]"),
+    "too_short": ("list-too-short", "must have at least {min_length}"),
+    "too_long": ("list-too-long", "must have at most {max_length}"),
+    "dict_type": ("not-a-table", "must be a table: {{ key = value, ... }}"),
+    "model_type": ("not-a-table", "must be a table: {{ key = value, ... }}"),
+    "model_attributes_type": ("not-a-table", "must be a table: {{ key = value, ... }}"),
+    "union_tag_not_found": ("missing-key", 'is missing; write for instance kind = "given"'),
+    "union_tag_invalid": ("not-a-choice", "must be one of {expected_tags}"),
+}
+OTHERWISE = ("not-valid", "cannot have this value")
+
+
+def explain(error: ValidationError) -> list[Wrong]:
+    """Everything that is wrong, each with its key."""
+    return [_explained(dict(item)) for item in error.errors(include_url=False)]
+
+
+def _explained(item: dict[str, Any]) -> Wrong:
+    kind, context, value = item["type"], item.get("ctx", {}), item.get("input")
+    key = _key(item["loc"], kind)
+    hint: Callable[[], str] = str
+    if kind == UNKNOWN_KEY:
+        code, message = "unknown-key", item["msg"]
+        hint = partial(hint_for_key, context["key"], context["known"])
+    elif kind == "value_error":
+        mistake = context["error"]
+        code, message = getattr(mistake, "code", ""), str(mistake)
+    else:
+        code, right = RIGHT.get(kind, OTHERWISE)
+        message = right.format(**context) + _found(kind, context, value)
+    return Wrong(f"{key}: {message}" if key else message, hint, code=code)
+
+
+def _key(loc: tuple[int | str, ...], kind: str) -> str:
+    """The key in the file, as messages spell it: without the tags that pydantic adds for unions."""
+    key = ""
+    for i, part in enumerate(loc):
+        if str(part).startswith(("<", "[key]")) or (i == 2 and loc[0] == "case"):
+            continue
+        key += f"[{part + 1}]" if isinstance(part, int) else f"{'.' if key else ''}{part}"
+    return f"{key}.kind" if kind.startswith("union_tag") else key
+
+
+def _found(kind: str, context: dict[str, Any], value: object) -> str:
+    """What is there instead."""
+    if kind in ("too_short", "too_long"):
+        most = context.get("min_length", context.get("max_length"))
+        what = "entry" if context["field_type"] == "Dictionary" else "element"
+        many = "entries" if what == "entry" else "elements"
+        return f" {what if most == 1 else many}, not {context['actual_length']}"
+    if kind == "union_tag_invalid":
+        return f", not {in_toml(value['kind'])}" if isinstance(value, dict) else ""
+    return "" if kind in ("missing", "union_tag_not_found") else f", not {in_toml(value)}"

@@ -1,0 +1,241 @@
+"""The study file's form: cases, what loads the pins."""
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.forces import ForceLawTable
+from pinstress.study.schema.types import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Acceleration,
+    Coordinate,
+    Duration,
+    Force,
+    JointOrPoint,
+    Mass,
+    Moment,
+    Number,
+    StrictTable,
+    Switch,
+    Time,
+    Velocity,
+    Weight,
+    Whole,
+)
+
+
+class CaseTable(StrictTable):
+    """Keys of all cases."""
+
+    distribution: Literal["uniform", "cosine"] = "uniform"
+    """Distribution of a transverse force over its band: "uniform", a traction of constant
+    direction, or "cosine", a bearing pressure on the loaded half."""
+    clamp: dict[str, list[str]] = {}
+    """Pins that are clamped differently in this case, each with its clamped surfaces."""
+
+
+class GivenCase(CaseTable):
+    """Stated forces and moments on pins, or a table of them."""
+
+    kind: Literal["given"]
+    """Kind of case."""
+    forces: dict[str, Annotated[list[Force], Field(min_length=2, max_length=3)]] | None = None
+    """Force on the pin at each connection, in pin axes x, y (and z, along the pin)."""
+    moments: dict[str, Annotated[list[Moment], Field(min_length=2, max_length=3)]] | None = None
+    """Moment on the pin at each connection, about x, y (and z) through the middle of the band."""
+    table: str | None = None
+    """File in the study's folder, instead of `forces` and `moments`; a sweep if it has times. Its
+    columns are connection,fx,fy[,fz][,mx,my,mz][,time][,case], or one per component, as B.fx,B.fy
+    for connection B; units in brackets: fx [kN]. Separated by commas, or by semicolons or tabs,
+    then also with decimal commas; # begins a comment."""
+    table_case: str | None = None
+    """Which rows of a table with a column `case`; by default those with the name of this case."""
+    columns: dict[str, str | int] = {}
+    """Columns of a table of another program: by our name the header, or the number from 1 where the
+    table has no header; with a minus before it where the sign is the opposite."""
+    labels: dict[str, str | int] = {}
+    """What the connections are called in the table's column `connection`; others are skipped."""
+    time_step: Annotated[Duration, POSITIVE] | None = None
+    """Time between the rows of one connection, where the table has no times."""
+    table_units: Literal["in-lbf-s", "mm-N-s", "m-N-s"] | None = None
+    """System of units of the table's numbers, by default the study's."""
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "GivenCase":
+        stated = {"forces": self.forces, "moments": self.moments}
+        if (self.forces is None and self.moments is None) == (self.table is None):
+            raise ArgumentError(
+                'give either forces = { ... }, moments = { ... } or both, or table = "file.csv"',
+                "give-one",
+            )
+        of_table: dict[str, object] = {
+            "table_case": self.table_case,
+            "columns": self.columns,
+            "labels": self.labels,
+            "time_step": self.time_step,
+            "table_units": self.table_units,
+        }
+        for key, value in of_table.items():
+            if value and self.table is None:
+                raise ArgumentError(f'{key} describes a table; give table = "file.csv"', "no-table")
+        for key, given in stated.items():
+            if given is not None and not given:
+                raise ArgumentError(f"{key} is empty; give at least one connection", "empty")
+        return self
+
+
+Pulse = Literal["rectangular", "half-sine", "triangular"]
+
+
+class ImpulseRange(StrictTable):
+    """Other values of the impulse, of which none is known better: the safety factor is computed for
+    all combinations, and a pin is safe only if it meets its factor in all of them.
+    """
+
+    impulse_time: Annotated[list[Duration], Field(min_length=1)]
+    """Durations of the impulse."""
+    velocity_change: Annotated[list[Annotated[Velocity, POSITIVE]], Field(min_length=1)]
+    """Velocity changes."""
+    pulse: Annotated[list[Pulse], Field(min_length=1)] | None = None
+    """Shapes of the pulse. Default: that of the impulse."""
+
+
+class ImpulseTable(StrictTable):
+    """A landing force from an impulse: mass times velocity change over time, times the peak of the
+    pulse over its mean.
+    """
+
+    weight: Weight | None = None
+    """Weight of the body that is stopped. Give either `weight` or `mass`."""
+    gravity: Annotated[
+        Acceleration, POSITIVE, Field(json_schema_extra={"default": "9.80665 m/s^2"})
+    ] = 9.80665
+    """Converts the weight to a mass."""
+    mass: Mass | None = None
+    """Mass of the body that is stopped."""
+    velocity_change: Annotated[Velocity, POSITIVE]
+    """Change of velocity."""
+    impulse_time: Duration
+    """Duration of the impulse."""
+    pulse: Pulse = "rectangular"
+    """Shape of the pulse; its ratio of peak to mean is 1, pi/2 or 2."""
+    direction: tuple[Number, Number]
+    """Direction of the force in world axes; a vector of any length except 0."""
+    range: ImpulseRange | None = None
+    """Range of values; for one impulse per case."""
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> "ImpulseTable":
+        if (self.mass is None) == (self.weight is None):
+            raise ArgumentError("give either mass or weight (with gravity)", "give-one")
+        if not any(self.direction):
+            raise ArgumentError("direction must not be zero", "no-direction")
+        return self
+
+
+class ApplyTable(StrictTable):
+    """A load on a body: a force or an impulse, a couple, or both."""
+
+    body: str
+    """Name of a body of the mechanism."""
+    at: JointOrPoint | None = None
+    """Point of application: a joint, or [x, y] in the drawn position. Default: the centre of
+    mass."""
+    force: tuple[Force, Force] | None = None
+    """Force in world axes, in the drawn position."""
+    force_law: ForceLawTable | None = None
+    """Force along `direction` by a table, instead of `force`."""
+    direction: tuple[Number, Number] | None = None
+    """Direction of the force of `force_law` in the drawn position; a vector of any length except
+    0."""
+    couple: Moment = 0.0
+    """Couple, positive counter-clockwise."""
+    couple_law: ForceLawTable | None = None
+    """Couple by a table, instead of `couple`."""
+    follows: Switch = False
+    """Whether the force rotates with the body; otherwise its direction is constant in world
+    axes."""
+    impulse: ImpulseTable | None = None
+    """A force estimated from an impulse, instead of `force`."""
+    begin: Annotated[Time, NOT_NEGATIVE] | None = None
+    """Time from which the load acts, in a motion. Default: from its start."""
+    end: Annotated[Time, POSITIVE] | None = None
+    """Time until which it acts. Default: to the end of the motion."""
+
+    @model_validator(mode="after")
+    def _one_force(self) -> "ApplyTable":
+        forces = sum(x is not None for x in (self.force, self.impulse, self.force_law))
+        couples = bool(self.couple) + (self.couple_law is not None)
+        if forces > 1 or couples > 1 or not forces + couples:
+            raise ArgumentError(
+                "give one of force = [fx, fy], impulse = { ... } and force_law = { ... }, or one "
+                "of couple and couple_law = { ... }, or one of each",
+                "give-one",
+            )
+        if (self.force_law is None) != (self.direction is None) or self.direction == (0.0, 0.0):
+            raise ArgumentError(
+                "force_law and direction = [x, y], not zero, must be given together", "give-both"
+            )
+        if self.end is not None and self.end <= (self.begin or 0.0):
+            raise ArgumentError("end must be later than begin", "out-of-range")
+        return self
+
+
+class MechanismCase(CaseTable):
+    """Keys of all cases of a mechanism."""
+
+    apply: list[ApplyTable] = []
+    """Loads on the bodies."""
+
+
+class MotionCase(MechanismCase):
+    """The mechanism driven from the start of its drives to the end."""
+
+    kind: Literal["motion"]
+    """Kind of case."""
+    samples: Annotated[Whole, Field(ge=2, le=100_001)] = 201
+    """Number of equally spaced instants."""
+
+
+Coordinates = Annotated[
+    Annotated[Coordinate, Tag("<one>")] | Annotated[dict[str, Coordinate], Tag("<by drive>")],
+    Discriminator(lambda value: "<by drive>" if isinstance(value, dict) else "<one>"),
+]
+
+
+class StaticCase(MechanismCase):
+    """The mechanism at rest, under gravity and applied loads."""
+
+    kind: Literal["static"]
+    """Kind of case."""
+    position: Coordinates | None = None
+    """Position of the drive, a length or an angle with its unit; for several drives, a table by
+    drive. Default: as drawn."""
+    hold: Annotated[list[str], Field(min_length=1)] | None = None
+    """Names of the drives, sliders and stops that hold the mechanism in this case. Default: the
+    drives."""
+
+
+class InstantCase(MechanismCase):
+    """One instant of a motion."""
+
+    kind: Literal["instant"]
+    """Kind of case."""
+    position: Coordinates | None = None
+    """Position of the drive, a length or an angle with its unit; for several drives, a table by
+    drive. Default: as drawn."""
+    velocity: Coordinates = 0.0
+    """Velocity of the drive, or a table by drive."""
+    acceleration: Coordinates = 0.0
+    """Acceleration of the drive, or a table by drive."""
+
+
+class LegCase(CaseTable):
+    """The leg in space while it folds."""
+
+    kind: Literal["spatial_leg"]
+    """Kind of case."""
+    samples: Annotated[Whole, Field(ge=2, le=100_001)] = 201
+    """Number of equally spaced instants."""

@@ -1,0 +1,84 @@
+"""The study file's form: gears and racks."""
+
+import math
+from typing import Annotated
+
+from pydantic import AfterValidator, Field, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.forces import require_one
+from pinstress.study.schema.types import Angle, PositiveLength, Side, StrictTable, Switch, Whole
+
+Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth
+STANDARD_ANGLE = math.radians(20.0)
+
+
+def _below_45(value: float) -> float:
+    if not 0.0 <= value <= math.radians(45.0):
+        raise ArgumentError("must be between 0 and 45 deg", "out-of-range")
+    return value
+
+
+PressureAngle = Annotated[
+    Angle, AfterValidator(_below_45), Field(json_schema_extra={"default": "20 deg"})
+]
+
+
+class GearTable(StrictTable):
+    """Two bodies whose teeth mesh, each turning on a joint that a third body, the carrier, shares
+    with it.
+    """
+
+    bodies: tuple[str, str]
+    """The two that mesh; one may be "ground", a ring that stands."""
+    joints: tuple[str, str]
+    """The joint at the centre of each. What is on both joints is the carrier: the ground, or the
+    arm of a planetary train."""
+    teeth: tuple[Count, Count] | None = None
+    """Numbers of teeth. Give either `teeth` or `radii`."""
+    radii: tuple[PositiveLength, PositiveLength] | None = None
+    """Radii of the pitch circles, which must touch."""
+    module: PositiveLength | None = None
+    """Module of the teeth; only checks that the centres are as far apart as it says."""
+    internal: Switch = False
+    """Whether the larger one is a ring with its teeth inside."""
+    pressure_angle: PressureAngle = STANDARD_ANGLE
+    """Pressure angle at the pitch circles. The teeth push each other apart with its tangent times
+    the force along the pitch circle, on whichever flank they touch."""
+
+    @model_validator(mode="after")
+    def _one_size(self) -> "GearTable":
+        require_one("either teeth or radii", self.teeth, self.radii)
+        if self.module is not None and self.teeth is None:
+            raise ArgumentError("module needs teeth", "give-both")
+        return self
+
+
+class RackTable(StrictTable):
+    """A gear and a rack: one of the two bodies of a slider is the rack, the other has the joint on
+    which the gear turns.
+    """
+
+    pinion: str
+    """The body that is the gear."""
+    joint: str
+    """The joint at its centre."""
+    slider: str
+    """The slider that guides the rack on the body with that joint, or that body on the rack."""
+    side: Side
+    """On which side of the gear's centre the rack is, looking along the slider's direction."""
+    radius: PositiveLength | None = None
+    """Radius of the pitch circle. Give either `radius`, or `teeth` and `module`."""
+    teeth: Count | None = None
+    """Number of teeth of the gear."""
+    module: PositiveLength | None = None
+    """Module of the teeth."""
+    pressure_angle: PressureAngle = STANDARD_ANGLE
+    """Pressure angle."""
+
+    @model_validator(mode="after")
+    def _one_size(self) -> "RackTable":
+        require_one("either radius, or teeth and module", self.radius, self.teeth)
+        if (self.teeth is None) != (self.module is None):
+            raise ArgumentError("teeth and module must be given together", "give-both")
+        return self

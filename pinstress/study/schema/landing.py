@@ -1,0 +1,235 @@
+"""The study file's form: a landing as a drop, and ground loads by rule."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.cases import CaseTable, Coordinates
+from pinstress.study.schema.types import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Density,
+    Duration,
+    Force,
+    Inertia,
+    Length,
+    Mass,
+    Number,
+    Quantity,
+    Stress,
+    StrictTable,
+    Velocity,
+    Weight,
+    Whole,
+)
+
+Positive = Annotated[Length, POSITIVE]
+Area = Annotated[Annotated[float, Quantity("area")], POSITIVE]
+Volume = Annotated[Annotated[float, Quantity("volume")], POSITIVE]
+Stiffness = Annotated[Annotated[float, Quantity("stiffness")], POSITIVE]
+Pressure = Annotated[Annotated[float, Quantity("stress")], NOT_NEGATIVE]
+
+
+class GasTable(StrictTable):
+    """The gas of a strut: A ((p + b) (v0 / (v0 - A s))^n - b) at stroke s."""
+
+    pressure: Stress
+    """Pressure p of the extended strut above ambient."""
+    volume: Volume
+    """Gas volume v0 of the extended strut."""
+    area: Area
+    """Area A on which the gas acts."""
+    exponent: Annotated[Number, Field(ge=1.0, le=2.0)] = 1.1
+    """Polytropic exponent n: 1 isothermal, 1.4 adiabatic."""
+    ambient: Pressure = 0.0
+    """Ambient pressure b. Default: 0, for which p is the gauge pressure throughout, as in NACA TR
+    1154."""
+
+
+class SpringTable(StrictTable):
+    """A leaf or a coil instead of gas."""
+
+    stiffness: Stiffness
+    """Force per stroke."""
+    preload: Weight = 0.0
+    """Force of the extended strut."""
+
+
+class OilTable(StrictTable):
+    """An orifice: rho A_h^3 / (2 (Cd A_n)^2) times the square of the strut's speed."""
+
+    density: Density
+    """Density rho of the oil."""
+    area: Area
+    """Hydraulic area A_h."""
+    orifice: Area
+    """Area A_n of the orifice."""
+    discharge: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.9
+    """Discharge coefficient Cd."""
+    rebound: Area | None = None
+    """Area of the orifice while the strut extends. Default: the same."""
+
+
+class StrutTable(StrictTable):
+    """A shock strut."""
+
+    drive: str
+    """Name of the slider's drive in the mechanism that shortens by the stroke."""
+    stroke: Positive
+    """Stroke at which the strut bottoms."""
+    gas: GasTable | None = None
+    """Gas spring. Give either `gas` or `spring`."""
+    spring: SpringTable | None = None
+    """Linear spring."""
+    oil: OilTable | None = None
+    """Damping. Default: none."""
+    friction: Weight = 0.0
+    """Friction of bearings and seals, a constant force."""
+
+    @model_validator(mode="after")
+    def _one_spring(self) -> "StrutTable":
+        if (self.gas is None) == (self.spring is None):
+            raise ArgumentError("give either gas or spring", "give-one")
+        return self
+
+
+class TyreTable(StrictTable):
+    """Vertical force of a tyre over its deflection: a table, or a power law through one point."""
+
+    deflection: Annotated[list[Length], Field(max_length=1000)] | None = None
+    """Deflections of a table, from 0 on. Give either `deflection` and `force` or `at`."""
+    force: Annotated[list[Force], Field(max_length=1000)] | None = None
+    """Forces at these deflections, from 0 on."""
+    at: tuple[Positive, Annotated[Force, POSITIVE]] | None = None
+    """A deflection and the force there, of a power law."""
+    exponent: Annotated[Number, Field(ge=0.5, le=3.0)] = 1.0
+    """Exponent of the power law."""
+    damping: Annotated[Number, Field(ge=0.0, le=100.0)] = 0.0
+    """By which part the force grows with the speed of deflection, s/m."""
+
+    @model_validator(mode="after")
+    def _one_law(self) -> "TyreTable":
+        if (self.deflection is None) != (self.force is None):
+            raise ArgumentError("give both deflection and force", "give-both")
+        if (self.deflection is None) == (self.at is None):
+            raise ArgumentError(
+                "give either deflection = [...] and force = [...] or at = [deflection, force]",
+                "give-one",
+            )
+        if len(self.deflection or ()) != len(self.force or ()):
+            raise ArgumentError("give one force for each deflection", "lengths-differ")
+        return self
+
+
+class WheelTable(StrictTable):
+    """A wheel that does not turn before it touches: spin-up and spring-back."""
+
+    inertia: Annotated[Inertia, POSITIVE]
+    """Moment of inertia about the axle."""
+    radius: Positive
+    """Rolling radius of the loaded tyre."""
+    speed: Annotated[Velocity, POSITIVE]
+    """Speed over ground."""
+    friction: Annotated[Number, Field(gt=0.0, le=2.0)] = 0.8
+    """Coefficient of sliding friction; 14 CFR requires no more than 0.8."""
+    stiffness: Stiffness | None = None
+    """Fore-and-aft stiffness of the leg at the axle. Default: rigid, without spring-back."""
+    mass: Mass | None = None
+    """Mass that moves fore and aft with the axle. Default: the unsprung mass of the case."""
+    damping: Annotated[Number, Field(ge=0.0, lt=1.0)] = 0.0
+    """Damping of that bending, ratio to critical."""
+
+
+class AtWheel(CaseTable):
+    """Keys of cases in which the ground pushes on a wheel."""
+
+    body: str
+    """Body on which the ground pushes."""
+    at: str
+    """Joint at the axle, where the forces act."""
+    forward: Literal["left", "right"] = "left"
+    """Direction of travel, with gravity downwards."""
+    position: Coordinates | None = None
+    """Position of the drives, of a strut extended; as in a static case."""
+
+
+class DropCase(AtWheel):
+    """A landing as a drop of one leg: two masses, strut, tyre and wheel."""
+
+    kind: Literal["drop"]
+    """Kind of case."""
+    rule: (
+        Literal[
+            "25.473-landing-weight", "25.473-take-off-weight", "25.723-reserve-energy", "23.473"
+        ]
+        | None
+    ) = None
+    """Section of 14 CFR, from which the velocity and the lift follow if they are not given."""
+    weight: Weight | None = None
+    """Weight on this leg, the unsprung part included. Give either `weight` or `mass`."""
+    mass: Mass | None = None
+    """Mass on this leg, the unsprung part included."""
+    unsprung: Annotated[Mass, POSITIVE] | None = None
+    """Mass below the strut: wheel, tyre, axle, piston. Default: that of the mechanism, whose bodies
+    have as much kinetic energy while the strut closes as this mass at the axle. Without a strut it
+    must be given."""
+    velocity: Annotated[Velocity, POSITIVE] | None = None
+    """Velocity of descent. Default: that of the rule."""
+    wing_loading: Stress | None = None
+    """Weight of the aircraft over the area of its wing, for rule "23.473"."""
+    lift: Annotated[Number, Field(ge=0.0, le=1.0)] | None = None
+    """Lift over weight. Default: the most that the rule allows; 0 without a rule."""
+    strut: StrutTable | None = None
+    """Shock strut. Default: none, a rigid leg."""
+    tyre: TyreTable
+    """Tyre."""
+    wheel: WheelTable | None = None
+    """Wheel, for spin-up and spring-back. Default: no drag."""
+    duration: Duration = 0.5
+    """Time from touch-down to the end of the case."""
+    samples: Annotated[Whole, Field(ge=2, le=100_001)] = 201
+    """Number of equally spaced instants."""
+    impulse_time: Duration = 0.15
+    """Time of the impulse estimate with which the drop is compared."""
+
+    @model_validator(mode="after")
+    def _complete_drop(self) -> "DropCase":
+        if (self.mass is None) == (self.weight is None):
+            raise ArgumentError("give either mass or weight", "give-one")
+        if self.rule is None and self.velocity is None:
+            raise ArgumentError("give velocity, or a rule that prescribes it", "no-velocity")
+        return self
+
+
+class GroundCase(AtWheel):
+    """Loads on a wheel that 14 CFR prescribes as parts of a reference load; the leg at rest."""
+
+    kind: Literal["ground"]
+    """Kind of case."""
+    rule: Literal[
+        "25.479-drag",
+        "25.479-drift",
+        "23.479-drag",
+        "23.499-aft",
+        "23.499-forward",
+        "23.499-side",
+    ]
+    """Section of 14 CFR."""
+    reference: Annotated[Force, POSITIVE] | None = None
+    """The largest vertical reaction (25.479, 23.479), or the static load (23.499). Give
+    either `reference` or, for the former, `drop`."""
+    drop: str | None = None
+    """A case of kind "drop", whose largest vertical reaction is the reference, with its strut as at
+    that instant; for 25.479-drift at 75 % of its stroke then."""
+
+    @model_validator(mode="after")
+    def _one_reference(self) -> "GroundCase":
+        if (self.reference is None) == (self.drop is None):
+            raise ArgumentError("give either reference or drop", "give-one")
+        if self.drop is not None and self.rule.startswith("23.499"):
+            raise ArgumentError(
+                f"rule {self.rule} refers to the static load on the wheel: give reference",
+                "key-not-applicable",
+            )
+        return self

@@ -1,0 +1,355 @@
+"""The study file's form: the mechanism."""
+
+import math
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.forces import LineSpringTable, TorsionSpringTable, require_one
+from pinstress.study.schema.gears import GearTable, RackTable
+from pinstress.study.schema.types import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Acceleration,
+    Angle,
+    Density,
+    Duration,
+    Inertia,
+    JointOrPoint,
+    Length,
+    Mass,
+    Number,
+    Point,
+    PositiveLength,
+    Side,
+    StrictTable,
+    Time,
+    Weight,
+)
+
+
+class Polar(StrictTable):
+    """A point at a distance from a joint, in a direction counter-clockwise from x."""
+
+    origin: str
+    """A joint."""
+    distance: PositiveLength
+    """Distance from the joint."""
+    angle: Angle
+    """Counter-clockwise from x."""
+
+
+class Dyad(StrictTable):
+    """A point at distances from two joints, on one side of the line from the first to the second:
+    the two sides are the two branches (open and crossed) in which a four-bar can be assembled.
+    """
+
+    origins: tuple[str, str]
+    """The two joints."""
+    distances: tuple[PositiveLength, PositiveLength]
+    """Distances from the first and the second joint."""
+    side: Side
+    """Side of the line from the first joint to the second."""
+
+
+def _way_of_placing(value: object) -> str:
+    if isinstance(value, dict):
+        return "<dyad>" if "origins" in value else "<polar>"
+    return "<point>"
+
+
+Place = Annotated[
+    Annotated[Point, Tag("<point>")]
+    | Annotated[Polar, Tag("<polar>")]
+    | Annotated[Dyad, Tag("<dyad>")],
+    Discriminator(_way_of_placing),
+]
+
+
+class JointTable(StrictTable):
+    """A pin of the mechanism as drawn, and the body on each of its connections."""
+
+    at: Place
+    """Position in the drawing: [x, y], { origin, distance, angle } or { origins, distances, side
+    }."""
+    connections: Annotated[dict[str, str], Field(min_length=1)]
+    """For each connection, the body that turns on the pin. Names of connections are unique in the
+    study."""
+    fixed_in: str | None = None
+    """The body that carries the pin, or "ground". Default: none, a floating pin."""
+    weight: Weight | None = None
+    """Weight of a floating pin. Default: the weight of its profile."""
+    friction: Annotated[Number, Field(ge=0.0, le=10.0)] | None = None
+    """Coefficient of Coulomb friction between the pin and the bodies that turn on it; needs
+    `diameter` and `fixed_in`."""
+    diameter: PositiveLength | None = None
+    """Diameter of the pin, for friction."""
+
+    @model_validator(mode="after")
+    def _with_diameter(self) -> "JointTable":
+        if (self.friction is None) != (self.diameter is None):
+            raise ArgumentError("friction and diameter must be given together", "give-both")
+        return self
+
+
+class BarTable(StrictTable):
+    """A uniform straight bar between two joints, round or rectangular."""
+
+    joints: tuple[str, str]
+    """The joints at its ends."""
+    diameter: PositiveLength | None = None
+    """Diameter of a round bar. Give either `diameter` or `section`."""
+    section: tuple[PositiveLength, PositiveLength] | None = None
+    """Section of a rectangular bar: [depth in the plane, width across it]."""
+    density: Density
+    """Density of the material."""
+
+    @model_validator(mode="after")
+    def _one_section(self) -> "BarTable":
+        if (self.diameter is None) == (self.section is None):
+            raise ArgumentError("give either diameter or section = [depth, width]", "give-one")
+        return self
+
+
+class BodyTable(StrictTable):
+    """A rigid body."""
+
+    weight: Weight | None = None
+    """Weight. Give one of `weight`, `mass` or `bar`."""
+    mass: Mass | None = None
+    """Mass."""
+    bar: BarTable | None = None
+    """A uniform straight bar, which determines mass, centre and inertia."""
+    centre: Point | None = None
+    """Centre of mass in the drawn position. Default: midway between the joints, if there are
+    two."""
+    inertia: Inertia | None = None
+    """Moment of inertia about the centre of mass. Default: that of the bar; without a bar the body
+    is a particle, which has one connection or slides on the ground."""
+
+    @model_validator(mode="after")
+    def _one_mass(self) -> "BodyTable":
+        if sum(x is not None for x in (self.mass, self.weight, self.bar)) != 1:
+            raise ArgumentError("give one of weight, mass or bar", "give-one")
+        if self.bar is not None and self.centre is not None:
+            raise ArgumentError(
+                "centre cannot be used with bar, whose centre is its middle; give mass or weight "
+                "instead",
+                "key-not-applicable",
+            )
+        return self
+
+
+class SliderTable(StrictTable):
+    """One body sliding on another, or on the ground, without turning on it."""
+
+    bodies: tuple[str, str]
+    """[base, moving]; the base may be "ground"."""
+    joints: tuple[JointOrPoint, JointOrPoint]
+    """A point of the base and one of the moving body, each a joint or [x, y]. Their distance along
+    the direction is the length of the slider."""
+    direction: tuple[Number, Number] | None = None
+    """Direction of the axis in the drawing; it rotates with the base. Default: from the first point
+    to the second."""
+    friction: Annotated[Number, Field(ge=0.0, le=10.0)] = 0.0
+    """Coefficient of Coulomb friction."""
+    bearing: Annotated[Length, POSITIVE] | None = None
+    """Distance between the two pads that carry the couple, centred on the second point. Default:
+    the couple is carried without friction."""
+
+    @field_validator("direction")
+    @classmethod
+    def _not_zero(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
+        if value is not None and not any(value):
+            raise ArgumentError("must not be zero", "no-direction")
+        return value
+
+
+class LawTable(StrictTable):
+    """Keys of all laws of motion: from start to end in `duration`, or a table. Without either the
+    drive can only be used by cases that give its position.
+    """
+
+    name: str | None = None
+    """Name of the drive. Default: the name of its slider or body."""
+    law: Literal["cosine", "cycloidal", "constant", "table"] = "cosine"
+    """Law of motion: "cosine" (zero velocity at both ends), "cycloidal" (also zero acceleration),
+    "constant" (speed), or "table"."""
+    duration: Duration | None = None
+    """Time from start to end."""
+    begin: Annotated[Time, NOT_NEGATIVE] = 0.0
+    """Time at which the motion starts."""
+    table: str | None = None
+    """CSV file in the study's folder for `law = "table"`, with the columns time,position (or
+    position_deg)[,velocity,acceleration]."""
+
+    @model_validator(mode="after")
+    def _course(self) -> "LawTable":
+        course = [getattr(self, key, None) for key in ("start", "end", "duration")]
+        if self.law == "table":
+            if self.table is None or any(v is not None for v in course):
+                raise ArgumentError(
+                    'law = "table" needs table = "file.csv", without start, end and duration',
+                    "law-and-keys",
+                )
+        elif self.table is not None:
+            raise ArgumentError(f'table needs law = "table", not {self.law!r}', "law-and-keys")
+        elif len({v is None for v in course}) > 1:
+            raise ArgumentError(f"law {self.law!r} needs start, end and duration", "law-and-keys")
+        return self
+
+    @property
+    def moves(self) -> bool:
+        """Whether a course is given."""
+        return self.table is not None or self.duration is not None
+
+
+class SliderDrive(LawTable):
+    """A drive of a slider's length (hydraulic piston, screw)."""
+
+    slider: str
+    """The driven slider."""
+    start: Length | None = None
+    """Length at the start."""
+    end: Length | None = None
+    """Length at the end."""
+    position_offset: Length = 0.0
+    """Offset that plots subtract from the length."""
+
+
+MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
+
+
+class RotaryDrive(LawTable):
+    """A drive of a body's angle: the direction of a line between two of its joints,
+    counter-clockwise from x or, for a drive between two bodies, from a line of the other; without
+    a line what the body has turned since the drawing.
+    """
+
+    body: str
+    """The driven body."""
+    line: tuple[str, str] | None = None
+    """Two joints of the body; the angle is that of the line from the first to the second. Default:
+    the angle is zero as drawn."""
+    against: str = "ground"
+    """The body from which the angle is measured."""
+    against_line: tuple[str, str] | None = None
+    """Two joints of that body; required with `line` and `against`."""
+    start: Angle | None = None
+    """Angle at the start."""
+    end: Angle | None = None
+    """Angle at the end."""
+
+    @model_validator(mode="after")
+    def _both(self) -> "RotaryDrive":
+        if (self.against == "ground" or self.line is None) != (self.against_line is None):
+            raise ArgumentError(
+                "with a line, against (a body) and against_line (two of its joints) must be given "
+                "together; without one, give no against_line",
+                "give-both",
+            )
+        if abs((self.end or 0.0) - (self.start or 0.0)) > MOST_TURNS * 2.0 * math.pi:
+            raise ArgumentError(
+                f"start and end are more than {MOST_TURNS} turns apart", "out-of-range"
+            )
+        return self
+
+
+AnyDrive = Annotated[
+    Annotated[SliderDrive, Tag("<slider>")] | Annotated[RotaryDrive, Tag("<rotary>")],
+    Discriminator(lambda v: "<slider>" if isinstance(v, dict) and "slider" in v else "<rotary>"),
+]
+
+
+def drive_name(drive: SliderDrive | RotaryDrive) -> str:
+    """The name of a drive: its slider, or its own name or that of the body it turns."""
+    return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
+
+
+Ratios = Annotated[list[Annotated[Number, Field(ge=1e-18, le=1e18)]], Field(min_length=1)]
+
+
+class SharingTable(StrictTable):
+    """How redundant connections share their load, as springs in parallel; or how drives in parallel
+    (two lift cylinders), of which one is driven, share their force.
+    """
+
+    connections: Annotated[list[str], Field(min_length=1)] | None = None
+    """The redundant connections, gears and racks. Give either `connections` or `parallel`."""
+    parallel: Annotated[list[str], Field(min_length=2)] | None = None
+    """Drives, sliders or stops in parallel; exactly one of them is driven."""
+    stiffness: Ratios | None = None
+    """Stiffness of each; only the ratios matter."""
+    areas: Ratios | None = None
+    """Piston area of each of the `parallel`, under the same pressure; only the ratios matter. Equal
+    areas: equal forces."""
+
+    @model_validator(mode="after")
+    def _one_rule(self) -> "SharingTable":
+        require_one("either connections or parallel", self.connections, self.parallel)
+        if self.connections is not None and self.areas is not None:
+            raise ArgumentError("areas is for parallel drives only", "key-not-applicable")
+        require_one("stiffness (of parallel drives: or areas)", self.stiffness, self.areas)
+        names = self.connections or self.parallel or []
+        if len(names) != len(self.stiffness or self.areas or []):
+            raise ArgumentError("give one number for each name", "lengths-differ")
+        return self
+
+
+class PointTable(StrictTable):
+    """A point whose path is written to paths.csv and drawn in the animation (a coupler curve)."""
+
+    body: str
+    """The body to which it belongs."""
+    at: JointOrPoint
+    """A joint, or [x, y] as drawn."""
+
+
+class StopTable(StrictTable):
+    """A stop or lock, which can keep a body from turning against another in cases whose `hold`
+    names it.
+    """
+
+    bodies: tuple[str, str]
+    """[base, body]; the base may be "ground"."""
+    carries: Literal["both", "positive", "negative"] = "both"
+    """Couples on the body, counter-clockwise positive, that it can carry: "both" for a lock, one
+    sign for a stop, which opens under the other."""
+
+
+class MechanismTable(StrictTable):
+    """A planar linkage, drawn in one position, with one or several drives."""
+
+    gravity: Annotated[
+        tuple[Acceleration, Acceleration],
+        Field(json_schema_extra={"default": ["0 m/s^2", "-9.80665 m/s^2"]}),
+    ] = (0.0, -9.80665)
+    """Acceleration of gravity [gx, gy]; [0, 0] switches it off."""
+    joint: Annotated[dict[str, JointTable], Field(min_length=1)]
+    """Joints by name."""
+    body: Annotated[dict[str, BodyTable], Field(min_length=1)]
+    """Bodies by name, except the ground."""
+    slider: dict[str, SliderTable] = {}
+    """Sliders by name."""
+    drive: Annotated[list[AnyDrive], Field(min_length=1)]
+    """One table, or several `[[mechanism.drive]]`: as many as there are degrees of freedom."""
+    gear: dict[str, GearTable] = {}
+    """Pairs of gears by name, which is also that of the force between their teeth."""
+    rack: dict[str, RackTable] = {}
+    """Racks with their gears by name, which is also that of the force between their teeth."""
+    point: dict[str, PointTable] = {}
+    """Points whose paths are of interest, by name."""
+    stop: dict[str, StopTable] = {}
+    """Stops and locks by name."""
+    spring: dict[str, LineSpringTable] = {}
+    """Springs and dampers by name; they act in all cases."""
+    torsion_spring: dict[str, TorsionSpringTable] = {}
+    """Torsion springs and dampers by name; they act in all cases."""
+    sharing: list[SharingTable] = []
+    """Redundant connections, and how they share their load."""
+
+    @field_validator("drive", mode="before")
+    @classmethod
+    def _one_or_several(cls, value: Any) -> Any:
+        return [value] if isinstance(value, dict) else value

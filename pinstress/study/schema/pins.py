@@ -1,0 +1,346 @@
+"""The study file's form: materials and pins."""
+
+from itertools import groupby, pairwise
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.fatigue import FkmTable, SnTable
+from pinstress.study.schema.types import (
+    Angle,
+    Density,
+    Length,
+    NotNegativeAtEnds,
+    NotNegativeLength,
+    Number,
+    PositiveLength,
+    Stress,
+    StrictTable,
+    Switch,
+    Tapered,
+    Tilt,
+)
+
+
+class MaterialTable(StrictTable):
+    """An isotropic linear-elastic material."""
+
+    youngs_modulus: Stress
+    """Young's modulus."""
+    poisson_ratio: Annotated[Number, Field(gt=-1.0, lt=0.5)]
+    """Poisson's ratio."""
+    density: Density | None = None
+    """Density, for the weight and inertia of the pin. Default: no weight."""
+    yield_strength: Stress | None = None
+    """Yield strength. Without it no safety factors are computed."""
+    ultimate_strength: Stress | None = None
+    """Ultimate tensile strength, for checks at ultimate load."""
+    shear_strength: Stress | None = None
+    """Ultimate shear strength."""
+    bearing_strength: Stress | None = None
+    """Ultimate bearing strength, on the projected area."""
+    fatigue: SnTable | None = None
+    """Stress-life curve, for `fatigue.method` "signed-von-mises" and "critical-plane"."""
+    fkm: FkmTable | None = None
+    """Data for `fatigue.method` "fkm-p-ram"."""
+    hardening: list[tuple[Annotated[Number, Field(gt=0.0)], Stress]] = []
+    """Pairs of equivalent plastic strain and true stress past yield, in rising order, for limit
+    loads; the stress stays constant after the last. Default: perfectly plastic."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "MaterialTable":
+        ultimate = self.ultimate_strength
+        for key in ("yield_strength", "shear_strength"):
+            lower = getattr(self, key)
+            if ultimate is not None and lower is not None and lower > ultimate:
+                raise ArgumentError(
+                    f"{key} is {lower / ultimate:.4g} times ultimate_strength, which it cannot "
+                    "exceed; check both, and their units",
+                    "strengths-out-of-order",
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _hardens(self) -> "MaterialTable":
+        points = [(0.0, self.yield_strength or 0.0), *self.hardening]
+        rising = all(a < b and s <= t for (a, s), (b, t) in pairwise(points))
+        if self.hardening and (self.yield_strength is None or not rising):
+            raise ArgumentError(
+                "hardening needs yield_strength, plastic strains that increase and stresses that "
+                "do not decrease from it",
+                "bad-hardening",
+            )
+        return self
+
+
+class SegmentTable(StrictTable):
+    """A cylinder or a cone of a pin's profile."""
+
+    length: PositiveLength
+    """Length along the axis."""
+    diameter: Tapered
+    """Outer diameter; [a, b] for a cone, at its start and at its far end. A chamfer is a short
+    cone."""
+    bore: NotNegativeAtEnds = 0.0
+    """Inner diameter; 0 is solid; [a, b] for a cone."""
+    name: str | None = None
+    """Name of the outer surface, for `clamp`. Default: its connection."""
+    connection: str | None = None
+    """Connection of the link that bears on the outer surface; also the name of the surface."""
+    fillet: NotNegativeLength | None = None
+    """Fillet radius at the inner corner at the far end; overrides the pin's `fillet`."""
+    edge_radius: NotNegativeAtEnds = 0.0
+    """Radius to which the edge of the outer surface at the far end is rounded; [a, b] at its start
+    and at its far end."""
+    bore_radius: NotNegativeAtEnds = 0.0
+    """The same of the corners of the bore, inner ones too."""
+
+    @property
+    def diameters(self) -> tuple[float, float]:
+        """At its start and far end, m."""
+        return self.diameter if isinstance(self.diameter, tuple) else (self.diameter,) * 2
+
+    @property
+    def bores(self) -> tuple[float, float]:
+        """At its start and far end, m."""
+        return self.bore if isinstance(self.bore, tuple) else (self.bore,) * 2
+
+
+Corners = Annotated[
+    list[Annotated[list[NotNegativeLength], Field(min_length=2, max_length=3)]],
+    Field(min_length=2),
+]
+
+
+class BottomTable(StrictTable):
+    """A drilled hole, perhaps with a bottom."""
+
+    diameter: PositiveLength
+    """Diameter of the hole."""
+    angle: Angle = 0.0
+    """Direction from the axis of the pin to the mouth of a cross hole, or to a passage; from x."""
+    depth: PositiveLength | None = None
+    """Depth to the end of the full diameter: of a cross hole from the surface at its `z`, on the
+    side of `angle`; of a passage from the end face. Default: through the pin."""
+    tip_angle: Angle | None = None
+    """Angle of the cone that the drill leaves at the bottom. Default: flat, "180 deg"."""
+    bottom_radius: NotNegativeLength = 0.0
+    """Radius of the corners at the bottom; 0 is sharp, where stress is unbounded."""
+
+    @model_validator(mode="after")
+    def _has_bottom(self) -> "BottomTable":
+        if self.depth is None and (self.tip_angle is not None or self.bottom_radius):
+            raise ArgumentError(
+                "tip_angle and bottom_radius are of a blind hole; give its depth, too",
+                "key-not-applicable",
+            )
+        return self
+
+
+class HoleTable(BottomTable):
+    """A hole across the pin, through its axis."""
+
+    z: PositiveLength
+    """Position of the hole's axis along the pin."""
+    chamfer: NotNegativeLength = 0.0
+    """Width of a countersink of 90 degrees at the mouths, where the surface is highest."""
+    mouth_radius: NotNegativeLength = 0.0
+    """Radius to which the edges of the mouths are rounded."""
+
+
+class FlatTable(StrictTable):
+    """A flat milled on part of the length."""
+
+    z: tuple[Length, Length]
+    """Start and end along the pin."""
+    distance: PositiveLength
+    """Distance of the flat from the axis; the material beyond it is removed."""
+    angle: Angle = 0.0
+    """Direction of the flat's normal, from x."""
+    radius: NotNegativeLength = 0.0
+    """Radius of the inner corners at its ends; 0 is sharp, where stress is unbounded."""
+
+
+class SlotTable(StrictTable):
+    """A keyway or slot along the pin."""
+
+    z: tuple[Length, Length]
+    """Start and end along the pin, with the round ends; open where that is not inside the pin."""
+    width: PositiveLength
+    """Width across the pin."""
+    depth: PositiveLength | None = None
+    """Depth from the surface. Default: through the pin."""
+    angle: Angle = 0.0
+    """Direction from the axis in which it is milled, from x."""
+    radius: NotNegativeLength = 0.0
+    """Radius of the corners at the bottom; 0 is sharp, where stress is unbounded."""
+    ends: Literal["round", "square"] = "round"
+    """Shape of its ends seen from outside: half circles, or sharp corners."""
+
+
+class PassageTable(BottomTable):
+    """A hole along the pin, beside its axis."""
+
+    end: Literal["start", "end"] = "start"
+    """End face from which it is drilled."""
+    offset: NotNegativeLength
+    """Distance of its axis from that of the pin."""
+
+
+class BandTable(StrictTable):
+    """A band of a pin from a file. Give either `z` or `surface`."""
+
+    z: tuple[Length, Length] | None = None
+    """The outermost surface between these two z of the file."""
+    surface: str | None = None
+    """The surface of this name in the file."""
+    connection: Switch = True
+    """Whether a link bears on the band, at the connection of the same name; false for a band that
+    is only clamped."""
+
+    @model_validator(mode="after")
+    def _one_place(self) -> "BandTable":
+        if (self.z is None) == (self.surface is None):
+            raise ArgumentError('give either z = [a, b] or surface = "..."', "give-one")
+        return self
+
+
+class BushingTable(StrictTable):
+    """A ring of another material bonded in the bore of a lug."""
+
+    thickness: PositiveLength
+    """Wall thickness."""
+    material: str
+    """Name of a `[material]`."""
+
+
+Times = Annotated[Number, Field(gt=0.0)]
+
+
+class LugRangeTable(StrictTable):
+    """Between what values something of a lug may lie: [lower, upper]."""
+
+    clearance: tuple[Length, Length] | None = None
+    """Default: none, and twice the given (0.002 of the diameter where none is given)."""
+    stiffness: tuple[Times, Times] | None = None
+    """Times that of the lug as described. Default: [0.5, 2]."""
+    tilt: tuple[Tilt, Tilt] | None = None
+    """Default: ["free", "guided"]."""
+
+
+class LugTable(StrictTable):
+    """The eye in which a band of the pin sits: of the link at the connection of this name, or of
+    the surrounding structure, which does not move, at the segment of this name.
+    """
+
+    outer_diameter: PositiveLength | None = None
+    """Outer diameter of the eye. Default: 2.5 times the diameter of the band."""
+    material: str | None = None
+    """Name of a `[material]`. Default: the pin's material."""
+    clearance: Length = 0.0
+    """Diameter of the bore minus that of the pin; negative for interference."""
+    edge_radius: NotNegativeLength = 0.0
+    """Radius of the edges of the bore. 0 is sharp, where pressure has no bound: then
+    results have no peak of pressure there."""
+    tilt: Tilt | None = None
+    """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
+    Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
+    bushing: BushingTable | None = None
+    """A bushing bonded in the eye."""
+    range: LugRangeTable = LugRangeTable()
+    """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
+
+
+SHAPES = "profile", "meridian", "geometry"
+ONLY_WITH = {
+    "fillet": ("profile",),
+    "bore_meridian": ("meridian",),
+    "hole": ("profile", "meridian"),
+    "flat": ("profile", "meridian"),
+    "slot": ("profile", "meridian"),
+    "passage": ("profile", "meridian"),
+    "lug": ("profile", "meridian"),
+    "band": ("meridian", "geometry"),
+    "geometry_unit": ("geometry",),
+}
+
+
+class PinTable(StrictTable):
+    """A pin: a body of revolution or the body in a file, and its clamped surfaces."""
+
+    material: str
+    """Name of a `[material]`."""
+    profile: Annotated[list[SegmentTable], Field(min_length=1)] | None = None
+    """Segments, starting at z = 0. Give either `profile`, `meridian` or `geometry`."""
+    meridian: Corners | None = None
+    """Instead of a profile: the outline from z = 0 to the far end by its corners, [z, r] or
+    [z, r, radius to which the corner is rounded], r being half the diameter."""
+    bore_meridian: Corners | None = None
+    """The same of the bore. Default: solid. Only with `meridian`."""
+    fillet: NotNegativeLength = 0.0
+    """Radius at every inner corner of the shaft, tangent to the thinner shaft and to the shoulder
+    face; 0 is sharp. Only with a profile."""
+    hole: list[HoleTable] = []
+    """Cross holes. Not with `geometry`."""
+    flat: list[FlatTable] = []
+    """Flats. Not with `geometry`."""
+    slot: list[SlotTable] = []
+    """Keyways and slots. Not with `geometry`."""
+    passage: list[PassageTable] = []
+    """Holes along the pin. Not with `geometry`."""
+    geometry: str | None = None
+    """A CAD file (STEP, BREP, IGES) or a mesh of tetrahedra, in the study's folder."""
+    geometry_unit: Literal["mm", "cm", "m", "in"] = "mm"
+    """Unit of length in the file. Only with `geometry`."""
+    band: dict[str, BandTable] = {}
+    """Bands, by name. Only with `geometry` or `meridian`."""
+    lug: dict[str, LugTable] = {}
+    """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
+    the pin is supported by its lugs (see `analysis.joints`). Not with `geometry`."""
+    replaceable: Switch = False
+    """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
+    contact stress at limit load, too."""
+    clamp: list[str] = []
+    """Clamped surfaces: "start" and "end" (the end faces), the name or connection of a segment (its
+    outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; forces and
+    couples must then be nearly in equilibrium, or carried by lugs."""
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> "PinTable":
+        given = [shape for shape in SHAPES if getattr(self, shape) is not None]
+        if len(given) != 1:
+            raise ArgumentError(
+                'give one of profile = [...], meridian = [...] or geometry = "file.step"',
+                "give-one",
+            )
+        for key, shapes in ONLY_WITH.items():
+            if key in self.model_fields_set and given[0] not in shapes:
+                raise ArgumentError(
+                    f"{key} can only be used with {' or '.join(shapes)}; remove it",
+                    "key-not-applicable",
+                )
+        for name, band in self.band.items():
+            if self.meridian is not None and band.z is None:
+                raise ArgumentError(
+                    f"band {name}: with meridian give z = [a, b], since only files name surfaces",
+                    "key-not-applicable",
+                )
+        return self
+
+    @property
+    def diameters(self) -> tuple[float, ...]:
+        """Of the segments or corners in order, m, each once where equal ones follow each other;
+        none of a pin from a file.
+        """
+        of_segments = (d for s in self.profile or () for d in s.diameters)
+        of_corners = (2.0 * corner[1] for corner in self.meridian or ())
+        return tuple(d for d, _ in groupby((*of_segments, *of_corners)))
+
+    @property
+    def connections(self) -> list[tuple[str, str]]:
+        """Connections that bear on it, each with its key."""
+        if self.profile is not None:
+            named = enumerate(self.profile, 1)
+            return [(f"profile[{i}].connection", s.connection) for i, s in named if s.connection]
+        return [(f"band.{name}", name) for name, band in self.band.items() if band.connection]

@@ -1,0 +1,25 @@
+"""The study file's form: cases one after the other."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from pinstress.study.schema.types import Duration, StrictTable, Whole
+
+
+class StepTable(StrictTable):
+    """One case of a sequence."""
+
+    case: str
+    """A case of the study, also one of a table."""
+    repeat: Annotated[Whole, Field(ge=1, le=10_000)] = 1
+    """How often it occurs here."""
+    duration: Duration | None = None
+    """How long a case at rest lasts; a motion has its own time."""
+
+
+class SequenceTable(StrictTable):
+    """A duty cycle: cases one after the other on one time axis. Nothing is solved again."""
+
+    steps: Annotated[list[StepTable], Field(min_length=1, max_length=1000)]
+    """The cases in their order."""

@@ -1,0 +1,202 @@
+"""The study file's form: every table and key, with its unit, domain and description."""
+
+import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
+from pinstress.study.schema.fatigue import FatigueTable
+from pinstress.study.schema.landing import DropCase, GroundCase
+from pinstress.study.schema.leg import SpatialLegTable
+from pinstress.study.schema.mechanism import MechanismTable
+from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.sequence import SequenceTable
+from pinstress.study.schema.shown import shown
+from pinstress.study.schema.types import (
+    ANY,
+    CaseName,
+    LimitLoads,
+    Name,
+    Number,
+    PositiveLength,
+    StrictTable,
+)
+from pinstress.study.schema.vary import ReliabilityTable, VaryTable
+
+
+class AnalysisTable(StrictTable):
+    """Requirements on the analysis."""
+
+    model: Literal["auto", "beam", "harmonic", "solid"] = "auto"
+    """The model; "auto" uses the simplest that is accurate enough."""
+    joints: Literal["auto", "contact", "foundation", "prescribed"] = "auto"
+    """How links load the pins: by contact with elastic lugs ("contact"), on elastic foundations in
+    them, a quick beam with a model error ("foundation"), or by prescribed clamps and load
+    distributions ("prescribed"). "auto" uses contact for the pins that have a `lug`, or the beam
+    where its error is within the tolerance and bending governs."""
+    goal: Literal["value", "decide"] = "value"
+    """Refine until the maximum is within the tolerance ("value"), or only until it is decided
+    whether the required safety factor is met ("decide", which needs a yield strength)."""
+    tolerance: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.02
+    """Largest relative error of the maximum von Mises stress."""
+    excluded_distance: Annotated[Number, Field(ge=0.01, le=0.5)] = 0.1
+    """Distance from a stress singularity within which stress is not evaluated, as a fraction of the
+    local diameter."""
+    meshes: Literal["own", "moved"] | None = None
+    """Whether each section of a pin has its "own" mesh, or that of the nearest of a series of
+    shapes with its nodes "moved", which is quicker for many designs of almost the same shape.
+    Default: "moved" in a study with [vary], otherwise "own"."""
+    limit_load: LimitLoads = "auto"
+    """For which rows the load is found at which the pin collapses: those that yield, by a beam
+    where that decides whether they carry their loads, otherwise by an elastic-plastic solid
+    ("auto", where each has 20 s of processor time, but with `run --limit-load` as long as it
+    takes); all rows ("always") or those of some pins, by the solid, however long it takes; none
+    ("never")."""
+    required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
+    """Safety factor that every pin must reach: yield strength over stress under the loads of the
+    study, without the factors below. Default: no comparison."""
+    limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
+    """Factor on the loads of the study for checks at limit load, against yield."""
+    ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
+    """Factor on the loads of the study for checks at ultimate load, against rupture and collapse.
+    The default is that of 14 CFR 25.303."""
+    fitting_factor: Annotated[Number, Field(ge=1.0)] = 1.0
+    """Additional factor of all checks of margins, for fittings whose strength no test proves; 14
+    CFR 25.625 demands 1.15."""
+
+    bending_moment: Literal["joint", "formula"] = "joint"
+    """Which bending moments and shear forces the checks of pins in solved joints take: those of
+    the joint model ("joint") or those of even loads on the bands ("formula"); the others are
+    listed for comparison, but the joint model's govern too where even loads leave a couple over.
+    Pins without a joint model always have the formulas'."""
+
+    @model_validator(mode="after")
+    def _ultimate_is_more(self) -> "AnalysisTable":
+        if self.ultimate_factor < self.limit_factor:
+            raise ArgumentError(
+                f"ultimate_factor {self.ultimate_factor:g} is less than limit_factor "
+                f"{self.limit_factor:g}; ultimate loads are limit loads or more",
+                "factors-out-of-order",
+            )
+        return self
+
+
+class BeamCheckTable(StrictTable):
+    """Compare a cantilever pin's axial stress with beam theory, with the load on its surface and on
+    a thin bore.
+    """
+
+    pin: str
+    """A pin clamped at its start face, loaded on one band."""
+    case: str
+    """A case without moments on the pin."""
+    axis_bore: PositiveLength
+    """Diameter of the thin bore that carries the load."""
+
+
+class MotionCheckTable(StrictTable):
+    """Compare a joint's speed and acceleration with the closed form of a lever: the joint turns
+    about a fixed pivot with the moving end of the driven slider.
+    """
+
+    case: str
+    """A case of kind "motion"."""
+    joint: str
+    """The joint that turns."""
+    pivot: str
+    """The joint about which it turns."""
+
+
+class PublishedTable(StrictTable):
+    """Published values for comparison, in CSV files in the study's folder."""
+
+    source: str
+    """Source of the values."""
+    peaks: str | None = None
+    """CSV file with the columns pin,case,max_von_mises,safety_factor. Only for a study with the
+    publication's geometry, since maxima of other shapes cannot be compared."""
+    reactions: str | None = None
+    """CSV file with the columns case,connection,force."""
+    motion: str | None = None
+    """CSV file with the columns time,speed,acceleration, of the joint in `motion_check`."""
+    values: str | None = None
+    """CSV file with the columns case,time,quantity,name,published,reason."""
+
+
+class ReportTable(StrictTable):
+    """The title block of the report; what is not given is left blank."""
+
+    revision: Annotated[str, Field(max_length=100)] = ""
+    """Revision, as "B"."""
+    date: datetime.date | None = None
+    """Date of the revision, as 2026-03-31 without quotes; also the PDF's date of creation."""
+    prepared: Annotated[str, Field(max_length=100)] = ""
+    """Name of who prepared it."""
+    checked: Annotated[str, Field(max_length=100)] = ""
+    """Name of who checked it."""
+    approved: Annotated[str, Field(max_length=100)] = ""
+    """Name of who approved it."""
+
+
+class StudyTable(StrictTable):
+    """A study: pins, their materials, their loads and the requirements on the analysis."""
+
+    title: Annotated[str, Field(max_length=1000)]
+    """Title of the report and of every table."""
+    units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
+    """The unit system of numbers without a unit, and of the results."""
+    material: dict[str, MaterialTable] = {}
+    """Materials by name."""
+    pin: dict[Name, PinTable] = {}
+    """Pins by name; without pins only `pinstress loads` can be used."""
+    case: Annotated[
+        dict[
+            CaseName,
+            Annotated[
+                GivenCase | MotionCase | StaticCase | InstantCase | LegCase | DropCase | GroundCase,
+                Field(discriminator="kind"),
+            ],
+        ],
+        Field(min_length=1),
+    ]
+    """Load cases by name; each is run for the pins that it loads. A name with a *, of kind "given",
+    stands for every name in the column `case` of its table, which replaces the *."""
+    sequence: dict[Name, SequenceTable] = {}
+    """Duty cycles by name: cases one after the other."""
+    mechanism: MechanismTable | None = None
+    """The linkage, for cases of kind "motion", "static", "instant", "drop" and "ground"."""
+    spatial_leg: SpatialLegTable | None = None
+    """The leg, for cases of kind "spatial_leg"."""
+    analysis: AnalysisTable = AnalysisTable()
+    """Requirements on the analysis."""
+    fatigue: FatigueTable | None = None
+    """How often cases occur, for damage and life. Default: fatigue is not assessed."""
+    beam_check: BeamCheckTable | None = None
+    """A comparison with beam theory."""
+    motion_check: MotionCheckTable | None = None
+    """A comparison with the closed form of a lever."""
+    published: PublishedTable | None = None
+    """Published values for comparison."""
+    vary: VaryTable | None = None
+    """What `pinstress sweep` varies; `run` ignores it."""
+    reliability: ReliabilityTable = ReliabilityTable()
+    """What `pinstress reliability` finds; `run` ignores it."""
+    report: ReportTable = ReportTable()
+    """The title block of the report."""
+    assumptions: list[str] = []
+    """Assumptions, as sentences for the report."""
+
+    @field_validator("case", mode="before")
+    @classmethod
+    def _tables_of_cases(cls, value: Any) -> Any:
+        for name, case in value.items() if isinstance(value, dict) else ():
+            given = isinstance(case, dict) and case.get("kind") == "given" and "table" in case
+            if ANY in str(name) and not given:
+                raise ArgumentError(
+                    f"{shown(name)}: a name with a * stands for every case of a table; give kind = "
+                    '"given" and table = "file.csv"',
+                    "unusable-name",
+                )
+        return value

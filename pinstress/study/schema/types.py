@@ -1,0 +1,291 @@
+"""The study file's vocabulary: quantities with units, names, tables that know their keys.
+
+For editors and for the reference in the documentation the JSON Schema gives of every quantity its
+`dimension` and `domain`, and of every key its description: the string under it in the code.
+"""
+
+import ast
+import inspect
+from dataclasses import dataclass
+from itertools import pairwise
+from textwrap import dedent
+from typing import Annotated, Any, Literal
+from urllib.parse import quote
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    PlainValidator,
+    Tag,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.shown import listed, nearest, shown
+from pinstress.study.schema.units import DIMENSIONS, LARGEST, SYSTEMS, to_si
+
+KINDS = ("given", "derived", "fitted", "assumed")
+REMOVED = {
+    "lug_edges": "it was removed: stress near the edges of lugs is read as surface, section and "
+    "contact, without an excluded distance (docs/lugs.md), so delete the line"
+}
+UNKNOWN_KEY = "unknown_key"  # the type of pydantic's error
+SMALLEST = 1.0 / LARGEST  # in SI: its square does not underflow
+FORBIDDEN = '/\\:*?"<>|'  # in names of files, on some system
+LONGEST_NAME = 100  # characters as quoted: two names fit into a file name
+
+
+class Probe(float):
+    """A number that is put where a quantity is, to learn the `dimension` of what reads it."""
+
+    dimension = ""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """Marks a float that is read from a number or a string with a unit, and kept in SI."""
+
+    dimension: str
+
+    def __get_pydantic_core_schema__(self, *_: object) -> core_schema.CoreSchema:
+        return core_schema.with_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
+        plain: list[dict[str, Any]] = [
+            {"type": "number"},
+            {"type": "string", "examples": [DIMENSIONS[self.dimension][1]]},
+        ]
+        return {"anyOf": [*plain, sourced(plain)], "dimension": self.dimension}
+
+    def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
+        if isinstance(value, Probe):
+            value.dimension = self.dimension
+        system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
+        return to_si(value, self.dimension, system)
+
+
+PROVENANCE: dict[str, Any] = {
+    "provenance": {"enum": list(KINDS), "description": "where the numbers here come from"},
+    "note": {"type": "string", "description": "why, in words"},
+}
+
+
+def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
+    """Descriptions and provenance for a table's JSON Schema."""
+    for key, words in described(table).items():
+        schema["properties"][table.model_fields[key].alias or key]["description"] = words
+    schema["properties"].update(PROVENANCE)
+
+
+def described(table: type["StrictTable"]) -> dict[str, str]:
+    """The description of each key: the string under the field in the code, read only when a schema
+    is requested, since it takes time.
+    """
+    descriptions: dict[str, str] = {}
+    for one in reversed(table.__mro__):
+        if not issubclass(one, StrictTable) or one is StrictTable:
+            continue
+        (made,) = ast.parse(dedent(inspect.getsource(one))).body
+        assert isinstance(made, ast.ClassDef)
+        for field, text in pairwise(made.body):
+            match (field, text):
+                case (
+                    ast.AnnAssign(target=ast.Name(id=key)),
+                    ast.Expr(value=ast.Constant(value=str(words))),
+                ):
+                    descriptions[key] = " ".join(words.split())
+    return descriptions
+
+
+def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
+    """JSON Schema of { value = ..., provenance = "given", note = "..." }."""
+    return {
+        "type": "object",
+        "properties": {
+            "value": {"anyOf": value},
+            **PROVENANCE,
+        },
+        "required": ["value", "provenance"],
+        "additionalProperties": False,
+    }
+
+
+@dataclass(frozen=True)
+class Within(AfterValidator):
+    """Restricts a quantity to a domain, which the JSON Schema states as text."""
+
+    domain: str
+
+    def __get_pydantic_json_schema__(
+        self, core: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        return handler(core) | {"domain": self.domain}
+
+
+def _positive(value: float) -> float:
+    if not value > 0.0:
+        raise ArgumentError("must be positive", "not-positive")
+    if value < SMALLEST:
+        raise ArgumentError(f"must be at least {SMALLEST:g} in SI units", "out-of-range")
+    return value
+
+
+def _pin_sized(value: float) -> float:
+    if not 1e-6 < value < 1e3:
+        raise ArgumentError("must be between 1e-6 m and 1000 m", "out-of-range")
+    return value
+
+
+def _not_negative(value: float) -> float:
+    if value < 0.0:
+        raise ArgumentError("must not be negative", "negative")
+    return value
+
+
+POSITIVE = Within(_positive, "> 0")
+NOT_NEGATIVE = Within(_not_negative, "≥ 0")
+PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
+
+
+def usable_name(name: str) -> str:
+    bad, instead = [c for c in dict.fromkeys(name) if c in FORBIDDEN], "letters, digits, - and _"
+    what = ""
+    if bad:
+        what = f"cannot be part of a file name on every system, because of {' '.join(bad)}"
+    elif not name or name[0] in ". ":
+        what = "cannot be part of a file name"
+    elif len(quote(name)) > LONGEST_NAME:
+        what, instead = (
+            "is too long for a part of a file name",
+            f"at most {LONGEST_NAME} characters",
+        )
+    elif not name.isprintable():
+        what = "has unprintable characters"
+    if what:
+        raise ArgumentError(f"{shown(name)} {what}; use {instead}", "unusable-name")
+    return name
+
+
+Number = Annotated[float, Field(strict=True)]  # else pydantic reads "1" and true as 1.0
+Whole = Annotated[int, Field(strict=True)]
+Side = Literal["left", "right"]
+Switch = Annotated[bool, Field(strict=True)]
+Length = Annotated[float, Quantity("length")]
+Force = Annotated[float, Quantity("force")]
+PositiveLength = Annotated[Length, POSITIVE, PIN_SIZED]
+NotNegativeLength = Annotated[Length, NOT_NEGATIVE]
+
+
+def _one_or_both(value: object) -> str:
+    return "<both>" if isinstance(value, list | tuple) else "<one>"
+
+
+Tapered = Annotated[
+    Annotated[PositiveLength, Tag("<one>")]
+    | Annotated[tuple[PositiveLength, PositiveLength], Tag("<both>")],
+    Discriminator(_one_or_both),
+]
+NotNegativeAtEnds = Annotated[
+    Annotated[NotNegativeLength, Tag("<one>")]
+    | Annotated[tuple[NotNegativeLength, NotNegativeLength], Tag("<both>")],
+    Discriminator(_one_or_both),
+]
+Stress = Annotated[Annotated[float, Quantity("stress")], POSITIVE]
+Density = Annotated[Annotated[float, Quantity("density")], POSITIVE]
+Weight = Annotated[Force, NOT_NEGATIVE]
+Mass = Annotated[Annotated[float, Quantity("mass")], NOT_NEGATIVE]
+Inertia = Annotated[Annotated[float, Quantity("inertia")], NOT_NEGATIVE]
+Duration = Annotated[Annotated[float, Quantity("time")], POSITIVE]
+Velocity = Annotated[float, Quantity("velocity")]
+Acceleration = Annotated[float, Quantity("acceleration")]
+SignedInertia = Annotated[float, Quantity("inertia")]
+AngularVelocity = Annotated[float, Quantity("angular velocity")]
+AngularAcceleration = Annotated[float, Quantity("angular acceleration")]
+Angle = Annotated[float, Quantity("angle")]
+Moment = Annotated[float, Quantity("moment")]
+Time = Annotated[float, Quantity("time")]
+Name = Annotated[str, AfterValidator(usable_name)]
+Stiffness = Annotated[Annotated[float, Quantity("stiffness")], NOT_NEGATIVE]
+Damping = Annotated[Annotated[float, Quantity("damping")], NOT_NEGATIVE]
+TorsionalStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], NOT_NEGATIVE]
+TorsionalDamping = Annotated[Annotated[float, Quantity("torsional damping")], NOT_NEGATIVE]
+ANY = "*"  # in a section's name, for every case of its table
+
+
+def _usable_section(name: str) -> str:
+    usable_name(name.replace(ANY, "case"))
+    return name
+
+
+CaseName = Annotated[str, AfterValidator(_usable_section)]
+Point = tuple[Length, Length]
+TiltStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], POSITIVE]
+
+JointOrPoint = Annotated[
+    Annotated[str, Tag("<joint>")] | Annotated[Point, Tag("<point>")],
+    Discriminator(lambda value: "<joint>" if isinstance(value, str) else "<point>"),
+]
+
+LimitLoads = Annotated[
+    Annotated[Literal["auto", "always", "never"], Tag("<way>")]
+    | Annotated[list[Name], Tag("<pins>")],
+    Discriminator(lambda value: "<pins>" if isinstance(value, list) else "<way>"),
+]
+
+
+def _coordinate(value: object) -> float | str:
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ArgumentError('must be a number or a text like "45 deg"', "not-a-number")
+    return value
+
+
+# A number or a text with a unit, whose dimension depends on what it is of.
+Coordinate = Annotated[float | str, PlainValidator(_coordinate, json_schema_input_type=float | str)]
+
+
+TILTS = ("guided", "free")
+Tilt = Annotated[
+    Annotated[Literal["guided", "free"], Tag("<way>")]
+    | Annotated[TiltStiffness, Tag("<stiffness>")],
+    Discriminator(lambda value: "<way>" if value in TILTS else "<stiffness>"),
+]
+
+
+class StrictTable(BaseModel):
+    """A table of the study file: unknown keys are errors.
+
+    Any table may also have `provenance` and `note`; they are taken out before validation.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, allow_inf_nan=False, json_schema_extra=_complete
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        known = [field.alias or name for name, field in cls.model_fields.items()]
+        unknown = data.keys() - known if isinstance(data, dict) else ()
+        if unknown:
+            wrong = [_unknown(key, known) for key in data if key in unknown]
+            raise ValidationError.from_exception_data(cls.__name__, wrong)
+        return data
+
+
+def _unknown(key: object, known: list[str]) -> InitErrorDetails:
+    context: dict[str, Any] = {"text": f"unknown key {shown(key)}; ", "key": key, "known": known}
+    return InitErrorDetails(type=PydanticCustomError(UNKNOWN_KEY, "{text}", context), input=None)
+
+
+def hint_for_key(key: str, known: list[str]) -> str:
+    """What an unknown key may mean: found only for errors that are printed, since it takes time."""
+    if key in REMOVED:
+        return REMOVED[key]
+    near = nearest(key, known, cutoff=0.5)
+    return f"did you mean {near!r}?" if near else f"known here: {listed(known)}"

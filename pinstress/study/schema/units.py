@@ -1,0 +1,288 @@
+"""Units: numbers come in and go out in the study's units; inside everything is SI."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.shown import in_toml, nearest, shown
+
+# dimension: its exponents of length, force and time, and an example with a unit
+DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
+    "length": ((1, 0, 0), "2 in"),
+    "force": ((0, 1, 0), "500 lbf"),
+    "time": ((0, 0, 1), "0.15 s"),
+    "stress": ((-2, 1, 0), "225 ksi"),
+    "mass": ((-1, 1, 2), "12 kg"),
+    "density": ((-4, 1, 2), "0.2836 lb/in^3"),
+    "inertia": ((1, 1, 2), "0.14 kg m^2"),
+    "velocity": ((1, 0, -1), "25 ft/s"),
+    "acceleration": ((1, 0, -2), "9.81 m/s^2"),
+    "energy": ((1, 1, 0), "3 J"),
+    "power": ((1, 1, -1), "3 W"),
+    "moment": ((1, 1, 0), "12 N m"),
+    "torsional stiffness": ((1, 1, 0), "2e5 N m/rad"),
+    "area": ((2, 0, 0), "300 mm^2"),
+    "volume": ((3, 0, 0), "2e-3 m^3"),
+    "stiffness": ((-1, 1, 0), "20 N/mm"),
+    "damping": ((-1, 1, 1), "500 N s/m"),
+    "torsional damping": ((1, 1, 1), "5 N m s/rad"),
+    "angle": ((0, 0, 0), "45 deg"),
+    "angular velocity": ((0, 0, -1), "2 rad/s"),
+    "angular acceleration": ((0, 0, -2), "3 rad/s^2"),
+}
+
+UNIT_NEEDED = ("angle", "angular velocity", "angular acceleration")  # degrees or radians?
+
+
+MINUS = "\N{MINUS SIGN}"  # which reports print
+COMMA = re.compile(r"\s*[-+]?\d*,\d")
+NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+LONGEST = 200  # characters of a quantity with its unit
+# A power of a unit: a small number, or a ratio of two in brackets. Other numbers in a unit are
+# refused: pint would spend hours on 9^9^9.
+_SMALL = r"[-+]?\d{1,2}+(?:\.\d{1,3}+)?"
+POWER = re.compile(
+    rf"(?<=[\w)])\s*+(?:\^|\*\*)\s*+(?:{_SMALL}|\(\s*{_SMALL}\s*(?:/\s*{_SMALL}\s*)?\))"
+    r"(?![\w.]|\s*(?:\^|\*\*))"
+)
+NUMBERS = re.compile(r"\^|\*\*|(?<!\w)(?!1\s*/)\d")
+LARGEST = 1e18  # in SI: beyond any modulus, and its fourth power does not overflow
+
+
+@dataclass(frozen=True)
+class UnitSystem:
+    """A consistent system: names and SI values of length, force, time; the name of its stress."""
+
+    name: str
+    length: str
+    force: str
+    time: str
+    stress: str
+    in_si: tuple[float, float, float]
+
+    def factor(self, dimension: str) -> float:
+        """SI value of this system's unit of a dimension."""
+        exponents, _ = DIMENSIONS[dimension]
+        return math.prod(f**e for f, e in zip(self.in_si, exponents, strict=True))
+
+    def unit(self, dimension: str) -> str:
+        """Name of this system's unit of a dimension, or of what is a product of some."""
+        names = {
+            "length": self.length,
+            "force": self.force,
+            "time": self.time,
+            "stress": self.stress,
+            "energy": f"{self.force} {self.length}",
+            "velocity": f"{self.length}/{self.time}",
+            "acceleration": f"{self.length}/{self.time}^2",
+            "degrees": "deg",
+        }
+        if dimension in names:
+            return names[dimension]
+        return " ".join(names.get(part, part) for part in dimension.split())
+
+
+_POUND_FORCE = 0.45359237 * 9.80665
+
+SYSTEMS = {
+    s.name: s
+    for s in (
+        UnitSystem("in-lbf-s", "in", "lbf", "s", "psi", (0.0254, _POUND_FORCE, 1.0)),
+        UnitSystem("mm-N-s", "mm", "N", "s", "MPa", (1e-3, 1.0, 1.0)),
+        UnitSystem("m-N-s", "m", "N", "s", "Pa", (1.0, 1.0, 1.0)),
+    )
+}
+
+
+# The usual units as pint has them (a test compares them): importing pint takes longer than checking
+# a study, so it is used only for other units, and to find what is wrong with one.
+USUAL: dict[str, tuple[str, float]] = {
+    "m": ("length", 1.0),
+    "cm": ("length", 0.01),
+    "mm": ("length", 0.001),
+    "in": ("length", 0.0254),
+    "ft": ("length", 0.3048),
+    "N": ("force", 1.0),
+    "kN": ("force", 1e3),
+    "lbf": ("force", _POUND_FORCE),
+    "kip": ("force", 1e3 * _POUND_FORCE),
+    "s": ("time", 1.0),
+    "ms": ("time", 0.001),
+    "Pa": ("stress", 1.0),
+    "MPa": ("stress", 1e6),
+    "GPa": ("stress", 1e9),
+    "psi": ("stress", _POUND_FORCE / 0.0254**2),
+    "ksi": ("stress", 1e3 * _POUND_FORCE / 0.0254**2),
+    "kg": ("mass", 1.0),
+    "lb": ("mass", 0.45359237),
+    "kg/m^3": ("density", 1.0),
+    "g/cm^3": ("density", 1e3),
+    "lb/in^3": ("density", 0.45359237 / 0.0254**3),
+    "kg m^2": ("inertia", 1.0),
+    "lb in^2": ("inertia", 0.45359237 * 0.0254**2),
+    "g": ("mass", 1e-3),
+    "N m": ("moment", 1.0),
+    "N cm": ("moment", 0.01),
+    "N m/rad": ("torsional stiffness", 1.0),
+    "N/m": ("stiffness", 1.0),
+    "N/mm": ("stiffness", 1e3),
+    "N s/m": ("damping", 1.0),
+    "deg": ("angle", math.pi / 180.0),
+    "rad": ("angle", 1.0),
+    "rad/s": ("angular velocity", 1.0),
+    "deg/s": ("angular velocity", math.pi / 180.0),
+    "rpm": ("angular velocity", math.pi / 30.0),
+    "rad/s^2": ("angular acceleration", 1.0),
+    "m/s": ("velocity", 1.0),
+    "ft/s": ("velocity", 0.3048),
+    "m/s^2": ("acceleration", 1.0),
+    "ft/s^2": ("acceleration", 0.3048),
+    "in/s^2": ("acceleration", 0.0254),
+}
+
+
+@cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(str(Path(__file__).with_name("units.txt")))
+
+
+@cache
+def _expected(dimension: str) -> Any:
+    exponents, _ = DIMENSIONS[dimension]
+    unit = _registry().Unit("")
+    for base, e in zip(("m", "N", "s"), exponents, strict=True):
+        unit = unit * _registry().Unit(base) ** e
+    return unit
+
+
+def to_si(value: object, dimension: str, system: UnitSystem) -> float:
+    """A study's number or string as a float in SI.
+
+    Raises: ArgumentError saying what is wrong with it and what would be right.
+    """
+    _, example = DIMENSIONS[dimension]
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ArgumentError(
+            f"{in_toml(value)} is not {_a(dimension)}; write a number, or a text like {example!r}",
+            "not-a-quantity",
+        )
+    if isinstance(value, str):
+        si = _parse(value, dimension, system)
+    else:
+        try:
+            si = _plain(float(value), dimension, system)
+        except OverflowError:  # a whole number
+            raise ArgumentError(f"{shown(value)} is {_beyond()}", "too-large") from None
+    if not math.isfinite(si):
+        raise ArgumentError(f"must be finite, not {shown(value)}", "not-finite")
+    if abs(si) > LARGEST:
+        raise ArgumentError(f"{shown(value)} is {_beyond()}", "too-large")
+    return si
+
+
+def _a(dimension: str) -> str:
+    return f"{'an' if dimension[0] in 'aeio' else 'a'} {dimension}"
+
+
+def _beyond() -> str:
+    return f"too large: the limit is {LARGEST:g} in SI units"
+
+
+def _plain(number: float, dimension: str, system: UnitSystem) -> float:
+    if dimension in UNIT_NEEDED:
+        _, example = DIMENSIONS[dimension]
+        raise ArgumentError(
+            f"{number:g} needs a unit, degrees or radians; write for instance {example!r}",
+            "missing-unit",
+        )
+    return number * system.factor(dimension)
+
+
+def split(text: str) -> tuple[float, str] | None:
+    """A quantity's number and unit; None for a text that does not begin with a number."""
+    text = text.strip() if len(text) <= LONGEST else ""
+    number = NUMBER.match(text)
+    return (float(number[0]), text[number.end() :].strip()) if number else None
+
+
+def _parse(text: str, dimension: str, system: UnitSystem) -> float:
+    _, example = DIMENSIONS[dimension]
+    if len(text) > LONGEST:
+        raise ArgumentError(
+            f"{shown(text)} has {len(text):,} characters; write a number and a unit like "
+            f"{example!r}",
+            "too-long",
+        )
+    if COMMA.match(text):
+        raise ArgumentError(
+            f"{shown(text)} has a comma; write decimals with a point, and thousands without a mark",
+            "decimal-comma",
+        )
+    found = split(text)
+    if found is None and MINUS in text:
+        hyphen = text.replace(MINUS, "-")
+        raise ArgumentError(
+            f"{shown(text)} has a minus that is no hyphen; write {hyphen!r}", "not-a-number"
+        )
+    if found is None:
+        raise ArgumentError(
+            f"{shown(text)} does not begin with a number; write for instance {example!r}",
+            "not-a-number",
+        )
+    number, unit = found
+    if not unit:
+        return _plain(number, dimension, system)
+    return number * _unit_factor(unit, dimension, text)
+
+
+@lru_cache(1000)
+def _unit_factor(unit: str, dimension: str, text: str) -> float:
+    if unit in USUAL and USUAL[unit][0] == dimension:
+        return USUAL[unit][1]
+    return _by_pint(unit, dimension, text)
+
+
+def _by_pint(unit: str, dimension: str, text: str) -> float:
+    import pint
+
+    near = _meant(unit, dimension)
+    try:
+        if NUMBERS.search(POWER.sub("", unit)):
+            raise ValueError("a number other than a power")
+        parsed = _registry().Quantity(1.0, unit)
+        return float(parsed.to(_expected(dimension)).magnitude)
+    except pint.UndefinedUnitError as error:
+        names: Any = error.unit_names
+        unknown = str(names if isinstance(names, str) else names[0])
+        near = near or nearest(unknown, [*_symbols(), *map(str, _registry())])
+        what, code = f"unknown unit {shown(unknown)} in {shown(text)}", "unknown-unit"
+    except pint.DimensionalityError:
+        what, code = f"{shown(text)} is not {_a(dimension)}", "wrong-dimension"
+    except Exception:  # pint's parser raises what its tokenizer raises
+        what, code = f"cannot read the unit in {shown(text)}", "unreadable-unit"
+    _, example = DIMENSIONS[dimension]
+    hint = f"did you mean {near!r}?" if near else f"write for instance {example!r}"
+    raise ArgumentError(f"{what}; {hint}", code)
+
+
+def _meant(unit: str, dimension: str) -> str | None:
+    """The usual unit of a dimension that is spelled so but for capitals, blanks and dots."""
+    spelled = {_bare(usual): usual for usual, (of, _) in USUAL.items() if of == dimension}
+    return spelled.get(_bare(unit))
+
+
+def _bare(unit: str) -> str:
+    return re.sub(r"[\s*.·-]", "", unit).casefold()
+
+
+def _symbols() -> dict[str, None]:
+    """The names in the usual units, each once."""
+    return dict.fromkeys(name for unit in USUAL for name in re.findall(r"[A-Za-z]+", unit))

@@ -1,0 +1,110 @@
+"""The study file's form: numbers of the study that vary, for `sweep` and `reliability`."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.types import Coordinate, Number, StrictTable, Whole
+
+MOST_DESIGNS = 1_000_000
+MOST_PARAMETERS = 100
+MOST_SAMPLES = 10_000_000
+Pair = tuple[Coordinate, Coordinate]
+Triple = tuple[Coordinate, Coordinate, Coordinate]
+
+
+class ParameterTable(StrictTable):
+    """How one number varies: by `from` and `to`, or by one law. All values are numbers in the
+    study's units, or texts with a unit.
+    """
+
+    from_: Annotated[Coordinate | None, Field(alias="from")] = None
+    """The least value; with `to`, all between are equally likely."""
+    to: Coordinate | None = None
+    """The largest value."""
+    uniform: Pair | None = None
+    """Least and largest value, the same as `from` and `to`."""
+    normal: Pair | None = None
+    """Mean and standard deviation."""
+    lognormal: Pair | None = None
+    """Mean and standard deviation of the number itself, not of its logarithm."""
+    triangular: Triple | None = None
+    """Least, most likely and largest value."""
+    tolerance: Annotated[str, Field(max_length=200)] | None = None
+    """Tolerance of a drawing about the number in the study: "+0.1 mm -0.05 mm", "±0.1 mm", or of a
+    diameter an ISO 286 class such as "h7". It is a normal law about the middle of the tolerance,
+    whose limits are three standard deviations away, cut off at the limits."""
+    within: Pair | None = None
+    """Limits at which a normal or lognormal law is cut off."""
+    steps: Annotated[Whole, Field(ge=1, le=MOST_DESIGNS)] | None = None
+    """Number of values in a grid: evenly from `from` to `to`, of a law the middles of so many parts
+    that are equally likely."""
+
+    @model_validator(mode="after")
+    def _one_law(self) -> "ParameterTable":
+        ends = self.from_ is not None, self.to is not None
+        laws = [x for x in LAWS if getattr(self, x) is not None]
+        if any(ends) and not all(ends):
+            raise ArgumentError("from and to belong together", "give-both")
+        if len(laws) + any(ends) != 1:
+            raise ArgumentError(f"give from and to, or one of {', '.join(LAWS)}", "give-one")
+        if self.within is not None and not (self.normal or self.lognormal):
+            raise ArgumentError(
+                "within cuts off a normal or a lognormal law only", "not-applicable"
+            )
+        return self
+
+
+LAWS = ("uniform", "normal", "lognormal", "triangular", "tolerance")
+
+
+class CorrelationTable(StrictTable):
+    """How two numbers with normal laws vary together."""
+
+    between: tuple[str, str]
+    """Keys of two of the parameters, which have normal laws without `within`."""
+    coefficient: Annotated[Number, Field(gt=-1.0, lt=1.0)]
+    """Coefficient of correlation."""
+
+
+class VaryTable(StrictTable):
+    """Which numbers of the study `pinstress sweep` varies, and which designs it samples."""
+
+    sample: Literal["grid", "sobol", "latin-hypercube", "random"] = "grid"
+    """The designs: all combinations of `steps` values ("grid"), or `count` points of a scrambled
+    Sobol sequence, a Latin hypercube or a random sample."""
+    count: Annotated[Whole, Field(ge=1, le=MOST_DESIGNS)] = 256
+    """Number of designs, except of a grid."""
+    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
+    """Of the random numbers: the same seed gives the same designs."""
+    parameters: Annotated[
+        dict[str, ParameterTable], Field(min_length=1, max_length=MOST_PARAMETERS)
+    ]
+    """By key of the study as messages spell it, elements counted from 1, in quotes:
+    "pin.B.profile[2].diameter"."""
+    correlations: Annotated[list[CorrelationTable], Field(max_length=MOST_PARAMETERS**2)] = []
+    """Correlations of normal laws; pairs that are not listed are independent."""
+
+
+class ReliabilityTable(StrictTable):
+    """Which failure and which probability `pinstress reliability` looks at, and how many designs it
+    solves. Random are the numbers in `[vary.parameters]` that have a law.
+    """
+
+    factor: Annotated[Number, Field(gt=0.0)] = 1.0
+    """A pin fails where its factor of safety against yield is less than this."""
+    probability: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.001
+    """Largest allowed probability of failure; also that with which the reported factor of safety is
+    not reached."""
+    samples: Annotated[Whole, Field(ge=10, le=MOST_SAMPLES)] = 2_000
+    """Number of designs of plain (Monte Carlo) sampling."""
+    importance_samples: Annotated[Whole, Field(ge=0, le=MOST_SAMPLES)] = 1_000
+    """Number of designs of importance sampling about the design points of FORM; 0 for none."""
+    sobol_samples: Annotated[Whole, Field(ge=0, le=MOST_SAMPLES)] = 256
+    """Base samples of the Sobol indices, which take as many designs for each parameter and twice
+    more, rounded down to eight sets of a power of two; 0 for none. Not for correlated numbers."""
+    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
+    """Of the random numbers: the same seed gives the same result."""
+    confidence: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.95
+    """Confidence level of all intervals."""

@@ -1,1 +1,0 @@
-"""A page for exploring the designs of a sweep."""

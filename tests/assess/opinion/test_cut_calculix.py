@@ -1,0 +1,38 @@
+"""Local solids beside CalculiX, which solves the whole pin on another mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.cuts.cut_calculix import in_calculix
+from benchmarks.random_pins import STEEL
+from fea.core.pin_loads import PinLoads
+from fea.solve.solve_pin import Asked, solve_pin
+from geometry import CutPin, Hole, Pin, Segment
+
+D = 0.02
+FOOT = Segment(0.015, 0.026, name="root")
+TWICE = Pin(
+    "twice",
+    (
+        *(FOOT, Segment(0.02, D, name="a"), Segment(0.01, D, connection="B")),
+        *(Segment(0.02, D, name="b"), Segment(0.015, 0.026, name="tip")),
+    ),
+    fillet=0.003,
+)
+
+
+@pytest.mark.peers
+@pytest.mark.parametrize("z", [0.025, 0.04])
+def test_a_hole_between_two_clamps(z: float) -> None:
+    """In the shaft, and in the band that a force pulls along; averaged stress of CalculiX on this
+    mesh is known to some per cent.
+    """
+    pin = CutPin(TWICE, (Hole(z, 0.006, 0.3),))
+    loads = PinLoads("pull", ("B",), np.array([[[0.0, 0.0, 40e3]]]))
+    clamps = ("start", "end")
+    (ours,) = solve_pin(pin, STEEL, clamps, (loads,), Asked(0.01))
+    assert ours.peak.model == "harmonic+local"
+    theirs = in_calculix(pin, clamps, loads, 2.0**0.5)
+    assert ours.peak.max_von_mises == pytest.approx(theirs.maximum, rel=0.06)

@@ -1,0 +1,121 @@
+"""Hand checks of lugs against a printed example and sums on paper; thickness, bores, instants."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from assess.strength.lug_checks import (
+    bearing_stress,
+    lug_checks,
+    net_section_stress,
+    shear_out_stress,
+)
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
+from fea.support.lugs.lug import Lug
+from geometry import ArgumentError
+from tests.support.errors import raises
+from tests.support.pins.plain_pins import double_shear
+
+D, W, T, F = 0.02, 0.05, 0.01, 30e3
+PIN = double_shear(T, 0.001, 2.0 * T, D)
+FORCES = np.array([[[-F / 2, 0.0, 9e9], [F, 0.0, 0.0], [-F / 2, 0.0, 0.0]]])
+LOADS = PinLoads("pull", ("A", "B", "C"), FORCES)
+
+
+def test_a_printed_example() -> None:
+    """AISC Design Examples, D.7: a plate of 4.25 x 0.5 in with a hole of 1.03 in on a pin of 1 in.
+    58 ksi on the net section is 93.4 kip (with 1.61 in on each side), 1.8 x 36 ksi in bearing 32.4.
+    """
+    assert net_section_stress(93.4, 4.25, 1.03, 0.5) == pytest.approx(58.0, rel=1e-3)
+    assert bearing_stress(32.4, 1.0, 0.5) == pytest.approx(1.8 * 36.0, rel=1e-12)
+
+
+def test_shear_out_on_paper() -> None:
+    """Eye of 50, bore of 20: the planes are 10 sin 40 = 6.4279 off the middle, from 10 cos 40 =
+    7.6604 to sqrt(625 - 41.3176) = 24.1595, so 16.4991 long; twice that times 10 is 329.98.
+    """
+    assert shear_out_stress(30e3, 50.0, 20.0, 10.0) == pytest.approx(30e3 / 329.98, rel=1e-5)
+
+
+@given(st.floats(2.5, 10.0))
+def test_shear_out_beside_the_square_end(ratio: float) -> None:
+    """The planes of a square end, W / 2 - D / 2 cos 40, are longer, by at most 5.1 %; those that
+    begin at the top of the bore, W / 2 - D / 2, are shorter.
+    """
+    round_end = 1.0 / (2.0 * shear_out_stress(1.0, ratio, 1.0, 1.0))
+    square = ratio / 2.0 - math.cos(math.radians(40.0)) / 2.0
+    assert ratio / 2.0 - 0.5 < round_end < square < 1.052 * round_end
+
+
+@given(st.floats(0.1, 10.0), st.floats(0.1, 10.0))
+def test_stresses_scale_as_force_over_area(length: float, force: float) -> None:
+    for stress in (net_section_stress, shear_out_stress):
+        scaled = stress(force * F, length * W, length * D, length * T)
+        assert scaled == pytest.approx(stress(F, W, D, T) * force / length**2)
+    scaled = bearing_stress(force * F, length * D, length * T)
+    assert scaled == pytest.approx(bearing_stress(F, D, T) * force / length**2)
+
+
+def test_lugs_of_a_clevis(steel: Material) -> None:
+    """30 kN on the middle lug: 30e3 / (30 x 20) = 50 MPa, 45.46 and 75 MPa; the outer ones are half
+    as thick and have half of it. Axial forces do not count.
+    """
+    lugs = [Lug(name, W, steel) for name in "ABC"]
+    checks = lug_checks(PIN, lugs, LOADS)
+    assert [(x.name, x.at) for x in checks] == [
+        (f"lug, {kind}", name) for name in "ABC" for kind in ("net section", "shear-out", "bearing")
+    ]
+    for net, out, bearing in zip(checks[::3], checks[1::3], checks[2::3], strict=True):
+        assert net.stress == pytest.approx(50e6)
+        assert out.stress == pytest.approx(45.457e6, rel=1e-4)
+        assert bearing.stress == pytest.approx(75e6)
+        assert net.z == PIN.band(net.at).middle
+        assert net.time is None
+
+
+def test_strengths_of_the_lugs_own_material(steel: Material) -> None:
+    soft = replace(steel, yield_strength=240e6)
+    net, out, bearing = lug_checks(PIN, [Lug("B", W, soft)], LOADS)
+    assert net.factor == pytest.approx(240.0 / 50.0)
+    assert out.strength == pytest.approx(240e6 / math.sqrt(3.0))
+    assert bearing.strength == 240e6
+    for check in lug_checks(PIN, [Lug("B", W, replace(soft, yield_strength=None))], LOADS):
+        assert check.strength is None
+        assert check.factor is None
+
+
+def test_the_bore_is_that_of_the_clearance_or_the_bushing(steel: Material) -> None:
+    """The pin bears on its own diameter, in a bushing that on the bushing's outer one."""
+    loose = Lug("B", W, steel, clearance=0.001)
+    net, _, bearing = lug_checks(PIN, [loose], LOADS)
+    assert net.stress == pytest.approx(F / (0.029 * 2 * T))
+    assert bearing.stress == pytest.approx(F / (D * 2 * T))
+    net, out, bearing = lug_checks(PIN, [loose], LOADS, {"B": 0.025})
+    assert net.stress == pytest.approx(F / (0.025 * 2 * T))
+    assert out.stress == pytest.approx(shear_out_stress(F, W, 0.025, 2 * T))
+    assert bearing.stress == pytest.approx(F / (0.025 * 2 * T))
+
+
+def test_the_largest_force_of_a_motion(steel: Material) -> None:
+    forces = np.zeros((3, 1, 3))
+    forces[1, 0, :2] = 3e3, -4e3
+    forces[2, 0, 0] = 4.9e3
+    lugs = [Lug("A", W, steel), Lug("B", W, steel)]
+    checks = lug_checks(PIN, lugs, PinLoads("m", ("B",), forces, times=np.array([0.0, 0.5, 1.0])))
+    assert {(x.at, x.time) for x in checks} == {("B", 0.5)}
+    assert checks[2].stress == pytest.approx(5e3 / (D * 2 * T))
+    assert lug_checks(PIN, lugs, PinLoads("none", ("A", "B"), np.zeros((1, 2, 3)))) == ()
+
+
+@pytest.mark.parametrize("outer", [0.019, 0.02, math.nan])
+def test_an_eye_must_be_wider_than_its_bore(outer: float) -> None:
+    for stress in (net_section_stress, shear_out_stress):
+        with raises(ArgumentError, "out-of-range", "bore"):
+            stress(F, outer, D, T)

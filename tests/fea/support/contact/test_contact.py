@@ -1,0 +1,230 @@
+"""Contact on cells against exact plane solutions, its conditions, and its limits."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from fea.core.linear_solver import SolveError
+from fea.core.pin_loads import Floats
+from fea.support.contact.contact import Bands, ContactProblem, Pressed
+
+NU = 0.3
+E_STAR = 1.0 / (1.0 - NU * NU)
+# E* dR / Q: half angle of contact (deg) and p0 R / Q of a disc in a hole of an infinite plate of
+# the same material, from E* dR / Q = [2 - ln(b^2 + 1) - 2 b^4] / (pi b^2 (b^2 + 1)) with
+# b = tan(eps / 2): Persson 1964; Ciavarella & Decuzzi 2001.
+PERSSON = {
+    0.0: (84.828, 0.599629),
+    0.1: (80.924, 0.609035),
+    0.5: (69.735, 0.650841),
+    1.0: (60.933, 0.704607),
+    2.0: (50.424, 0.805947),
+    5.0: (36.342, 1.059022),
+    10.0: (27.138, 1.383835),
+    20.0: (19.781, 1.872242),
+    50.0: (12.756, 2.877350),
+    100.0: (9.081, 4.029469),
+}
+
+
+def disc_and_plate(highest: int) -> Floats:
+    """Compliances (N + 1, 1, 1) under p cos n theta, R = E = 1, plane strain, by Muskhelishvili: of
+    the disc [k / (n + 1) + 1 / (n - 1)] / (4 mu), of the hole with n + 1 and n - 1 exchanged. What
+    n = 1 does is a shift, which is free.
+    """
+    mu, k = 0.5 / (1.0 + NU), 3.0 - 4.0 * NU
+    out = np.zeros((highest + 1, 1, 1))
+    out[0] = ((k - 1.0) + 2.0) / (4.0 * mu)
+    for n in range(2, highest + 1):
+        out[n] = (k + 1.0) * (1.0 / (n + 1.0) + 1.0 / (n - 1.0)) / (4.0 * mu)
+    return out
+
+
+def plane(
+    clearance: float, sectors: int = 96, highest: int = 6, tail: float = 1.0
+) -> ContactProblem:
+    """A disc in a plate, of unit radius and thickness; radial clearance."""
+    bands = Bands(np.zeros(1), np.ones(1), np.ones(1), np.zeros(1, int), np.array([clearance]))
+    both = np.array([tail * 4.0 * (1.0 - NU * NU)])
+    return ContactProblem(bands, disc_and_plate(highest), both, [math.inf], sectors)
+
+
+def three(
+    clearance: float = 0.0, tilt: float = math.inf, stiff: float = 1.0, sectors: int = 32
+) -> ContactProblem:
+    """A fork and an eye on bands of two rings: local flexibility by ring, and a beam's bending.
+
+    The flexibility is made up, symmetric and positive: half-planes and a cantilever.
+    """
+    z = np.array([0.25, 0.75, 1.5, 2.5, 3.25, 3.75])
+    length = np.array([0.5, 0.5, 1.0, 1.0, 0.5, 0.5])
+    flexible = np.zeros((7, 6, 6))
+    for n in range(7):
+        flexible[n] = 2.0 / max(n, 1) * np.eye(6) / stiff
+    near, far = np.minimum(z[:, None], z), np.maximum(z[:, None], z)
+    flexible[1] += near**2 * (3.0 * far - near) / 6.0 * length
+    bands = Bands(z, length, np.ones(6), np.array([0, 0, 1, 1, 2, 2]), np.full(6, clearance))
+    return ContactProblem(bands, flexible, np.full(6, 2.0) / stiff, [tilt, math.inf, tilt], sectors)
+
+
+FORK = np.array([[-0.5, 0.0], [1.0, 0.0], [-0.5, 0.0]])
+
+
+def resultants(contact: ContactProblem, found: Pressed) -> Floats:
+    """Force of the cells on the pin at every ring, (R, 2)."""
+    a, mean = contact.angles, np.sinc(1.0 / contact.sectors)
+    area = contact.area.reshape(found.pressure.shape)
+    e_r = mean * np.stack([np.cos(a), np.sin(a)], axis=1)
+    return np.asarray(-(found.pressure * area) @ e_r)
+
+
+@pytest.mark.parametrize("ratio", PERSSON)
+def test_persson(ratio: float) -> None:
+    """Peak pressure within 1 %, angle within half a sector of 3.75 degrees."""
+    half_angle, peak = PERSSON[ratio]
+    contact = plane(ratio / E_STAR)
+    found = contact.solve(np.array([[-1.0, 0.0]]))
+    assert found.pressure.max() == pytest.approx(peak, rel=0.01)
+    assert found.pressure.argmax() == 0
+    cells = np.count_nonzero(found.pressure[0])
+    assert 180.0 / 96 * cells == pytest.approx(half_angle, abs=180.0 / 96)
+
+
+def test_hertz() -> None:
+    """A cylinder on a plane of a third of its modulus: p0 = sqrt(Q E' / (pi R)), half width
+    2 Q / (pi p0). A pin of R = 150 mm with three times as much clearance opens its gap as the
+    cylinder does; that its shift goes as the cosine of the angle is felt by 0.2 %.
+
+    Source of the numbers: NAFEMS R0094, test 1: 35 kN/mm, R = 50 mm, 210 on 70 GPa, nu = 0.3.
+    """
+    weak = 1.0 / ((1.0 - NU * NU) * (1.0 / 210e3 + 1.0 / 70e3))
+    radius, load, pin, clearance, sectors = 50.0, 35e3, 150.0, 450.0, 1440
+    assert pin**2 / clearance == radius
+    bands = Bands(np.zeros(1), np.ones(1), np.array([pin]), np.zeros(1, int), np.array([clearance]))
+    tail = np.array([2.0 * pin / weak])
+    contact = ContactProblem(bands, np.zeros((2, 1, 1)), tail, [math.inf], sectors)
+    found = contact.solve(np.array([[-load, 0.0]]))
+    assert math.sqrt(load * weak / (math.pi * radius)) == pytest.approx(3585.36, rel=1e-4)
+    assert found.pressure.max() == pytest.approx(3585.36, rel=0.01)
+    width = np.count_nonzero(found.pressure) * math.pi / sectors * pin
+    assert width == pytest.approx(6.2146, abs=math.pi / sectors * pin)
+
+
+def test_the_peak_converges_with_sectors_and_harmonics() -> None:
+    """Half way between limits, where neither alone is easy."""
+    exact = PERSSON[2.0][1]
+
+    def error(sectors: int, highest: int) -> float:
+        found = plane(2.0 / E_STAR, sectors, highest).solve(np.array([[-1.0, 0.0]]))
+        return abs(float(found.pressure.max()) / exact - 1.0)
+
+    assert error(192, 10) < 0.001
+    assert error(48, 6) < 0.01
+
+
+def test_without_the_half_planes_tail_it_is_wrong() -> None:
+    """More unknown pressures than harmonics say anything about: a tenth of it is far too little."""
+    found = plane(0.0, highest=6, tail=0.1).solve(np.array([[-1.0, 0.0]]))
+    assert abs(found.pressure[0, 0] / PERSSON[0.0][1] - 1.0) > 0.08  # in waves
+
+
+def test_interference_is_lames() -> None:
+    """Without any load the pressure of a press fit is even: interference over the flexibility."""
+    found = plane(-0.01).solve(np.zeros((1, 2)))
+    assert found.pressure == pytest.approx(0.01 / disc_and_plate(0)[0, 0, 0], rel=1e-9)
+    assert found.active.all()
+
+
+def test_no_load_and_clearance_is_no_pressure() -> None:
+    found = three(clearance=0.01).solve(np.zeros((3, 2)))
+    assert not found.pressure.any()
+    assert found.gap == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.3, 3.0, -0.2])
+@pytest.mark.parametrize("tilt", [math.inf, 0.0, 2.0])
+def test_conditions_hold(clearance: float, tilt: float) -> None:
+    """No tension, no overlap, one of both zero; forces and couples in equilibrium to 1e-10."""
+    contact = three(clearance, tilt)
+    forces = np.array([[-0.7, 0.1], [1.1, 0.3], [-0.4, -0.4]])
+    found = contact.solve(forces, couple=(0.05, -0.02))
+    assert found.pressure.min() >= 0.0
+    assert found.gap.min() >= 0.0
+    assert not (found.pressure * found.gap).any()
+    ring = resultants(contact, found)
+    by_band = np.add.reduceat(ring, [0, 2, 4])
+    assert by_band == pytest.approx(forces, abs=1e-10)
+    arm = contact.bands.z - contact.bands.z.mean()
+    mx, my = -(arm @ ring)[1] + 0.05, (arm @ ring)[0] - 0.02
+    assert (mx, my) == pytest.approx((0.0, 0.0), abs=1e-10)
+    if tilt == 0.0:
+        for b in (0, 2):
+            own = contact.bands.band == b
+            couple = (contact.bands.z - contact.bands.middles[b])[own] @ ring[own]
+            assert couple == pytest.approx([0.0, 0.0], abs=1e-10)
+
+
+def test_a_symmetric_case_is_symmetric() -> None:
+    found = three(0.1).solve(FORK)
+    assert found.pressure == pytest.approx(found.pressure[::-1], abs=1e-9)  # end for end
+    mirrored = np.roll(found.pressure[:, ::-1], 1, axis=1)  # about the plane of the load
+    assert found.pressure == pytest.approx(mirrored, abs=1e-9)
+
+
+def test_turned_loads_turn_the_pressure() -> None:
+    """By sectors exactly; between them as far as cells of 7.5 degrees allow."""
+    contact = three(0.1, sectors=48)
+    first = contact.solve(FORK)
+    for sectors, within in ((5, 1e-8), (0.5, 0.02)):
+        angle = sectors * 2.0 * math.pi / 48
+        c, s = math.cos(angle), math.sin(angle)
+        found = contact.solve(FORK @ np.array([[c, s], [-s, c]]))
+        if sectors == 5:
+            assert found.pressure == pytest.approx(np.roll(first.pressure, 5, axis=1), abs=within)
+        line, other = (x.pressure.sum(axis=1) for x in (found, first))
+        assert line == pytest.approx(other, rel=within)
+
+
+def test_without_clearance_forces_in_proportion_give_pressures_in_proportion() -> None:
+    one, ten = (three().solve(k * FORK) for k in (1.0, 10.0))
+    assert ten.pressure == pytest.approx(10.0 * one.pressure, rel=1e-9, abs=1e-9)
+    loose = [three(0.3).solve(k * FORK).pressure for k in (1.0, 10.0)]
+    assert loose[1].max() < 9.0 * loose[0].max()  # contact spreads
+
+
+def test_any_start_leads_to_the_same_answer() -> None:
+    contact = three(0.2)
+    cold = contact.solve(FORK)
+    for start in (np.ones((6, 32), bool), np.roll(cold.active, 9, axis=1)):
+        assert contact.solve(FORK, start=start).pressure == pytest.approx(cold.pressure, abs=1e-9)
+    assert contact.solve(FORK, start=cold.active).steps == 1
+
+
+def test_a_lug_that_carries_nothing_is_left_alone() -> None:
+    """Its force is zero: with clearance it has no contact, and the others balance without it."""
+    contact = three(clearance=5.0, tilt=2.0)
+    found = contact.solve(np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]))
+    by_band = np.add.reduceat(resultants(contact, found), [0, 2, 4])
+    assert by_band == pytest.approx(np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]), abs=1e-10)
+
+
+def test_stiffer_lugs_and_smaller_clearance_press_harder_or_wider() -> None:
+    """The first widens the arc with flexibility, the second with less clearance."""
+    arcs = [np.count_nonzero(three(c).solve(FORK).pressure) for c in (0.0, 0.5, 2.0, 20.0)]
+    assert arcs == sorted(arcs, reverse=True)
+    assert arcs[0] > arcs[-1]
+
+
+def test_forces_out_of_balance_cannot_be_answered() -> None:
+    """Resultants are met band by band, whatever they are; a couple without lugs that take it is
+    not: that of two free lugs in single shear.
+    """
+    contact = ContactProblem(
+        Bands(np.array([0.5, 2.0]), np.ones(2), np.ones(2), np.array([0, 1]), np.zeros(2)),
+        np.stack([np.eye(2)] * 2), np.ones(2), [0.0, 0.0], 24,
+    )  # fmt: skip
+    with pytest.raises(SolveError):
+        contact.solve(np.array([[1.0, 0.0], [-1.0, 0.0]]))

@@ -1,0 +1,120 @@
+"""When meshes and cells are enough: where their error decides nothing that finer ones might."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fea.core.material import Material
+from fea.core.mesh_result import AtSingularity, MeshResult
+from fea.core.pin_loads import PinLoads
+from fea.singular.singularities import Singularity
+from fea.solve.requirement import Asked, enough, reasons
+from fea.solve.verdict import FEWEST, Seen, judge
+from fea.support.contact.pressed_cases import Compared
+from fea.support.contact.variations import AtPlaces, Comparison
+
+STEEL = Material("steel", 210e9, 0.3, yield_strength=400e6)
+CLAMP = Singularity(0.01, 0.02, "edge of a clamp", ("held", "shaft"), 0.5, 0.5, 0.002, "none")
+DECIDE = Asked(goal="decide", required=2.0)  # a limit of 200 MPa
+
+
+def mesh(maximum: float, felt: float, interval: tuple[float, float] | None = None) -> MeshResult:
+    """Stresses in MPa; felt: next to a clamp's edge."""
+    edge = AtSingularity(felt * 1e6, felt * 1e6, (0.0, 0.0, 0.0))
+    ends = interval and (interval[0] * 1e6, interval[1] * 1e6)
+    return MeshResult(1000, maximum * 1e6, 0, (0.0, 0.0, 0.0), (edge,), interval=ends)
+
+
+def seen(*results: MeshResult, fewest: int = FEWEST) -> Seen:
+    times = (0.1,) * len(results)
+    return Seen("P", "c", "harmonic", results, times, 2.0**0.5, fewest=fewest)
+
+
+@pytest.mark.parametrize(
+    ("felt", "maximum", "done"),
+    [
+        (90.0, 100.0, True),  # far below the limit
+        (150.0, 100.0, True),  # also with the whole interval
+        (500.0, 300.0, True),  # far above
+        (90.0, 199.0, False),  # its error reaches the limit
+        (250.0, 180.0, False),  # its interval does
+    ],
+)
+def test_meshes_decide_as_soon_as_there_are_enough(felt: float, maximum: float, done: bool) -> None:
+    """Two of a pin in contact, three of others: fewer can agree by chance."""
+    ends = None if felt < maximum else (0.9 * maximum, 1.15 * maximum)
+    first, second = mesh(maximum, felt, ends), mesh(1.002 * maximum, felt, ends)
+    asked = replace(DECIDE, tolerance=1e-3)
+    assert enough(asked, STEEL, seen(first, second, fewest=2)) is done
+    assert not enough(asked, STEEL, seen(first, fewest=2))
+    assert not enough(asked, STEEL, seen(first, second))
+    assert not enough(replace(asked, goal="value"), STEEL, seen(first, second, fewest=2))
+
+
+def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> None:
+    """Whatever is asked: the row is that of the sections."""
+    first, second = mesh(100.0, 0.0), mesh(104.0, 0.0)
+    here = seen(first, second, fewest=2)
+    high = here.range[1]
+    for section, done in ((1.001 * high, True), (0.999 * high, False)):
+        asked = Asked(1e-4, elsewhere={"c": section})
+        assert enough(asked, STEEL, here) is done
+        assert ("surface-below-sections" in reasons(asked, STEEL, "harmonic")(here).codes) is done
+    assert not enough(Asked(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
+
+
+def test_ends_that_change_from_mesh_to_mesh_widen_the_interval() -> None:
+    before, last = mesh(100.0, 150.0, (92.0, 130.0)), mesh(100.0, 150.0, (94.0, 120.0))
+    steady, moved = seen(last, last), seen(before, last)
+    assert moved.relative == steady.relative
+    ratio = 1.0 + moved.relative
+    assert steady.range[1] == pytest.approx(120e6 * ratio)
+    assert moved.range[1] == pytest.approx(130e6 * ratio)
+    assert moved.range[0] == pytest.approx(92e6 * (1.0 - moved.relative))
+    # the maximum was not governed by what is excluded before: nothing to compare with
+    assert seen(mesh(100.0, 90.0), last).range == pytest.approx(steady.range)
+
+
+def compared(surface: float, section: float, beneath: float, cells: AtPlaces) -> Compared:
+    """Stresses in MPa, at one instant."""
+    links = PinLoads("c", ("A",), np.zeros((1, 1, 3)))
+    at = AtPlaces(1e6 * surface, 1e6 * section, 1e6 * beneath)
+    found = Comparison(at, cells, links, ())
+    return Compared(found, found)
+
+
+@pytest.mark.parametrize(
+    ("stress", "cells", "value", "decide"),
+    [
+        ((150.0, 100.0, 90.0), (0.01, 0.01, 0.01), True, True),  # little of the tolerance
+        ((150.0, 100.0, 90.0), (0.05, 0.05, 0.05), False, True),  # safe by far
+        ((196.0, 100.0, 90.0), (0.05, 0.05, 0.05), False, False),  # the limit is within the error
+        ((150.0, 188.0, 90.0), (0.05, 0.08, 0.05), False, False),  # of the sections', too
+        ((150.0, 150.0, 195.0), (0.05, 0.05, 0.05), False, False),  # and of what lies beneath
+        ((150.0, 150.0, 250.0), (0.05, 0.05, 0.05), False, True),  # too much beneath, surely
+        ((250.0, 150.0, 195.0), (0.05, 0.05, 0.05), False, True),  # fails, whatever lies beneath
+        ((150.0, 100.0, 90.0), (0.01, 0.9, 0.01), False, True),  # sections may be more: 190 MPa
+        ((150.0, 60.0, 90.0), (0.01, 0.9, 0.01), True, True),  # or surely not
+    ],
+)
+def test_when_cells_are_fine_enough(
+    stress: tuple[float, float, float],
+    cells: tuple[float, float, float],
+    value: bool,
+    decide: bool,
+) -> None:
+    found = compared(*stress, AtPlaces(*cells))
+    assert found.fine(STEEL, Asked(tolerance=0.02)) is value
+    assert found.fine(STEEL, DECIDE) is decide
+
+
+def test_two_meshes_may_be_too_few() -> None:
+    last = mesh(100.0, 90.0)
+    peak = judge(seen(last, last), (CLAMP,), 0.02)
+    assert peak.verdict == "unconverged"
+    assert "too-few-meshes" in peak.reasons
+    assert "only 2 meshes were solved" in peak.note
+    assert judge(seen(last, last, fewest=2), (CLAMP,), 0.02).verdict == "converged"

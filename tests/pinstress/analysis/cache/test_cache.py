@@ -1,0 +1,170 @@
+"""Entries of the cache: never trusted when damaged, packed to the last bit, never in the way."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fea.core.peak import Peak, Refinement
+from pinstress.analysis.cache import serialise as packing
+from pinstress.analysis.cache import store as cache_module
+from pinstress.analysis.cache.store import Cache, user_cache
+from pinstress.analysis.stored import Entry, Solved
+from reports.data.results import Field
+from tests.support.programs.folder_contents import contents, flipped
+
+
+def large(size: int) -> Solved:
+    """An entry of about so many bytes."""
+    return Solved((Peak("P", "c", "beam", "rigid", "w" * size),))
+
+
+@pytest.mark.parametrize(
+    "damage", [flipped, lambda d: d[:-1], lambda d: d[:40], lambda _: b"", lambda d: d + b"\0"]
+)
+def test_a_damaged_entry_is_none_and_is_replaced(
+    tmp_path: Path, damage: Callable[[bytes], bytes]
+) -> None:
+    cache, value = Cache(tmp_path, ""), Solved((Peak("P", "c", "beam", "rigid", "why"),))
+    key = cache.key("question")
+    cache.write(key, value)
+    assert cache.read(key, Solved) == value
+    sound = (tmp_path / key).read_bytes()
+    (tmp_path / key).write_bytes(damage(sound))
+    assert cache.read(key, Solved) is None
+    cache.write(key, value)
+    assert contents(tmp_path) == {key: sound}
+
+
+def test_a_change_in_the_source_is_another_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "pinstress" / "cache").mkdir(parents=True)
+    (tmp_path / "fea" / "core").mkdir(parents=True)
+    store = tmp_path / "pinstress" / "cache" / "store.py"
+    monkeypatch.setattr(cache_module, "__file__", str(store))
+    seen = set()
+    for source in ("x = 1", "x = 2"):
+        (tmp_path / "fea" / "core" / "stress.py").write_text(source)
+        seen.add(cache_module.program())
+    assert len(seen) == 2
+
+
+def test_no_name_leaves_a_folder(tmp_path: Path) -> None:
+    cache = Cache(tmp_path / "cache", "")
+    for key in ("../" * 22 + "a", "a" * 63 + "/", "A" * 64, "", "a" * 65):
+        with pytest.raises(ValueError, match="not the name of an entry"):
+            cache.read(key, Solved)
+
+
+def test_the_longest_unused_go_first_and_nothing_else_goes(tmp_path: Path) -> None:
+    cache = Cache(tmp_path, "", limit=3000)
+    keys = [cache.key(i) for i in range(4)]
+    other = tmp_path / "letter.txt"
+    other.write_text("not ours " * 1000)
+    left = tmp_path / f"{keys[0]}abc_1.partial"  # by a run that was killed
+    left.write_bytes(b"\0" * 900)
+    os.utime(left, (1.0, 1.0))
+    for i, key in enumerate(keys):
+        cache.write(key, large(700))
+        os.utime(tmp_path / key, (10.0 + i, 10.0 + i))
+    assert cache.read(keys[0], Solved) is not None  # used now
+    size = (tmp_path / keys[0]).stat().st_size
+    assert 2 * size <= cache.limit < 3 * size
+    cache.trim()
+    assert {p.name for p in tmp_path.iterdir()} == {keys[0], keys[3], "letter.txt"}
+    cache.write(keys[1], large(5000))  # more than all may be
+    assert not (tmp_path / keys[1]).exists()
+
+
+def test_what_other_programs_name_by_hashes_stays(tmp_path: Path) -> None:
+    """A store of theirs that PINSTRESS_CACHE names by mistake; links and folders as well."""
+    cache = Cache(tmp_path / "store", "program")
+    cache.write("a" * 64, large(700))
+    assert cache.read("a" * 64, Solved) is not None
+    (tmp_path / "thesis.doc").write_text("years of work")
+    (tmp_path / "store" / ("b" * 64)).write_bytes(b"blob" * 1000)
+    (tmp_path / "store" / ("c" * 64)).symlink_to(tmp_path / "thesis.doc")
+    (tmp_path / "store" / ("d" * 64)).mkdir()
+    Cache(tmp_path / "store", "program", limit=0).trim()
+    left = sorted(p.name[0] for p in (tmp_path / "store").iterdir())
+    assert left == ["b", "c", "d"]
+    assert (tmp_path / "thesis.doc").read_text() == "years of work"
+
+
+def test_where_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for off in ("", "off", "OFF"):
+        monkeypatch.setenv("PINSTRESS_CACHE", off)
+        assert user_cache() is None
+    monkeypatch.setenv("PINSTRESS_CACHE", str(tmp_path / "here"))
+    found = user_cache()
+    assert found is not None
+    assert found.folder == tmp_path / "here"
+    monkeypatch.delenv("PINSTRESS_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    found = user_cache()
+    assert found is not None
+    assert found.folder == tmp_path / "xdg" / "pinstress"
+    assert list(tmp_path.iterdir()) == []  # nothing is made before it is written
+
+
+def test_packing_keeps_every_bit() -> None:
+    numbers = np.array([[0.1, -0.0, np.nan], [np.inf, 5e-324, 1 / 3]], order="F")
+    field = Field("P ü", "c", numbers, np.arange(8).reshape(2, 4), numbers, numbers, numbers[0],
+                  numbers[1], "quad", None, (0.1 + 0.2, (1.0, -0.0, 1e300)))  # fmt: skip
+    entry = Entry(Solved((Peak("P", "c", "beam", "rigid", "why"),)), (field,))
+    data = packing.pack(entry)
+    back = packing.unpack(Entry, data)
+    assert packing.pack(back) == data
+    assert back.solved == entry.solved
+    assert back.fields[0].points.tobytes("A") == numbers.tobytes("A")
+    assert repr(back.fields[0].outside) == repr(field.outside)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        Peak("P", "c", "beam", "perhaps", ""),  # type: ignore[arg-type]
+        Peak("P", "c", "beam", "rigid", "", max_von_mises="1"),  # type: ignore[arg-type]
+        Peak("P", "c", "beam", "rigid", "", location=(1.0, 2.0)),  # type: ignore[arg-type]
+        Peak("P", "c", "beam", "rigid", 1),  # type: ignore[arg-type]
+        Refinement(1, 1.0, 1.0),
+        ("P",),
+        None,
+    ],
+)
+def test_unpacking_checks_types(wrong: object) -> None:
+    with pytest.raises(ValueError, match=r"expected|argument"):
+        packing.unpack(Peak, packing.pack(wrong))
+
+
+class Payload:
+    """What a pickle of it does when it is read."""
+
+    def __init__(self, path: str) -> None:
+        self.path = path
+
+    def __reduce__(self) -> tuple[Callable[[str], None], tuple[str]]:
+        return os.mkdir, (self.path,)
+
+
+def test_nothing_is_pickled(tmp_path: Path) -> None:
+    with pytest.raises(TypeError, match="cannot be packed"):
+        packing.pack(np.array([{}], dtype=object))
+    with pytest.raises(TypeError, match="cannot be packed"):
+        packing.pack(Path("x"))
+    cache, trap = Cache(tmp_path, ""), tmp_path / "trap"
+    key = cache.key("plot")
+    file = io.BytesIO()
+    text = np.frombuffer(b'["Solved",[["Peak","a",0]]]', np.uint8)
+    np.savez(file, **{"0": np.array([Payload(str(trap))], dtype=object), "text": text})  # type: ignore[arg-type]
+    seal = hashlib.sha256(key.encode() + file.getvalue()).digest()
+    (tmp_path / key).write_bytes(seal + file.getvalue())  # as sound as a forger can make it
+    assert cache.read(key, Solved) is None
+    assert not trap.exists()

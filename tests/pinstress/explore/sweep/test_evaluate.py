@@ -1,0 +1,211 @@
+"""A design's rows against runs of the changed study, and what is solved again for one."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import pinstress
+from fea.harmonic.kept_fields import EveryMesh
+from geometry import Pin
+from geometry.mesh.moved import near_mesh
+from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
+from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
+from pinstress.analysis.solve import solutions
+from pinstress.explore.sweep.evaluate import Evaluator, Recent
+from pinstress.explore.sweep.number import number_at
+from pinstress.study.model.cases import case_loads
+from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, varied
+
+VARIED = varied(f'"{DIAMETER}" = {{ from = 1.5, to = 3.0 }}')
+MODULUS = "material.AISI 4340.youngs_modulus"
+
+
+def _evaluator(study: Study, *keys: str) -> tuple[Evaluator, list[float]]:
+    numbers = [number_at(study, key) for key in keys]
+    return Evaluator(study, numbers), [number.nominal for number in numbers]
+
+
+@pytest.mark.parametrize("text", [ONE_PIN, VARIED], ids=["own meshes", "moved meshes"])
+def test_rows_are_those_of_a_run_of_the_changed_study(
+    text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To the last bit: a dimension, a load and a strength, one after the other and together. The
+    run has no mesh of another design.
+    """
+    study = study_from(text)
+    evaluator, at = _evaluator(study, DIAMETER, FORCE, STRENGTH)
+    stress = study.system.factor("stress")
+    for scales in [(1.0, 1.0, 1.0), (1.1, 1.0, 1.0), (1.1, 1.3, 1.0), (1.1, 1.3, 0.9)]:
+        values = [s * x for s, x in zip(scales, at, strict=True)]
+        (row,) = evaluator.rows(values)
+        changes = {
+            n.key: n.in_study(v / n.factor) for n, v in zip(evaluator.numbers, values, strict=True)
+        }
+        with monkeypatch.context() as patch:
+            patch.setattr(near_mesh, "_KEPT", near_mesh._Kept())
+            found = pinstress.run(changed_study(study, changes)).pins[0]
+        assert row.max_von_mises is not None
+        assert row.max_von_mises / stress == found.max_von_mises
+        assert row.error_estimate is not None
+        assert row.error_estimate / stress == found.error_estimate
+        assert row.safety_factor == found.safety_factor
+        assert (row.pin, row.case, row.verdict) == ("B", "landing", found.verdict)
+        assert (row.reason, row.code, row.governing_time) == ("", "", None)
+
+
+def test_moved_meshes_are_as_good_as_own_ones() -> None:
+    """Their maxima are as far apart as the errors of both say, and shapes share their meshes."""
+    study = study_from(VARIED)
+    own = changed_study(study, {"analysis.meshes": "own"})
+    assert (study.meshes, own.meshes, study_from(ONE_PIN).meshes) == ("moved", "own", "own")
+    (moved, _), (direct, _) = (_evaluator(s, DIAMETER) for s in (study, own))
+    for diameter in np.linspace(0.04, 0.07, 7):
+        a, b = (each.rows([diameter])[0] for each in (moved, direct))
+        assert a.max_von_mises is not None
+        assert b.max_von_mises is not None
+        assert a.error_estimate is not None
+        assert b.error_estimate is not None
+        assert a.max_von_mises != b.max_von_mises
+        apart = abs(a.max_von_mises - b.max_von_mises)
+        assert apart < a.error_estimate + b.error_estimate
+        assert (a.verdict, b.verdict) == ("converged", "converged")
+
+
+def test_near_designs_share_their_meshes(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Pin] = []
+
+    def counted(pin: Pin, *more: Any) -> MeridianMesh:
+        made.append(pin)
+        return meridian_mesh(pin, *more)
+
+    monkeypatch.setattr(near_mesh, "_KEPT", near_mesh._Kept())
+    monkeypatch.setattr(near_mesh, "meridian_mesh", counted)
+    evaluator, _ = _evaluator(study_from(VARIED), DIAMETER)
+    for diameter in np.linspace(0.0505, 0.0510, 6):
+        assert evaluator.rows([diameter])[0].verdict == "converged"
+    assert evaluator.meshes.solved == 18
+    assert len(made) < 9
+
+
+def test_loads_and_strength_alone_mesh_nothing_again() -> None:
+    evaluator, (force, strength) = _evaluator(study_from(ONE_PIN), FORCE, STRENGTH)
+    evaluator.rows([force, strength])
+    meshes = evaluator.meshes.solved
+    assert meshes == 3
+    rows = [evaluator.rows([force * f, strength * s])[0] for f in (0.5, 2.0) for s in (1.0, 1.5)]
+    assert evaluator.meshes.solved == meshes
+    assert len({row.safety_factor for row in rows}) == 4
+
+
+def test_stress_is_proportional_to_a_load_and_does_not_depend_on_the_modulus() -> None:
+    evaluator, (force, modulus) = _evaluator(study_from(ONE_PIN), FORCE, MODULUS)
+    one, twice, stiff = (
+        evaluator.rows(x)[0].max_von_mises
+        for x in ([force, modulus], [2.0 * force, modulus], [force, 2.0 * modulus])
+    )
+    assert one is not None
+    assert twice == pytest.approx(2.0 * one, rel=1e-12)
+    assert stiff == pytest.approx(one, rel=1e-9)
+
+
+def test_the_order_of_designs_changes_no_bit() -> None:
+    """Nor does what was solved before, or kept no longer."""
+    study = study_from(ONE_PIN)
+    evaluator, (diameter, force) = _evaluator(study, DIAMETER, FORCE)
+    designs = [(d * diameter, f * force) for d in (1.0, 1.2) for f in (1.0, 1.4)]
+    forward = [evaluator.rows(d) for d in designs]
+    other, _ = _evaluator(study, DIAMETER, FORCE)
+    other.meshes._most = 0
+    assert [other.rows(d) for d in reversed(designs)] == forward[::-1]
+
+
+def test_a_design_that_cannot_be_is_a_row_with_its_reason() -> None:
+    evaluator, (diameter, force) = _evaluator(study_from(ONE_PIN), DIAMETER, FORCE)
+    (negative,) = evaluator.rows([-diameter, force])
+    assert (negative.verdict, negative.max_von_mises) == ("failed", None)
+    assert negative.code == "not-positive"
+    assert negative.reason == "pin.B.profile[2].diameter: must be positive"
+    (close,) = evaluator.rows([0.1, force])  # the fillet does not fit into the step
+    assert (close.verdict, close.code) == ("failed", "fillet-too-large")
+    assert close.mass is None
+    (right,) = evaluator.rows([diameter, force])
+    assert right.verdict == "converged"
+
+
+def test_the_mass_is_that_of_the_shape() -> None:
+    """Two cylinders and a fillet of the shipped pin, by hand."""
+    evaluator, (diameter,) = _evaluator(study_from(ONE_PIN), DIAMETER)
+    (row,) = evaluator.rows([diameter])
+    inch, r = 0.0254, 0.4
+    fillet = (1 - math.pi / 4) * r**2
+    # centroid of the fillet's section from the corner, r (10 - 3 pi) / (12 - 3 pi)
+    ring = 2 * math.pi * (1.0 + r * (10 - 3 * math.pi) / (12 - 3 * math.pi)) * fillet
+    volume = (math.pi * (4.0 * 1.5 + 1.0 * 2.0) + ring) * inch**3
+    assert row.mass == pytest.approx(0.2836 * 0.45359237 / inch**3 * volume, rel=1e-9)
+
+
+def test_a_study_that_cannot_run_is_refused() -> None:
+    study = study_from(ONE_PIN.replace('clamp = ["start"]', 'clamp = ["B"]'))
+    with pytest.raises(InputError):
+        Evaluator(study, [])
+
+
+def test_pins_that_a_number_does_not_touch_are_solved_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of the shipped linkage: loads by the impulse are found anew, the motion of others is not."""
+    import pinstress.explore.sweep.evaluate as module
+
+    study = load_study(shipped_studies()["grenier2008"])
+    times = number_at(study, "case.landing.apply.impulse.impulse_time")
+    width = number_at(study, "pin.B.profile[1].diameter")
+    evaluator = Evaluator(study, [times, width], pins=["B", "E"])
+    solved: list[str] = []
+    cases: list[str] = []
+    whole, loads = solutions, case_loads
+
+    def counted(study: Study, task: object, *more: object) -> object:
+        solved.append(getattr(task, "pin").name)  # noqa: B009
+        return whole(study, task, *more)  # type: ignore[arg-type]
+
+    def noted(study: Study, name: str, *more: object) -> object:
+        cases.append(name)
+        return loads(study, name, *more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(module, "solutions", counted)
+    monkeypatch.setattr(module, "case_loads", noted)
+    rows = [evaluator.rows([times.nominal, s * width.nominal]) for s in (1.0, 1.01, 1.02)]
+    assert solved.count("E") == 1
+    assert solved.count("B") == 3
+    assert cases == ["retract", "landing"]
+    assert [len({r[k].max_von_mises for r in rows}) for k in range(4)] == [3, 3, 1, 1]
+    half = evaluator.rows([2.0 * times.nominal, width.nominal])
+    assert cases == ["retract", "landing", "landing"]
+    assert (half[3].safety_factor or 0.0) > (rows[0][3].safety_factor or 0.0)
+    assert half[2] == rows[0][2]
+
+
+def test_what_was_asked_for_last_is_remembered() -> None:
+    known = Recent[int, str](2)
+    for key in (1, 2):
+        known.put(key, str(key))
+    assert known.get(1) == "1"
+    known.put(3, "3")
+    assert (known.get(1), known.get(2), known.get(3)) == ("1", None, "3")
+
+
+def test_meshes_are_kept_within_their_memory() -> None:
+    """All that is kept of them counts, of which stress is a fifth."""
+    evaluator, (diameter, force) = _evaluator(study_from(ONE_PIN), DIAMETER, FORCE)
+    evaluator.meshes = EveryMesh(2_000_000)
+    for k in range(8):
+        evaluator.rows([diameter * (1.0 + 0.01 * k), force])
+    solved = evaluator.meshes.solved
+    evaluator.rows([diameter * 1.07, 2.0 * force])
+    assert evaluator.meshes.solved == solved  # the last one is known
+    evaluator.rows([diameter, 2.0 * force])
+    assert evaluator.meshes.solved > solved

@@ -1,0 +1,267 @@
+"""The command `sweep`: its folder, its messages, and that it goes on where it was ended."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from pyarrow import parquet
+
+from tests.support.programs.command_line import QUICK, pinstress, run_here
+from tests.support.programs.process_group import started
+from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, varied
+
+LOADS = f'"{FORCE}" = {{ from = -1000, to = -500 }}'
+SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}\n{LOADS}'
+
+
+def _study(folder: Path, parameters: str = SHAPES, count: int = 6, text: str = QUICK) -> Path:
+    path = folder / "study.toml"
+    path.write_text(varied(parameters, f'sample = "sobol"\ncount = {count}', text), "utf-8")
+    return path
+
+
+def test_a_sweep_writes_its_table_and_says_what_is_in_it(tmp_path: Path) -> None:
+    _study(tmp_path)
+    made = run_here("sweep", "study.toml", "--jobs", "1", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert "6 designs, 3 failed" in made.stdout
+    assert "fillet-too-large: for instance design" in made.stdout
+    assert "Table: out/study-sweep/designs.parquet" in made.stderr
+    out = tmp_path / "out" / "study-sweep"
+    assert sorted(p.name for p in out.iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
+    ]  # fmt: skip
+    assert parquet.read_table(out / "designs.parquet").num_rows == 6
+    first = (out / "designs.parquet").read_bytes()
+    again = run_here("sweep", "study.toml", "--jobs", "1", "--quiet", cwd=tmp_path)
+    assert (again.returncode, again.stderr) == (0, "")
+    assert (out / "designs.parquet").read_bytes() == first
+
+
+def test_designs_that_all_fail_are_told(tmp_path: Path) -> None:
+    _study(tmp_path, f'"{DIAMETER}" = {{ from = 4.6, to = 4.7 }}', 2)
+    made = run_here("sweep", "study.toml", "--jobs", "1", cwd=tmp_path)
+    assert made.returncode == 1
+    assert "2 designs, 2 failed" in made.stdout
+
+
+@pytest.mark.parametrize(
+    ("prepare", "arguments", "message"),
+    [
+        ("notes.txt", (), "contains files that are not results of this command"),
+        ("", ("--resume",), "has no sweep to go on with"),
+        ("", ("--pins", "X"), "has no pin 'X'"),
+    ],
+)
+def test_what_cannot_be_is_refused(
+    tmp_path: Path, prepare: str, arguments: tuple[str, ...], message: str
+) -> None:
+    _study(tmp_path)
+    if prepare:
+        (tmp_path / "out").mkdir()
+        (tmp_path / "out" / prepare).write_text("mine")
+    made = run_here("sweep", "study.toml", "--out", "out", *arguments, cwd=tmp_path)
+    assert made.returncode == 2
+    assert message in made.stderr
+    assert not (tmp_path / "out" / "designs.parquet").exists()
+
+
+def test_without_vary_there_is_nothing_to_sweep(tmp_path: Path) -> None:
+    (tmp_path / "study.toml").write_text(ONE_PIN)
+    made = run_here("sweep", "study.toml", cwd=tmp_path)
+    assert made.returncode == 2
+    assert "the study has no [vary]" in made.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_unfinished_sweep_is_kept_and_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Interrupted after the third batch; another study does not go on with it."""
+    import pinstress.explore.sweep.workers as module
+    from pinstress.explore.sweep.batches import Batch, DesignProblem, Done, solve_batch
+
+    _study(tmp_path)
+    whole, count = solve_batch, 0
+
+    def interrupted(problem: DesignProblem, batch: Batch) -> Done:
+        nonlocal count
+        count += 1
+        if count > 2:
+            raise KeyboardInterrupt
+        return whole(problem, batch)
+
+    arguments = "sweep", "study.toml", "--jobs", "1", "--out", "out"
+    monkeypatch.setattr(module, "solve_batch", interrupted)
+    made = run_here(*arguments, cwd=tmp_path)
+    assert made.returncode == 130
+    assert "2 batches are kept: the same command with --resume goes on" in made.stderr
+    monkeypatch.setattr(module, "solve_batch", whole)
+    again = run_here(*arguments, cwd=tmp_path)
+    assert again.returncode == 2
+    assert "has a sweep that did not end: go on with --resume" in again.stderr
+    text = (tmp_path / "study.toml").read_text()
+    (tmp_path / "study.toml").write_text(text.replace("count = 6", "count = 6\nseed = 7"))
+    other = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert other.returncode == 2
+    assert "is of another study, other [vary]" in other.stderr
+    (tmp_path / "study.toml").write_text(text)
+    assert run_here(*arguments, "--resume", cwd=tmp_path).returncode == 0
+    assert run_here(*arguments[:-1], "whole", cwd=tmp_path).returncode == 0
+    one, two = (tmp_path / x / "designs.parquet" for x in ("out", "whole"))
+    assert one.read_bytes() == two.read_bytes()
+    assert not (tmp_path / "out" / "parts").exists()
+    assert_complete(tmp_path, *arguments)
+
+
+def assert_complete(folder: Path, *arguments: str) -> None:
+    """A finished sweep says so; another one is none to go on with; a damaged table is named."""
+    table = folder / "out" / "designs.parquet"
+    whole, at = table.read_bytes(), table.stat().st_mtime_ns
+    done = run_here(*arguments, "--resume", cwd=folder)
+    assert done.returncode == 0
+    assert "is complete: nothing to do" in done.stderr
+    assert "6 designs, 3 failed" in done.stdout
+    assert table.stat().st_mtime_ns == at
+    text = (folder / "study.toml").read_text()
+    (folder / "study.toml").write_text(text.replace("count = 6", "count = 6\nseed = 7"))
+    other = run_here(*arguments, "--resume", cwd=folder)
+    assert other.returncode == 2
+    assert "is of another study, other [vary]" in other.stderr
+    (folder / "study.toml").write_text(text)
+    table.write_bytes(whole[:100])
+    damaged = run_here(*arguments, "--resume", cwd=folder)
+    assert damaged.returncode == 2
+    assert "designs.parquet cannot be read" in damaged.stderr
+
+
+@pytest.mark.parametrize("ended", [True, False], ids=["ended", "interrupted"])
+def test_a_sequence_is_continued_to_more_designs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ended: bool
+) -> None:
+    """With the bytes of one that was as long from the start; not to fewer, nor of other kinds."""
+    import pinstress.explore.sweep.workers as module
+    from pinstress.explore.sweep.batches import Batch, DesignProblem, Done, solve_batch
+
+    solved: list[int] = []
+
+    def counted(problem: DesignProblem, batch: Batch) -> Done:
+        if not ended and len(solved) >= 2:
+            raise KeyboardInterrupt
+        solved.extend(batch.designs)
+        return solve_batch(problem, batch)
+
+    monkeypatch.setattr(module, "solve_batch", counted)
+    _study(tmp_path, count=4)
+    arguments = "sweep", "study.toml", "--jobs", "1", "--out", "out"
+    assert run_here(*arguments, cwd=tmp_path).returncode == (0 if ended else 130)
+    monkeypatch.setattr(module, "solve_batch", solve_batch)
+    before = len(solved)
+    _study(tmp_path, count=3)
+    fewer = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert fewer.returncode == 2
+    assert "has count = 4, more than the study's 3" in fewer.stderr
+    ended, solved = True, []
+    monkeypatch.setattr(module, "solve_batch", counted)
+    path = _study(tmp_path, count=9)
+    more = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert more.returncode == 0, more.stderr
+    assert "Continued from 4 designs to 9." in more.stderr
+    assert len(solved) == 9 - before
+    assert run_here(*arguments[:-1], "whole", cwd=tmp_path).returncode == 0
+    for name in ("designs.parquet", "designs.html", "sweep.json"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    path.write_text(path.read_text().replace('"sobol"', '"latin-hypercube"'))
+    other = run_here(*arguments, "--resume", cwd=tmp_path)
+    assert "is of another study, other [vary]" in other.stderr
+    assert run_here(*arguments[:-1], "cube", cwd=tmp_path).returncode == 0
+    path.write_text(path.read_text().replace("count = 9", "count = 10"))
+    refused = run_here(*arguments[:-1], "cube", "--resume", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "a latin-hypercube sample of another count has other designs" in refused.stderr
+
+
+def test_run_ignores_vary_and_check_reads_it(tmp_path: Path) -> None:
+    _study(tmp_path, count=5)
+    checked = run_here("check", "study.toml", cwd=tmp_path)
+    assert checked.returncode == 0
+    assert "varies 2 numbers in 5 designs (sobol)" in checked.stdout
+    _study(tmp_path, '"pin.B.nothing" = { from = 1, to = 2 }')
+    checked = run_here("check", "study.toml", cwd=tmp_path)
+    assert checked.returncode == 2
+    assert "vary.parameters.pin.B.nothing: the study has no 'nothing' there" in checked.stderr
+    _study(tmp_path, '"pin.b.fillet" = { from = 0.1, to = 0.2 }')
+    checked = run_here("check", "study.toml", cwd=tmp_path)
+    assert "the study has no 'b' there; did you mean 'B'?" in checked.stderr
+
+
+def _waits(condition: object, process: subprocess.Popen[str]) -> None:
+    assert callable(condition)
+    while not condition():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.linux
+@pytest.mark.parametrize("sign", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_sweep_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path, sign: int) -> None:
+    """On two processes, which end with it, and then on two again; against one process."""
+    _study(tmp_path, text=ONE_PIN, count=48)
+    command = [sys.executable, "-m", "pinstress", "sweep", "study.toml", "--out", "out"]
+    two = "--jobs", "2"
+    piped = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+    parts = tmp_path / "out" / "parts"
+    with started([*command, *two], cwd=tmp_path, **piped) as process:
+        _waits(lambda: len(list(parts.glob("*.parquet"))) >= 4, process)
+        os.killpg(process.pid, sign) if sign == signal.SIGINT else process.send_signal(sign)
+        _, err = process.communicate(timeout=120)
+        end = time.monotonic() + 60.0
+        while time.monotonic() < end and _others(process.pid):
+            time.sleep(0.1)
+    if sign != signal.SIGKILL:
+        assert process.returncode == 130
+        assert "kept: the same command with --resume goes on" in err
+        assert "Traceback" not in err
+    kept = len(list(parts.glob("*.parquet")))
+    assert kept >= 4
+    assert not (tmp_path / "out" / "designs.parquet").exists()
+    made = pinstress("sweep", "study.toml", "--out", "out", *two, "--resume", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    whole = pinstress("sweep", "study.toml", "--out", "one", "--jobs", "1", cwd=tmp_path)
+    assert whole.returncode == 0, whole.stderr
+    first, second = (tmp_path / x / "designs.parquet" for x in ("out", "one"))
+    assert first.read_bytes() == second.read_bytes()
+
+
+def _others(group: int) -> bool:
+    from tests.support.programs.process_group import alive
+
+    return alive(group)
+
+
+def test_nothing_is_left_of_a_sweep_that_solved_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nor is it said to be unfinished; an earlier table stays."""
+    import pinstress.explore.sweep.cluster as module
+
+    monkeypatch.setattr(module, "ANSWERS", 0.5)
+    _study(tmp_path, LOADS, 2)
+    nowhere = "sweep", "study.toml", "--out", "out", "--scheduler", "nonsense"
+    made = run_here(*nowhere, cwd=tmp_path)
+    assert made.returncode == 2
+    assert "no scheduler of dask answers at nonsense" in made.stderr
+    assert not (tmp_path / "out").exists()
+    made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
+    assert made.returncode == 0, made.stderr
+    assert run_here(*nowhere, cwd=tmp_path).returncode == 2
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        ".pinstress.json", "designs.html", "designs.parquet", "sweep.json",
+    ]  # fmt: skip
