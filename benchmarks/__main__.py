@@ -41,7 +41,7 @@ from benchmarks.pins import (
 from benchmarks.record import record
 from benchmarks.runs import designs_page, gear, least_weight, page, reliability, speed, sweep
 from benchmarks.solids import calculix, ngsolve_peer
-from pinbase.processes.pool import Died, Job, Tell, cores, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel
 
 ACCURACY = {
     "coverage": coverage.contained,  # the longest first
@@ -108,7 +108,7 @@ def main(arguments: list[str]) -> int:
         return 2
     start, status = time.perf_counter(), 0
     for name, text in _made(names or list(ALL)):
-        if isinstance(text, Died):
+        if isinstance(text, ProcessDied):
             print(f"{name}: {text.reason}", file=sys.stderr)
             status = 3
             continue
@@ -119,7 +119,7 @@ def main(arguments: list[str]) -> int:
     return status
 
 
-def _made(names: list[str]) -> Iterator[tuple[str, str | Died]]:
+def _made(names: list[str]) -> Iterator[tuple[str, str | ProcessDied]]:
     def job(name: str) -> Job[str]:
         def work(_: Tell) -> str:
             return ALL[name]()
@@ -127,10 +127,10 @@ def _made(names: list[str]) -> Iterator[tuple[str, str | Died]]:
         return Job(name, work)
 
     first = [n for n in names if n in ACCURACY]
-    yield from zip(first, side_by_side([job(n) for n in first], ABREAST), strict=True)
+    yield from zip(first, in_parallel([job(n) for n in first], ABREAST), strict=True)
     for name in names:
         if name in TIMES:  # each in its own process too: memory is that of one benchmark
-            (made,) = side_by_side([job(name)], ABREAST)
+            (made,) = in_parallel([job(name)], ABREAST)
             yield name, made
 
 

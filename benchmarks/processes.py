@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinbase.processes.threads import THREADS as LIBRARIES
+from pinbase.processes.threads import THREAD_VARIABLES as LIBRARIES
 
 THREADS = 2
 

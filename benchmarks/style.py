@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from reports.format.file_names import PNG, SVG
+from reports.format.file_names import PNG_SUFFIX, SVG_SUFFIX
 from reports.format.numbers import short
 
 INK, GREY = "#222222", "#8a8a8a"
@@ -90,7 +90,7 @@ def plain_numbers(axes: Axes, which: str = "both") -> None:
 
 def save(figure: Figure, directory: Path, name: str) -> list[Path]:
     """Write a figure as SVG and PNG, without a date; returns both paths."""
-    svg, png = directory / (name + SVG), directory / (name + PNG)
+    svg, png = directory / (name + SVG_SUFFIX), directory / (name + PNG_SUFFIX)
     if (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
         figure.set_layout_engine("none")  # once for both: it takes as long as drawing

@@ -5,7 +5,7 @@ import pinstress
 STUDY = pinstress.load_study(pinstress.shipped_studies()["one_pin"])
 
 
-def solved(fillet: float) -> pinstress.Found:
+def solved(fillet: float) -> pinstress.RunResults:
     return pinstress.run(pinstress.changed_study(STUDY, {"pin.B.fillet": fillet}), tolerance=0.02)
 
 

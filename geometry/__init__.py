@@ -15,14 +15,14 @@ from geometry.shape.pin import Band, GeometryError, Pin
 from geometry.shape.pin_like import PinLike
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
 from geometry.shape.segment import Segment
-from pinbase.errors import ArgumentError, Coded
+from pinbase.errors import ArgumentError, CodedError
 
 __all__ = [
     "Arc",
     "ArgumentError",
     "Band",
     "Bottom",
-    "Coded",
+    "CodedError",
     "Cut",
     "CutPin",
     "Edge",

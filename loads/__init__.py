@@ -9,7 +9,7 @@ from loads.forces.inverse_dynamics import Dynamics, motion_reactions
 from loads.forces.measures import Clock, Distance, Measure, Position
 from loads.forces.over_time import (
     Effort,
-    Extreme,
+    Extremum,
     OverTime,
     PeakForces,
     over_time,
@@ -49,12 +49,12 @@ from loads.motion.lever import Lever
 from loads.motion.mobility import Mobility, mobility
 from loads.motion.motion import Course, Motion, at_rest, move
 from loads.motion.refine import Resolved, resolved
-from loads.motion.singular_positions import Impasse
+from loads.motion.singular_positions import MotionBlocked
 from loads.tables.csv_table import TableError, read_table
 from loads.tables.force_table import Layout, table_cases
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 from loads.tables.sent_files import noted_files, on_disk, sent_files
-from pinbase.errors import ArgumentError, Coded
+from pinbase.errors import ArgumentError, CodedError
 
 __all__ = [
     "GROUND",
@@ -63,7 +63,7 @@ __all__ = [
     "ArgumentError",
     "Body",
     "Clock",
-    "Coded",
+    "CodedError",
     "Connection",
     "ConstantDrive",
     "Contact",
@@ -74,12 +74,11 @@ __all__ = [
     "Dynamics",
     "Effort",
     "Energy",
-    "Extreme",
+    "Extremum",
     "FileError",
     "ForceLaw",
     "ForceTable",
     "Gear",
-    "Impasse",
     "JammingError",
     "Joint",
     "Law",
@@ -94,6 +93,7 @@ __all__ = [
     "Measure",
     "Mobility",
     "Motion",
+    "MotionBlocked",
     "OverTime",
     "Parallel",
     "PeakForces",

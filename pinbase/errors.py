@@ -5,7 +5,7 @@ from __future__ import annotations
 Place = tuple[str | int, ...]
 
 
-class Coded(Exception):
+class CodedError(Exception):
     """An error with a `code`, short and stable, for programs; its message is for people.
 
     at: the part that is wrong, for instance ("segment", 2); empty for the whole.
@@ -16,7 +16,7 @@ class Coded(Exception):
         self.code, self.at = code, at
 
 
-class ArgumentError(Coded, ValueError):
+class ArgumentError(CodedError, ValueError):
     """An argument that a function cannot use."""
 
 

@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 
-def bare() -> bool:
+def portable() -> bool:
     """Whether to do without whatever only some systems have."""
     return os.name != "posix" or os.environ.get("PINSTRESS_PORTABLE") == "1"
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pinstress.analysis.plan import prepare
-    from pinstress.analysis.results import Found, run, solve
+    from pinstress.analysis.results import RunResults, run, solve
     from pinstress.explore.sweep.sweep import sweep
     from pinstress.study.reading.errors import InputError
     from pinstress.study.reading.file import Study, load_study
@@ -21,11 +21,20 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 __all__ = [
-    "Found", "InputError", "Study", "changed_study", "load_study", "prepare", "run",
-    "shipped_studies", "solve", "study_from", "sweep",
+    "InputError",
+    "RunResults",
+    "Study",
+    "changed_study",
+    "load_study",
+    "prepare",
+    "run",
+    "shipped_studies",
+    "solve",
+    "study_from",
+    "sweep",
 ]  # fmt: skip
 
-_HOME = {
+_MODULE_OF = {
     "Found": "pinstress.analysis.results",
     "InputError": "pinstress.study.reading.errors",
     "Study": "pinstress.study.reading.file",
@@ -42,8 +51,8 @@ _HOME = {
 
 def __getattr__(name: str) -> Any:
     # on demand, so that `pinstress check` does not wait for the numeric libraries
-    if name not in _HOME:
+    if name not in _MODULE_OF:
         raise AttributeError(f"module 'pinstress' has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(_HOME[name]), name)
+    return getattr(import_module(_MODULE_OF[name]), name)

@@ -26,11 +26,17 @@ import numpy as np
 
 from assess.derivatives.governing import by_loads, waves_of
 from assess.derivatives.governing_point import point_of
-from assess.derivatives.in_section import OTHER
+from assess.derivatives.in_section import OTHER_EDGES_REASON
 from assess.derivatives.reading_point import Continued, ReadingPoint, SectionState
 from assess.derivatives.records import Derivatives, SolvedCase
-from assess.derivatives.ties import tied_places, tied_times
-from assess.derivatives.virtual_work import COLUMNS, Interior, integral_rate, shape_gradient, work
+from assess.derivatives.ties import competing_places, competing_times
+from assess.derivatives.virtual_work import (
+    MOTION_BATCH,
+    Interior,
+    integral_rate,
+    shape_gradient,
+    work,
+)
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from fea.harmonic.assembly import around, elasticity
@@ -41,7 +47,7 @@ from fea.harmonic.stress_recovery import points_of_nodes
 from fea.singular.singularities import free_of_arcs
 from geometry import Pin
 from geometry.mesh.moved.outline_motion import (
-    PLACES,
+    DIFFERENCE_STEPS,
     NodeMotion,
     OtherShapeError,
     OutlineNodes,
@@ -52,8 +58,8 @@ from geometry.mesh.moved.outline_motion import (
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats, Ints, Mask
 
-POISSON = 1e-3  # step of Poisson's ratio
-EXPONENT = 1e-4  # step of a pressure's exponent
+POISSON_STEP = 1e-3  # step of Poisson's ratio
+EXPONENT_STEP = 1e-4  # step of a pressure's exponent
 
 
 def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
@@ -208,7 +214,7 @@ class Adjoint:
             cusp = replace(point.cusp, exponent=point.cusp.exponent + x)
             return np.array(self.read(self.state, point=replace(point, cusp=cusp)))
 
-        return float(rate(other, EXPONENT))
+        return float(rate(other, EXPONENT_STEP))
 
     def _solve(self) -> Floats:
         """Adjoints (3 N, K)."""
@@ -240,8 +246,8 @@ class Adjoint:
             by_moment,
             self.by_poisson(),
             self.by_density(),
-            tied_places(self.around, solved.zones, top, solved.error),
-            tied_times(solved, top.value),
+            competing_places(self.around, solved.zones, top, solved.error),
+            competing_times(solved, top.value),
         )
 
     def by_dimension(
@@ -254,7 +260,7 @@ class Adjoint:
             try:
                 motions.append(self.outline_nodes.motion(dimension))
             except OtherShapeError:
-                without[dimension.key] = OTHER
+                without[dimension.key] = OTHER_EDGES_REASON
         return self.by_motions(motions), without
 
     @cached_property
@@ -278,8 +284,8 @@ class Adjoint:
         )
         heavy = any(load.kind == "body" for c in self.waves for load in c.amounts)
         out = {}
-        for k in range(0, len(motions), COLUMNS):
-            some = motions[k : k + COLUMNS]
+        for k in range(0, len(motions), MOTION_BATCH):
+            some = motions[k : k + MOTION_BATCH]
             every = self.interior.velocity(np.stack([motion.velocity for motion in some], axis=2))
             for i, motion in enumerate(some):
                 velocity = np.ascontiguousarray(every[:, :, i])
@@ -291,7 +297,7 @@ class Adjoint:
     def _given(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
         """What forces, tractions and the reading change, with displacements as they are."""
         values = []
-        for x, pin in zip(PLACES, motion.pins, strict=True):
+        for x, pin in zip(DIFFERENCE_STEPS, motion.pins, strict=True):
             step = x * motion.step
             nodes = self.space.nodes + step * velocity
             outline = self.outline.moved(nodes)
@@ -339,7 +345,7 @@ class Adjoint:
         """By Poisson's ratio, Pa."""
         material = self.solved.material
         nu = material.poisson_ratio
-        step = min(POISSON, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
+        step = min(POISSON_STEP, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
 
         def other(x: float) -> Material:
             return replace(material, poisson_ratio=nu + x)

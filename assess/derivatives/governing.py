@@ -9,14 +9,14 @@ from functools import partial
 import numpy as np
 
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.harmonic.five_numbers import BACK
-from fea.harmonic.superposition import Top
+from fea.harmonic.five_numbers import COSINE_COMPONENTS
+from fea.harmonic.superposition import Crest
 from geometry.mesh.moved.outline_motion import rate
 from pinbase.arrays import Floats
 
-FORCE = 1e-3  # step of a force, of the largest
-AXES = "xyz"
-MASKS = BACK.astype(np.float64), 1.0 - BACK
+FORCE_STEP = 1e-3  # step of a force, of the largest
+AXIS_NAMES = "xyz"
+PARITY_MASKS = COSINE_COMPONENTS.astype(np.float64), 1.0 - COSINE_COMPONENTS
 By = dict[tuple[str, str], float]
 
 
@@ -33,7 +33,7 @@ class Wave:
 
 
 def waves_of(
-    at: dict[UnitLoad, Floats], loads: PinLoads, top: Top
+    at: dict[UnitLoad, Floats], loads: PinLoads, top: Crest
 ) -> tuple[tuple[Wave, ...], Floats]:
     """At the governing angle, without those that add nothing; and the gradient (6,) of von Mises
     stress there. at: stress (6,) Pa of each unit load at the governing point.
@@ -41,20 +41,20 @@ def waves_of(
     acting = loads.coefficients()
     amounts: dict[tuple[int, int], dict[UnitLoad, float]] = {}
     for load, both in acting.items():
-        for part, amount in enumerate(turned(load.n, both[0], top.angle).tolist()):
+        for part, amount in enumerate(rotated(load.n, both[0], top.angle).tolist()):
             if amount:
                 amounts.setdefault((load.n, part), {})[load] = amount
     stress = np.zeros(6)
     for (_, part), mine in amounts.items():
         for load, x in mine.items():
-            stress += x * MASKS[part] * at[load]
+            stress += x * PARITY_MASKS[part] * at[load]
     weight = von_mises_gradient(stress)
     found = sorted(amounts.items(), key=lambda item: item[0])
-    waves = tuple(Wave(n, part, mine, MASKS[part] * weight) for (n, part), mine in found)
+    waves = tuple(Wave(n, part, mine, PARITY_MASKS[part] * weight) for (n, part), mine in found)
     return waves, weight
 
 
-def turned(n: int, both: Floats, angle: float) -> Floats:
+def rotated(n: int, both: Floats, angle: float) -> Floats:
     """Of a load's phases, (2, ..), what goes as BACK does and what as the others do, (2, ..), at an
     angle (rad).
     """
@@ -71,7 +71,7 @@ def von_mises_gradient(stress: Floats) -> Floats:
 
 
 def by_loads(
-    at: dict[UnitLoad, Floats], loads: PinLoads, weight: Floats, top: Top
+    at: dict[UnitLoad, Floats], loads: PinLoads, weight: Floats, top: Crest
 ) -> tuple[By, By]:
     """Pa/N and Pa/(N m) of forces and moments, by surface and axis, of the loads that were solved
     in any case.
@@ -79,11 +79,11 @@ def by_loads(
     found: tuple[By, By] = {}, {}
     before = loads.coefficients()
     for kind, given in enumerate((loads.forces, loads.moments)):
-        step = FORCE * (float(np.abs(given).max()) or 1.0)
+        step = FORCE_STEP * (float(np.abs(given).max()) or 1.0)
         for c, surface in enumerate(loads.surfaces):
             if loads.distribution == "cosine" and not loads.forces[0, c, :2].any():
                 continue  # a pressure that comes from anywhere
-            for a, axis in enumerate(AXES):
+            for a, axis in enumerate(AXIS_NAMES):
                 one = np.zeros_like(given)
                 one[:, c, a] = 1.0
                 stress = partial(_of_change, at, (loads, before), (weight, top.angle), (kind, one))
@@ -110,10 +110,10 @@ def _of_change(
     now, total = more.coefficients(), np.zeros(6)
     none = np.zeros((1, 2))
     for load in dict.fromkeys([*now, *before]):
-        parts = turned(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)
+        parts = rotated(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)
         if load not in at:
             total += np.nan if parts.any() else 0.0
             continue
-        for part, mask in zip(parts, MASKS, strict=True):
+        for part, mask in zip(parts, PARITY_MASKS, strict=True):
             total += part * mask * at[load]
     return np.array(weight @ total)

@@ -22,9 +22,9 @@ from assess.derivatives.records import SolvedCase
 from fea.harmonic.assembly import Section
 from fea.harmonic.free_surface import surface_points
 from fea.harmonic.model import HarmonicModel
-from fea.harmonic.pressure_edge import DIRECTIONS, jumps
-from fea.harmonic.surface_stress import AT
-from fea.singular.singularities import Singularity
+from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, jumps
+from fea.harmonic.surface_stress import EDGE_STATIONS
+from fea.singular.singularities import Zone
 from pinbase.arrays import Floats
 
 
@@ -40,7 +40,7 @@ def point_of(
     of = surface_points(fields, pressed.rings, solved.material.poisson_ratio)
     cusp = of.cusps.get(number)
     if cusp is not None:
-        edges, at = np.divmod(cusp.near, len(AT))
+        edges, at = np.divmod(cusp.near, len(EDGE_STATIONS))
         nodes = model.space.nodes
         ring_end = int(np.hypot(*(nodes - cusp.place).T).argmin())
         return Continued(on_skin(model.outline, traction, edges, at), cusp, ring_end)
@@ -56,7 +56,7 @@ def _of_section(
 ) -> ReadingPoint:
     space, outline, fields = model.space, model.outline, solved.solution.fields
     if number < fields.skin:
-        edge, at = divmod(number, len(AT))
+        edge, at = divmod(number, len(EDGE_STATIONS))
         clamped = outline.constrained(model.clamps)[edge]
         if clamped or on_axis(space, float(fields.points[number, 0])):
             return at_rough(space, outline, edge, at)
@@ -65,15 +65,15 @@ def _of_section(
         inner = np.setdiff1d(np.arange(len(space.nodes)), outline.nodes)
         return at_node(space, int(inner[number - fields.skin]))
     ends = solved.solution.ends
-    first = len(fields.points) - DIRECTIONS * len(ends)
+    first = len(fields.points) - EDGE_DIRECTIONS * len(ends)
     if number >= first:
-        which, direction = divmod(number - first, DIRECTIONS)
+        which, direction = divmod(number - first, EDGE_DIRECTIONS)
         (jump,) = jumps(space, outline, solved.material, ends[which : which + 1])
         return AtJump(outline, jump, Samples(space, jump.samples), direction)
     return _on_rim(space, solved.zones, fields.points[number])
 
 
-def _on_rim(space: Section, zones: tuple[Singularity, ...], at: Floats) -> FromInside:
+def _on_rim(space: Section, zones: tuple[Zone, ...], at: Floats) -> FromInside:
     """Of the zone on whose circle it is."""
     off = [abs(np.hypot(at[0] - p.r, at[1] - p.z) / p.radius - 1.0) for p in zones]
     zone = int(np.argmin(off))

@@ -23,21 +23,23 @@ from assess.derivatives.ring_work import Pair
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.contact import Mask, rotation
 from fea.support.contact.pressure_loads import waves_of_sectors
-from fea.support.contact.solve_joint import JointModel
+from fea.support.contact.solve_joint import ContactModel
 from pinbase.arrays import Floats
 
-NOTHING = 1e-13  # of the largest amplitude
-CLOSE = 1e-6  # of the largest pressure or gap: a cell that is about to open or to close
+AMPLITUDE_TOLERANCE = 1e-13  # of the largest amplitude
+SWITCHING_TOLERANCE = (
+    1e-6  # of the largest pressure or gap: a cell that is about to open or to close
+)
 
 
-class HeldContact:
+class FixedContact:
     """At the only instant of loads of links. gradient: of the stress by the amplitudes of pressures
     on the rings, (N + 1, R, 2). changing: how many cells are about to open or to close.
 
     Raises: SolveError.
     """
 
-    def __init__(self, model: JointModel, links: PinLoads, gradient: Floats) -> None:
+    def __init__(self, model: ContactModel, links: PinLoads, gradient: Floats) -> None:
         self._model, self._links, self._contact = model, links, model.contact
         (pressed,) = model.pressed(links)
         self._turn = rotation(pressed.angle)
@@ -59,13 +61,13 @@ class HeldContact:
             for own, lug, ends in model.by_lug()
         }
 
-    def _asked(self, model: JointModel, links: PinLoads) -> Floats:
+    def _asked(self, model: ContactModel, links: PinLoads) -> Floats:
         """Of the rigid motions, in the directions of the cells."""
         forces, couples = model.forces(links)[0], model.couples(links)[0]
         x, y = (couples @ self._turn).tolist()
         return self._contact.asked(forces @ self._turn, (x, y))
 
-    def held(self, model: JointModel) -> float:
+    def held(self, model: ContactModel) -> float:
         """The sum, Pa, on another shape (JointModel.reshaped), but for the elasticity of its
         bodies; to first order in what is different.
         """
@@ -97,7 +99,7 @@ class HeldContact:
             p, l = self._f[:, n] / area, self._l[:, n] / of_ring  # noqa: E741
             for part in (np.real, np.imag):
                 if all(
-                    np.abs(part(x[own])).max() > NOTHING * np.abs(x).max(initial=0.0)
+                    np.abs(part(x[own])).max() > AMPLITUDE_TOLERANCE * np.abs(x).max(initial=0.0)
                     for x in (p, l)
                 ):
                     yield Pair(n, float(self._factors[n]), part(p[own]), part(l[own]))
@@ -110,4 +112,4 @@ class HeldContact:
 def _close(values: Floats, some: Mask) -> int:
     """How many of some of the values are almost none."""
     found = values[some]
-    return int((found < CLOSE * found.max(initial=0.0)).sum())
+    return int((found < SWITCHING_TOLERANCE * found.max(initial=0.0)).sum())

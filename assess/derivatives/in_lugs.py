@@ -19,8 +19,8 @@ from functools import cached_property
 import numpy as np
 
 from assess.derivatives.governing import By
-from assess.derivatives.held_contact import HeldContact
-from assess.derivatives.in_section import OTHER
+from assess.derivatives.held_contact import FixedContact
+from assess.derivatives.in_section import OTHER_EDGES_REASON
 from assess.derivatives.pressed_stress import JointStep, OfSections, OfSurface, PressedStress
 from assess.derivatives.records import SolvedCase
 from assess.derivatives.ring_work import RingWork
@@ -30,21 +30,21 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
 from fea.harmonic.assembly import elasticity
 from fea.support.contact.pressure_loads import others_along
-from fea.support.contact.solve_joint import JointModel
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, GeometryError, Pin
 from geometry.mesh.moved.outline_motion import (
-    PLACES,
-    STEPS,
+    DIFFERENCE_STEPS,
+    RELATIVE_STEPS,
     OtherShapeError,
     OutlineNodes,
     rate_of,
 )
 from pinbase.arrays import Floats
 
-FORCE = 1e-4  # step of a force, of the largest
-AXES = "xy"
-SAME = 1e-13  # of the size: what round-off moves
+JOINT_FORCE_STEP = 1e-4  # step of a force, of the largest
+TRANSVERSE_AXES = "xy"
+SHAPE_ROUND_OFF = 1e-13  # of the size: what round-off moves
 Joint = tuple[Pin, Material, tuple[Lug, ...]]
 
 
@@ -81,7 +81,7 @@ class JointDerivatives:
 
 def joint_derivatives(
     solved: SolvedCase,
-    model: JointModel,
+    model: ContactModel,
     links: PinLoads,
     parameters: Iterable[JointParameter] = (),
     *,
@@ -100,9 +100,9 @@ def joint_derivatives(
 
 
 class _InLugs:
-    def __init__(self, stress: PressedStress, model: JointModel, links: PinLoads) -> None:
+    def __init__(self, stress: PressedStress, model: ContactModel, links: PinLoads) -> None:
         self.stress, self.model, self.links = stress, model, links
-        self.contact = HeldContact(model, links, stress.by_pressures())
+        self.contact = FixedContact(model, links, stress.by_pressures())
 
     def derivatives(self, parameters: tuple[JointParameter, ...], alone: bool) -> JointDerivatives:
         changes, without = [], {}
@@ -110,7 +110,7 @@ class _InLugs:
             try:
                 changes.append(self._change(parameter))
             except OtherShapeError:
-                without[parameter.key] = OTHER
+                without[parameter.key] = OTHER_EDGES_REASON
         stress = self.stress
         if alone:
             return JointDerivatives(stress.maximum, self._by(changes), without, {}, {})
@@ -146,9 +146,9 @@ class _InLugs:
     def _change(self, parameter: JointParameter) -> JointStep:
         """Raises: OtherShapeError."""
         model, key = self.model, parameter.key
-        for part in STEPS:
+        for part in RELATIVE_STEPS:
             step = part * parameter.scale
-            values = [parameter.value + x * step for x in PLACES]
+            values = [parameter.value + x * step for x in DIFFERENCE_STEPS]
             try:
                 models = tuple(model.reshaped(*parameter.changed(value)) for value in values)
             except (ArgumentError, GeometryError):
@@ -204,7 +204,7 @@ class _InLugs:
         at = _knots(self.model, lug)
         knots = [_knots(*both) for both in zip(change.models, others, strict=True)]
         if all(
-            np.abs(x - y).max() <= SAME * y[-1]
+            np.abs(x - y).max() <= SHAPE_ROUND_OFF * y[-1]
             for one in knots
             for x, y in zip(one, at, strict=True)
         ):
@@ -219,10 +219,10 @@ class _InLugs:
     def _by_forces(self) -> By:
         """Of the links across, in which contact is linear, and along the axis where any act."""
         links, out = self.links, dict[tuple[str, str], float]()
-        step = FORCE * float(np.abs(links.forces).max())
+        step = JOINT_FORCE_STEP * float(np.abs(links.forces).max())
         before = self.contact.by_loads(links)
         for c, surface in enumerate(links.surfaces):
-            for a, axis in enumerate(AXES):
+            for a, axis in enumerate(TRANSVERSE_AXES):
                 one = np.zeros_like(links.forces)
                 one[:, c, a] = step
                 more = replace(links, forces=links.forces + one)
@@ -253,7 +253,7 @@ def _made_of(lug: Lug) -> tuple[Material, ...]:
     return (lug.material,) if lug.bushing is None else (lug.bushing.material, lug.material)
 
 
-def _knots(model: JointModel, lug: Lug) -> tuple[Floats, Floats]:
+def _knots(model: ContactModel, lug: Lug) -> tuple[Floats, Floats]:
     """Radii and z (m) of a lug between which the nodes of its mesh keep their places."""
     bore, ends = model.whole.band(lug.connection).radius, model.ends[lug.connection]
     between = [] if lug.bushing is None else [bore + lug.bushing.thickness]

@@ -13,24 +13,30 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from assess.derivatives.governing import MASKS, By, by_loads, turned, waves_of
+from assess.derivatives.governing import PARITY_MASKS, By, by_loads, rotated, waves_of
 from assess.derivatives.records import Derivatives, SolvedCase
-from assess.derivatives.ties import crests, tied_places
+from assess.derivatives.ties import competing_places, crests
 from fea.beam.line_load import acting, loads_sections
 from fea.beam.stress import section_stress
 from fea.beam.timoshenko import InternalForces, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
-from fea.harmonic.superposition import Top
-from fea.section.section_stress import AtSection, SectionAnswer, sections_at
+from fea.core.pin_loads import Loads, PinLoads, UnitLoad
+from fea.harmonic.superposition import Crest
+from fea.section.section_stress import AtSection, SectionField, sections_at
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import GeometryError, Pin
-from geometry.mesh.moved.outline_motion import PLACES, STEPS, OtherShapeError, rate, rate_of
+from geometry.mesh.moved.outline_motion import (
+    DIFFERENCE_STEPS,
+    RELATIVE_STEPS,
+    OtherShapeError,
+    rate,
+    rate_of,
+)
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
 
-OTHER = "with a little more or less of it the section has other edges"
-POISSON = 1e-3  # step of Poisson's ratio
+OTHER_EDGES_REASON = "with a little more or less of it the section has other edges"
+POISSON_STEP = 1e-3  # step of Poisson's ratio
 
 
 @dataclass(frozen=True)
@@ -65,13 +71,13 @@ class SectionPoint:
         stress = section_stress(section, r, nu) @ inside
         return {load: stress[:, k] for k, load in enumerate(forces.loads)}
 
-    def stress(self, at: dict[UnitLoad, Floats], loads: AnyLoads) -> Floats:
+    def stress(self, at: dict[UnitLoad, Floats], loads: Loads) -> Floats:
         """(6,) Pa, by loads of one instant."""
         out = np.zeros(6)
         for load, both in loads.coefficients().items():
             if load in at:
-                for part, amount in enumerate(turned(load.n, both[0], self.angle).tolist()):
-                    out += amount * MASKS[part] * at[load]
+                for part, amount in enumerate(rotated(load.n, both[0], self.angle).tolist()):
+                    out += amount * PARITY_MASKS[part] * at[load]
         return out
 
 
@@ -89,13 +95,13 @@ class GoverningSection:
             loads, forces=np.ones(shape), moments=np.ones(shape), body=np.zeros(3), times=None
         )
         both = loads, every
-        self.answer = SectionAnswer(solved.pin, solved.material, solved.clamps, both)
+        self.answer = SectionField(solved.pin, solved.material, solved.clamps, both)
         self.found = self.answer.place(loads)
         self.point = SectionPoint.of(self.found, self.answer.forces)
         self.at = self.point.per_unit(solved.pin, self.answer.forces, solved.material.poisson_ratio)
         units = dict.fromkeys(u for one in both for u in one.coefficients())
         self.at |= {u: np.zeros(6) for u in units if not loads_sections(u)}
-        self.top = Top(self.found.value, 0, 0, self.point.angle)
+        self.top = Crest(self.found.value, 0, 0, self.point.angle)
         self.weight = waves_of(self.at, loads, self.top)[1]
 
     @property
@@ -121,8 +127,8 @@ class GoverningSection:
         """What amounts (2,) of unit loads, by phase, add to it, Pa."""
         total = np.zeros(6)
         for load, both in amounts.items():
-            for part, amount in enumerate(turned(load.n, both, self.point.angle).tolist()):
-                total += amount * MASKS[part] * self.at[load]
+            for part, amount in enumerate(rotated(load.n, both, self.point.angle).tolist()):
+                total += amount * PARITY_MASKS[part] * self.at[load]
         return float(self.weight @ total)
 
     def by_loads(self) -> tuple[By, By]:
@@ -144,7 +150,7 @@ class GoverningSection:
             made = replace(material, poisson_ratio=nu + x)
             return np.array(self.value(self.solved.pin, made, self.loads))
 
-        return float(rate(other, min(POISSON, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))))
+        return float(rate(other, min(POISSON_STEP, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))))
 
     def by_pin(self, pins: Sequence[Pin], step: float) -> float:
         """Along pins at PLACES times a step, under the same loads. Raises: OtherShapeError."""
@@ -155,7 +161,7 @@ class GoverningSection:
     def tied_places(self) -> tuple[tuple[float, float], ...]:
         """As assess.derivatives.records.Derivatives has them."""
         around = self.answer.around(self.loads)
-        return tied_places(around, (), around.top(self.answer.all), self.solved.error)
+        return competing_places(around, (), around.top(self.answer.all), self.solved.error)
 
     @property
     def tied_times(self) -> tuple[float, ...]:
@@ -163,10 +169,10 @@ class GoverningSection:
         return crests(self._over_time, self.solved, self.maximum, on_sections)
 
     @property
-    def _over_time(self) -> SectionAnswer:
+    def _over_time(self) -> SectionField:
         solved = self.solved
         every = on_sections(solved.history or solved.loads)
-        return SectionAnswer(solved.pin, solved.material, solved.clamps, [every])
+        return SectionField(solved.pin, solved.material, solved.clamps, [every])
 
 
 def on_sections(loads: PinLoads) -> PinLoads:
@@ -182,7 +188,7 @@ def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> 
         try:
             by_dimension[dimension.key] = _by_dimension(section, dimension)
         except OtherShapeError:
-            without[dimension.key] = OTHER
+            without[dimension.key] = OTHER_EDGES_REASON
     by_force, by_moment = section.by_loads()
     return Derivatives(
         section.maximum, section.location, by_dimension, without, by_force, by_moment,
@@ -192,10 +198,10 @@ def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> 
 
 def _by_dimension(section: GoverningSection, dimension: Dimension) -> float:
     """Pa/m. Raises: OtherShapeError where there is no such pin on both sides of it."""
-    for part in STEPS:
+    for part in RELATIVE_STEPS:
         step = part * dimension.value
         try:
-            pins = [dimension.changed(dimension.value + x * step) for x in PLACES]
+            pins = [dimension.changed(dimension.value + x * step) for x in DIFFERENCE_STEPS]
             return section.by_pin(pins, step)
         except (GeometryError, OtherShapeError):
             continue

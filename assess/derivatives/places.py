@@ -14,7 +14,7 @@ from assess.derivatives.derivatives import Adjoint
 from assess.derivatives.records import SolvedCase
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.free_surface import reader
-from fea.harmonic.superposition import Top
+from fea.harmonic.superposition import Crest
 from geometry.mesh.moved.outline_motion import NodeMotion, OtherShapeError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats, Mask
@@ -28,7 +28,7 @@ class PartTop:
 
     part: str
     case: str
-    top: Top
+    top: Crest
 
 
 def halves(stations: Sequence[float], points: Floats) -> Parts:

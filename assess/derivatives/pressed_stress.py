@@ -11,14 +11,14 @@ from typing import Protocol
 import numpy as np
 
 from assess.derivatives.derivatives import Adjoint
-from assess.derivatives.governing import turned
+from assess.derivatives.governing import rotated
 from assess.derivatives.in_section import GoverningSection, on_sections
 from assess.derivatives.reading_point import Continued
 from assess.derivatives.records import SolvedCase
-from assess.derivatives.ties import tied_places, tied_times
+from assess.derivatives.ties import competing_places, competing_times
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.support.contact.pressure_loads import others_along, resultants
-from fea.support.contact.solve_joint import JointModel
+from fea.support.contact.solve_joint import ContactModel
 from geometry import Pin
 from geometry.mesh.moved.outline_motion import NodeMotion, rate_of
 from pinbase.arrays import Floats
@@ -32,7 +32,7 @@ class JointStep:
     """
 
     key: str
-    models: tuple[JointModel, ...]
+    models: tuple[ContactModel, ...]
     step: float
     flexible: NodeMotion | None
 
@@ -41,7 +41,7 @@ class JointStep:
         """With their rings."""
         return tuple(one.pin for one in self.models)
 
-    def rate(self, of: Callable[[JointModel], Floats | float]) -> Floats:
+    def rate(self, of: Callable[[ContactModel], Floats | float]) -> Floats:
         """Of what the joint has."""
         return rate_of([np.asarray(of(one)) for one in self.models], self.step)
 
@@ -74,7 +74,7 @@ class PressedStress(Protocol):
 class OfSurface:
     """The largest over the surface of a pin (assess.derivatives.derivatives)."""
 
-    def __init__(self, solved: SolvedCase, model: JointModel, links: PinLoads) -> None:
+    def __init__(self, solved: SolvedCase, model: ContactModel, links: PinLoads) -> None:
         self._solved, self._model, self._links = solved, model, links
         self._adjoint = Adjoint(solved)
         self._motions: dict[str, NodeMotion] = {}
@@ -86,11 +86,11 @@ class OfSurface:
     @property
     def tied_places(self) -> tuple[tuple[float, float], ...]:
         adjoint, solved = self._adjoint, self._solved
-        return tied_places(adjoint.around, solved.zones, adjoint.top, solved.error)
+        return competing_places(adjoint.around, solved.zones, adjoint.top, solved.error)
 
     @property
     def tied_times(self) -> tuple[float, ...]:
-        return tied_times(self._solved, self.maximum)
+        return competing_times(self._solved, self.maximum)
 
     def by_pressures(self) -> Floats:
         model, adjoint = self._model, self._adjoint
@@ -98,7 +98,7 @@ class OfSurface:
         for k, wave in enumerate(adjoint.waves):
             if wave.n < len(out):
                 loads = [UnitLoad("", "pressure", wave.n, ((name, 1.0),)) for name in model.rings]
-                each = turned(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
+                each = rotated(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
                 out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
         return out
 
@@ -140,7 +140,7 @@ class OfSurface:
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
         total, adjoint = 0.0, self._adjoint
         for load, both in amounts.items():
-            parts = turned(load.n, both, adjoint.top.angle)
+            parts = rotated(load.n, both, adjoint.top.angle)
             for k, wave in enumerate(adjoint.waves):
                 if wave.n == load.n and parts[wave.part]:
                     total += float(parts[wave.part] * adjoint.of_loads(k, [load])[0])
@@ -152,7 +152,7 @@ class OfSections:
     resultants of the pressures alone.
     """
 
-    def __init__(self, solved: SolvedCase, model: JointModel, links: PinLoads) -> None:
+    def __init__(self, solved: SolvedCase, model: ContactModel, links: PinLoads) -> None:
         self._model, self._links = model, links
         self._section = GoverningSection(solved, on_sections(solved.loads))
         self._waves = model.waves(model.pressed(links))
@@ -179,7 +179,7 @@ class OfSections:
     def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
         return {x.key: float(x.rate(self._value)) for x in changes}
 
-    def _value(self, model: JointModel) -> float:
+    def _value(self, model: ContactModel) -> float:
         """Under the same pressures. Raises: OtherShapeError."""
         on_rings = resultants(model.pin, model.rings, self._waves, self._links)
         return self._section.value(model.pin, model.material, on_rings)

@@ -17,14 +17,14 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.local_fit import NEIGHBOURS, at_one_place
+from fea.core.local_fit import FIT_SAMPLES, at_one_place
 from fea.core.material import Material
 from fea.harmonic.assembly import Section, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes
 from fea.harmonic.free_surface import Cusp, relief
 from fea.harmonic.pressure_edge import Jump, at_edge
-from fea.harmonic.stress_recovery import AXIS
-from fea.harmonic.surface_stress import AT, on_edges, smooth_neighbours
+from fea.harmonic.stress_recovery import ON_AXIS_TOLERANCE
+from fea.harmonic.surface_stress import EDGE_STATIONS, on_edges, smooth_neighbours
 from geometry.mesh.section_mesh import triangle_shapes
 from pinbase.arrays import Floats, Ints
 
@@ -250,7 +250,7 @@ class AtJump:
 
 def nearest(space: Section, places: Sequence[Floats]) -> tuple[Samples, ...]:
     """Those from which fea.core.local_fit.continuation takes the value at each place."""
-    count = min(NEIGHBOURS, len(space.samples))
+    count = min(FIT_SAMPLES, len(space.samples))
     tree = cKDTree(space.samples)
     return tuple(Samples(space, np.asarray(tree.query(place, count)[1])) for place in places)
 
@@ -262,7 +262,7 @@ def at_node(space: Section, node: int) -> FromInside:
 
 def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside:
     """Point `at` of a clamped edge or one on the axis."""
-    parts = shapes(AT[at : at + 1])[0]
+    parts = shapes(EDGE_STATIONS[at : at + 1])[0]
     some = [(float(p), int(k)) for p, k in zip(parts, outline.nodes[edge], strict=True) if p]
     on = tuple(k for _, k in some)
     return FromInside(nearest(space, [space.nodes[k] for k in on]), tuple(p for p, _ in some), on)
@@ -270,4 +270,4 @@ def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside
 
 def on_axis(space: Section, r: float) -> bool:
     """Whether a radius (m) is nothing."""
-    return bool(r < AXIS * space.nodes[:, 0].max())
+    return bool(r < ON_AXIS_TOLERANCE * space.nodes[:, 0].max())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import HarmonicSolution
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import Zone
 from geometry import Pin
 
 
@@ -23,7 +23,7 @@ class SolvedCase:
     clamps: tuple[str, ...]
     loads: PinLoads
     solution: HarmonicSolution
-    zones: tuple[Singularity, ...]
+    zones: tuple[Zone, ...]
     error: float = 0.0
     history: PinLoads | None = None
 

@@ -18,7 +18,7 @@ from assess.derivatives.virtual_work import shape_gradient, work
 from fea.core.material import Material
 from fea.harmonic.assembly import around, elasticity
 from fea.support.contact.flexibility import RingBody
-from geometry.mesh.moved.outline_motion import PLACES, rate_of
+from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS, rate_of
 from pinbase.arrays import Floats
 
 
@@ -85,7 +85,7 @@ class RingWork:
                     self.on.reacted(
                         outline.moved(self.space.nodes + at * step * velocity), length, x.forces
                     )
-                    for at, length in zip(PLACES, lengths, strict=True)
+                    for at, length in zip(DIFFERENCE_STEPS, lengths, strict=True)
                 )
                 total -= x.times * float(np.sum(rate_of(list(moved), step) * x.u[:, ::-1]))
         return total

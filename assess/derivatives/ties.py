@@ -8,16 +8,16 @@ import numpy as np
 
 from assess.derivatives.records import SolvedCase
 from fea.core.pin_loads import PinLoads
-from fea.core.solution import Answer
-from fea.harmonic.evaluate import HarmonicAnswer, high_places
-from fea.harmonic.superposition import Circumference, Top
-from fea.singular.singularities import Singularity
+from fea.core.solution import StressField
+from fea.harmonic.evaluate import HarmonicField, high_places
+from fea.harmonic.superposition import Circumference, Crest
+from fea.singular.singularities import Zone
 
 
-def tied_places(
+def competing_places(
     around: Circumference,
-    zones: Iterable[Singularity],
-    top: Top,
+    zones: Iterable[Zone],
+    top: Crest,
     error: float,
 ) -> tuple[tuple[float, float], ...]:
     """(r, z), m, at the governing instant, well apart; error: of the maximum, relative."""
@@ -25,13 +25,13 @@ def tied_places(
     return high_places(around, fields.points, fields.outside(zones), top, 1.0 - error)[1:]
 
 
-def tied_times(solved: SolvedCase, maximum: float) -> tuple[float, ...]:
+def competing_times(solved: SolvedCase, maximum: float) -> tuple[float, ...]:
     """Of crests in time other than the governing one, s, each at its highest."""
-    return crests(HarmonicAnswer(solved.solution, solved.zones), solved, maximum)
+    return crests(HarmonicField(solved.solution, solved.zones), solved, maximum)
 
 
 def crests(
-    answer: Answer,
+    answer: StressField,
     solved: SolvedCase,
     maximum: float,
     felt: Callable[[PinLoads], PinLoads] = lambda loads: loads,

@@ -26,8 +26,8 @@ from fea.core.linear_solver import ConstrainedSystem
 from fea.harmonic.assembly import Section, around, strain_map
 from pinbase.arrays import Floats, Ints
 
-CHUNK = 8192  # elements at once
-COLUMNS = 32  # motions at once
+ELEMENT_BATCH = 8192  # elements at once
+MOTION_BATCH = 32  # motions at once
 
 
 def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> Floats:
@@ -66,8 +66,8 @@ def _parts(
     """
     gradients, weights = space.quadrature
     at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
-    for k in range(0, len(weights), CHUNK):
-        here = slice(k, k + CHUNK)
+    for k in range(0, len(weights), ELEMENT_BATCH):
+        here = slice(k, k + ELEMENT_BATCH)
         G = [np.einsum("mqai,mic->mqca", gradients[here], x[here]) for x in at_nodes]
         yield here, gradients[here], weights[here], G
 

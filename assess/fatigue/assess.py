@@ -20,16 +20,16 @@ import numpy as np
 from assess.fatigue.critical_plane import findley_k, worst_plane
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from assess.fatigue.flight import Cycles, case_by_case, flight, rainflow
-from assess.fatigue.proportional import SEEN, SignedCourse, course
+from assess.fatigue.proportional import MAX_RULE_ERROR, SignedCourse, course
 from assess.fatigue.records import PointFatigue, PointHistory
 from assess.fatigue.sn_curve import SnCurve
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
-SHOWN = (0.1, 0.5, 0.9)  # failure probabilities
-SHEAR = 2.0 / 3.0**0.5  # Tresca's stress over von Mises stress, at most
-LEAST = 0.01  # of the largest amplitude: smaller ones are not shown
+SHOWN_PROBABILITIES = (0.1, 0.5, 0.9)  # failure probabilities
+TRESCA_RATIO = 2.0 / 3.0**0.5  # Tresca's stress over von Mises stress, at most
+MIN_SHOWN_AMPLITUDE = 0.01  # of the largest amplitude: smaller ones are not shown
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def assess(
         method=method,
         damage=damage,
         life=_life(damage),
-        lives=tuple(_life(found.damage[p]) for p in SHOWN if p in found.damage),
+        lives=tuple(_life(found.damage[p]) for p in SHOWN_PROBABILITIES if p in found.damage),
         utilisation=None if spectrum.life is None else damage * spectrum.life,
         amplitude=found.amplitude,
         mean=found.mean,
@@ -115,11 +115,11 @@ def _method(
         return asked, ""
     if seen.stands:
         return asked, seen.note
-    if _harmless(SHEAR * seen.largest, spectrum, material):
+    if _harmless(TRESCA_RATIO * seen.largest, spectrum, material):
         return asked, "the stress is not proportional, but does no damage in any direction"
     why = (
         f"the stress is not proportional (off by {100.0 * seen.unseen:.0f} % of its largest value, "
-        f"above {100.0 * SEEN:.0f} %), which {asked} cannot see"
+        f"above {100.0 * MAX_RULE_ERROR:.0f} %), which {asked} cannot see"
     )
     needs = ""
     if curve is None:
@@ -178,7 +178,7 @@ def _by_fkm(
     sequence = order.sequence([case_by_case(course)[0] for course in courses])
     cycles = rainflow(sequence)
 
-    found: dict[float | None, float] = dict.fromkeys((None, *SHOWN), 0.0)
+    found: dict[float | None, float] = dict.fromkeys((None, *SHOWN_PROBABILITIES), 0.0)
     if sequence.any():
         whole = np.append(sequence, 0.0)
         middle = p_ram_life(whole, data)
@@ -188,7 +188,7 @@ def _by_fkm(
         if not asked.infinite:
             found[None] = _per_unit(asked.repetitions, order.units)
         if not middle.infinite and middle.at is not None:
-            found |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN}
+            found |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN_PROBABILITIES}
     return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
 
 
@@ -200,7 +200,7 @@ def _damage(
     curve: SnCurve, equivalent: Floats, units: int, probability: float | None
 ) -> dict[float | None, float]:
     """Per unit, at the asked probability and, with a scatter, at those that are shown."""
-    every = (None, *SHOWN) if curve.scatter > 1.0 else (None,)
+    every = (None, *SHOWN_PROBABILITIES) if curve.scatter > 1.0 else (None,)
     return {
         p: curve.damage(equivalent, 1.0 / units, probability if p is None else p) for p in every
     }
@@ -219,7 +219,7 @@ def _collective(equivalent: Floats, units: int) -> tuple[Floats, Floats]:
     largest = equivalent.max(initial=0.0)
     if not isfinite(largest):
         largest = float(equivalent[equivalent < inf].max(initial=0.0))
-    kept = equivalent[(equivalent >= LEAST * largest) & (equivalent < inf)]
+    kept = equivalent[(equivalent >= MIN_SHOWN_AMPLITUDE * largest) & (equivalent < inf)]
     scale = largest * 1e-6 or 1.0
     values, counts = np.unique(np.round(kept / scale), return_counts=True)
     return values[::-1] * scale, counts[::-1] / units

@@ -26,20 +26,20 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from assess.fatigue.flight import PASSES, Cycles, Flight, case_by_case, rainflow
+from assess.fatigue.flight import RAINFLOW_PASSES, Cycles, Flight, case_by_case, rainflow
 from assess.fatigue.many_planes import OnPlanes, on_planes
 from assess.fatigue.sn_curve import Life
-from fea.core.voigt import TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT
 from pinbase.arrays import Floats
 
-STEP = 9.0  # degrees between planes of the grid
-WAY = 15.0  # and between directions in them
-NEAR = 1.5 * STEP  # planes with which a maximum of the grid is compared
-STARTS = 8  # maxima by each way of ranking them
-HALVED = 6  # times, from half of STEP to below 0.1 degrees
-LAST = 3  # whose cycles are counted one by one
-TURNS = np.array(list(product((0.0, 1.0, -1.0), repeat=3)))  # about the axes of a frame
-NOTHING = np.zeros((1, 6))
+PLANE_STEP = 9.0  # degrees between planes of the grid
+DIRECTION_STEP = 15.0  # and between directions in them
+NEIGHBOUR_ANGLE = 1.5 * PLANE_STEP  # planes with which a maximum of the grid is compared
+STARTS_PER_RANKING = 8  # maxima by each way of ranking them
+STEP_HALVINGS = 6  # times, from half of PLANE_STEP to below 0.1 degrees
+FINAL_PLANES = 3  # whose cycles are counted one by one
+FRAME_ROTATIONS = np.array(list(product((0.0, 1.0, -1.0), repeat=3)))  # about the axes of a frame
+ZERO_STRESS = np.zeros((1, 6))
 
 
 @dataclass(frozen=True)
@@ -73,15 +73,19 @@ def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -
 
     grid = _grid()
     frames = grid.reshape(-1, 3, 3)[_starts(grid, rank(grid.reshape(-1, 3, 3)))]
-    for n in range(1, HALVED + 1):
-        turned = Rotation.from_rotvec(0.5**n * STEP * TURNS, degrees=True).as_matrix()
+    for n in range(1, STEP_HALVINGS + 1):
+        turned = Rotation.from_rotvec(
+            0.5**n * PLANE_STEP * FRAME_ROTATIONS, degrees=True
+        ).as_matrix()
         near = (turned[:, None] @ frames).swapaxes(0, 1)  # (starts, turns, 3, 3)
         found = rank(near.reshape(-1, 3, 3))
         ranks = (x.reshape(len(frames), -1) for x in (-found.largest, -found.damage))
         best = [np.lexsort(keys)[0] for keys in zip(*ranks, strict=True)]
         frames = near[np.arange(len(frames)), best]
-    last = rank(frames).order()[:LAST]
-    tensors = [np.concatenate([NOTHING, stress, NOTHING])[:, TENSOR] for stress in cases]
+    last = rank(frames).order()[:FINAL_PLANES]
+    tensors = [
+        np.concatenate([ZERO_STRESS, stress, ZERO_STRESS])[:, TENSOR_TO_VOIGT] for stress in cases
+    ]
     every = [_counted(tensors, flight, (frames[j, 0], frames[j, 1]), k) for j in last]
     return max(every, key=lambda p: (life.damage(p.equivalent).sum(), p.equivalent.max(initial=0)))
 
@@ -91,7 +95,7 @@ def _starts(grid: Floats, found: OnPlanes) -> list[int]:
     that are equal, as they are all around a tension.
     """
     normals = grid[:, 0, 0]
-    near = np.abs(normals @ normals.T) > np.cos(np.radians(NEAR))
+    near = np.abs(normals @ normals.T) > np.cos(np.radians(NEIGHBOUR_ANGLE))
     chosen: dict[int, None] = {}
     for rank in (found.damage, found.softer, found.largest):
         value = rank.reshape(grid.shape[:2])
@@ -101,7 +105,7 @@ def _starts(grid: Floats, found: OnPlanes) -> list[int]:
         maxima = np.flatnonzero(top[:, None] & (value >= both))
         _, first = np.unique([f"{x:.3e}" for x in rank[maxima]], return_index=True)
         maxima = maxima[first]
-        order = maxima[np.argsort(-rank[maxima], kind="stable")][:STARTS]
+        order = maxima[np.argsort(-rank[maxima], kind="stable")][:STARTS_PER_RANKING]
         chosen |= dict.fromkeys(order.tolist())
     return list(chosen)
 
@@ -117,7 +121,7 @@ def _counted(
         shears.append(shear)
         tops.append(np.maximum.reduceat(across @ normal, turns)[:-1])  # up to the next turn
     cycles = rainflow(flight.sequence(shears))
-    top = np.tile(flight.sequence(tops), PASSES)
+    top = np.tile(flight.sequence(tops), RAINFLOW_PASSES)
     largest = np.array(
         [top[a : b + 1].max() for a, b in zip(cycles.first, cycles.last, strict=True)]
     )
@@ -129,15 +133,15 @@ def _counted(
 def _grid() -> Floats:
     """Normals of planes on a half sphere, directions in them, and across both: (P, D, 3, 3)."""
     polar, turn = [], []
-    for a in np.radians(np.arange(0.0, 90.0 + 0.5 * STEP, STEP)):
+    for a in np.radians(np.arange(0.0, 90.0 + 0.5 * PLANE_STEP, PLANE_STEP)):
         # With the planes at 45 degrees to the axes.
-        count = 8 * round(360.0 * np.sin(a) / STEP / 8.0) or 1
+        count = 8 * round(360.0 * np.sin(a) / PLANE_STEP / 8.0) or 1
         polar += [a] * count
         turn += (2.0 * np.pi * np.arange(count) / count).tolist()
     (a, b), (c, s) = ((np.cos(x), np.sin(x)) for x in (np.array(polar), np.array(turn)))
     normals, first = (np.stack(x, axis=1) for x in ([b * c, b * s, a], [a * c, a * s, -b]))
     second = np.stack([-s, c, np.zeros_like(s)], axis=1)
-    ways = np.radians(np.arange(0.0, 180.0, WAY))[None, :, None]
+    ways = np.radians(np.arange(0.0, 180.0, DIRECTION_STEP))[None, :, None]
     c, s = np.cos(ways), np.sin(ways)
     first, second = (
         c * first[:, None] + s * second[:, None],

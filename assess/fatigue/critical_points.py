@@ -26,17 +26,17 @@ from fea.core.voigt import von_mises
 from fea.solve.solve_pin import Solution
 from pinbase.arrays import Floats, Ints
 
-COARSE, FINE = 16, 72  # angles about the axis
-FEW, MORE = 12, 48  # instants
-MEAN = 0.3  # usual mean stress sensitivity of steel
-MOST = 4  # local maxima
-COUNTS = 0.3  # of the largest: lower ones are no candidates
-APART = 0.25  # of the distance from the axis: so far apart local maxima are
-SAME = 0.05  # of that: nearer points are one
-SOME = 2  # of the points one in so many is compared with others
-TRIED = 500  # points whose neighbours are compared
-CLOSE = 9  # points about a local maximum that are compared at all angles
-CHUNK = 16_384  # points and angles, by cases, at once
+SEARCH_ANGLES, FINAL_ANGLES = 16, 72  # angles about the axis
+SEARCH_INSTANTS, FINAL_INSTANTS = 12, 48  # instants
+MEAN_STRESS_SENSITIVITY = 0.3  # usual mean stress sensitivity of steel
+MAX_POINTS = 4  # local maxima
+MIN_SCORE = 0.3  # of the largest: lower ones are no candidates
+MIN_SPACING = 0.25  # of the distance from the axis: so far apart local maxima are
+MERGE_DISTANCE = 0.05  # of that: nearer points are one
+STRIDE = 2  # of the points one in so many is compared with others
+MAX_CANDIDATES = 500  # points whose neighbours are compared
+NEIGHBOURS = 9  # points about a local maximum that are compared at all angles
+SCORE_BATCH = 16_384  # points and angles, by cases, at once
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def _at(place: _Place, cases: Sequence[_Case]) -> tuple[CaseHistory, ...]:
 def _places(cases: Sequence[_Case]) -> list[_Place]:
     out: list[_Place] = []
     for place in (*_local_maxima(cases), *_governing(cases)):
-        near = SAME * float(np.hypot(*place.point[:2]))
+        near = MERGE_DISTANCE * float(np.hypot(*place.point[:2]))
         if all(np.linalg.norm(place.location - other.location) > near for other in out):
             out.append(place)
     return out
@@ -132,23 +132,23 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
     rows = np.flatnonzero(base.surface)
     if not len(rows):
         return
-    every, points = base.points[rows], base.points[rows[::SOME]]
-    score = _score(cases, points, COARSE, FEW).max(axis=1)
+    every, points = base.points[rows], base.points[rows[::STRIDE]]
+    score = _score(cases, points, SEARCH_ANGLES, SEARCH_INSTANTS).max(axis=1)
     whole, tree, radius = KDTree(every), KDTree(points), np.hypot(points[:, 0], points[:, 1])
-    order = np.argsort(-score, kind="stable")[:TRIED]
+    order = np.argsort(-score, kind="stable")[:MAX_CANDIDATES]
     chosen: list[int] = []
     for k in order:
-        if len(chosen) == MOST or score[k] <= COUNTS * score[order[0]]:
+        if len(chosen) == MAX_POINTS or score[k] <= MIN_SCORE * score[order[0]]:
             return
-        near = tree.query_ball_point(points[k], APART * radius[k])
+        near = tree.query_ball_point(points[k], MIN_SPACING * radius[k])
         if score[near].max() > score[k] or set(near) & set(chosen):
             continue
         chosen.append(int(k))
-        _, about = whole.query(points[k], min(CLOSE, len(every)))
+        _, about = whole.query(points[k], min(NEIGHBOURS, len(every)))
         about = np.atleast_1d(about)
-        fine = _score(cases, every[about], FINE, MORE)
+        fine = _score(cases, every[about], FINAL_ANGLES, FINAL_INSTANTS)
         row, turn = np.unravel_index(fine.argmax(), fine.shape)
-        angle = 2.0 * np.pi * float(turn) / FINE if base.revolved else 0.0
+        angle = 2.0 * np.pi * float(turn) / FINAL_ANGLES if base.revolved else 0.0
         text = "largest range of stress" if len(chosen) == 1 else "local maximum of the range"
         yield _Place(every[about[row]], angle, text)
 
@@ -161,7 +161,7 @@ def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) ->
     angles = np.tile(2.0 * np.pi * np.arange(turns) / turns, len(points))
     known = [(c.known, np.repeat(_nearest(c.known, points), turns), c.instants(instants))
              for c in cases]  # fmt: skip
-    chunk = max(CHUNK // len(cases), 1)
+    chunk = max(SCORE_BATCH // len(cases), 1)
     score = np.zeros(len(angles))
     for k in range(0, len(angles), chunk):
         here = slice(k, k + chunk)
@@ -169,7 +169,7 @@ def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) ->
         whole = np.concatenate([np.zeros_like(stress[0][:, :1]), *stress], axis=1)
         middle = 0.5 * (whole.min(axis=1) + whole.max(axis=1))
         apart = von_mises(whole - middle[:, None]).max(axis=1)
-        score[here] = apart + MEAN * signed_von_mises(middle)
+        score[here] = apart + MEAN_STRESS_SENSITIVITY * signed_von_mises(middle)
     return score.reshape(len(points), turns)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas
 
 MaterialGroup = Literal["Steel", "SteelCast", "Al_wrought"]
-PER_MPA, PER_MM = 1e6, 1e-3
+PA_PER_MPA, M_PER_MM = 1e6, 1e-3
 
 
 @dataclass(frozen=True)
@@ -68,10 +68,10 @@ def p_ram_life(
 
     asked = _parameters(material) | {"P_A": probability, "P_L": loads[0]}
     if loads[1] is not None:
-        asked["s_L"] = loads[1] / PER_MPA
+        asked["s_L"] = loads[1] / PA_PER_MPA
     with quiet():
         found = perform_fkm_nonlinear_assessment(
-            pandas.Series(asked), pandas.Series(sequence / PER_MPA), calculate_P_RAJ=False
+            pandas.Series(asked), pandas.Series(sequence / PA_PER_MPA), calculate_P_RAJ=False
         )
         infinite = bool(found["P_RAM_is_life_infinite"])
     cycles, curve = found["P_RAM_collective"], found["P_RAM_woehler_curve"]
@@ -110,11 +110,11 @@ def _parameters(material: FkmMaterial) -> dict[str, object]:
     return {
         "MatGroupFKM": material.group,
         "FinishingFKM": "none",
-        "R_m": material.ultimate / PER_MPA,
+        "R_m": material.ultimate / PA_PER_MPA,
         "R_z": material.roughness / 1e-6,
         "c": 1.0,
-        "A_sigma": material.area / PER_MM**2,
+        "A_sigma": material.area / M_PER_MM**2,
         "A_ref": 500.0,
-        "G": material.gradient * PER_MM,
+        "G": material.gradient * M_PER_MM,
         "K_p": material.plastic,
     }

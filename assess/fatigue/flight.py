@@ -22,10 +22,10 @@ import numpy as np
 from pinbase.arrays import Floats, Ints
 from pinbase.errors import ArgumentError
 
-UNITS = 1000  # at most so many until the spectrum repeats itself
-MOST = 10_000  # cases in the sequence
-EXACT = 1e-9
-PASSES = 3
+MAX_REPEAT_UNITS = 1000  # at most so many until the spectrum repeats itself
+MAX_SEQUENCE_CASES = 10_000  # cases in the sequence
+OCCURRENCE_TOLERANCE = 1e-9
+RAINFLOW_PASSES = 3
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ class Flight:
 
 @dataclass(frozen=True)
 class Cycles:
-    """Amplitudes and means (C,) Pa; first, last: (C,) places of the sequence, repeated PASSES
-    times, between which each cycle is.
+    """Amplitudes and means (C,) Pa; first, last: (C,) places of the sequence, repeated
+    RAINFLOW_PASSES times, between which each cycle is.
     """
 
     amplitude: Floats
@@ -67,18 +67,22 @@ def flight(occurrences: Sequence[float]) -> Flight:
     Raises: ArgumentError where these are no fractions of 1000 or fewer units (`not-a-fraction`), or
     the sequence is too long (`too-many-occurrences`).
     """
-    exact = [Fraction(n).limit_denominator(UNITS) for n in occurrences]
+    exact = [Fraction(n).limit_denominator(MAX_REPEAT_UNITS) for n in occurrences]
     units = lcm(*(n.denominator for n in exact))
-    off = any(abs(float(n) - m) > EXACT * m for n, m in zip(exact, occurrences, strict=True))
-    if off or units > UNITS:
+    off = any(
+        abs(float(n) - m) > OCCURRENCE_TOLERANCE * m
+        for n, m in zip(exact, occurrences, strict=True)
+    )
+    if off or units > MAX_REPEAT_UNITS:
         raise ArgumentError(
-            f"the spectrum must repeat itself after at most {UNITS:,} units: give whole numbers "
+            f"the spectrum must repeat itself after at most {MAX_REPEAT_UNITS:,} units: give "
+            f"whole numbers "
             "and fractions such as 0.5, 0.05 or 0.001",
             "not-a-fraction",
         )
-    if sum(exact) * units > MOST:
+    if sum(exact) * units > MAX_SEQUENCE_CASES:
         raise ArgumentError(
-            f"the spectrum has more than {MOST:,} cases until it repeats itself",
+            f"the spectrum has more than {MAX_SEQUENCE_CASES:,} cases until it repeats itself",
             "too-many-occurrences",
         )
     each = [
@@ -115,7 +119,7 @@ def rainflow(sequence: Floats) -> Cycles:
 
     recorder = FullRecorder()
     detector, ends = FourPointDetector(recorder=recorder), [0]
-    for _ in range(PASSES):
+    for _ in range(RAINFLOW_PASSES):
         detector.process(sequence)
         ends.append(len(recorder.values_from))
     here = slice(*ends[-2:])

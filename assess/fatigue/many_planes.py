@@ -15,13 +15,13 @@ from typing import TypeVar
 
 import numpy as np
 
-from assess.fatigue.flight import PASSES, Flight
+from assess.fatigue.flight import RAINFLOW_PASSES, Flight
 from assess.fatigue.sn_curve import Life
 from pinbase.arrays import Floats, Ints, Mask
 
-AT_ONCE = 1_000_000  # planes and instants
-GRAIN = 1e-6  # of the largest shear stress of a case: smaller steps are none
-DEPTH = 16  # of the stacks at first
+PLANE_INSTANT_BATCH = 1_000_000  # planes and instants
+MIN_SHEAR_STEP = 1e-6  # of the largest shear stress of a case: smaller steps are none
+INITIAL_STACK_DEPTH = 16  # of the stacks at first
 
 T = TypeVar("T")
 
@@ -49,7 +49,7 @@ def on_planes(
     """
     normals, ways = planes
     longest = max(len(stress) for stress in cases)
-    size = max(1, AT_ONCE // longest)
+    size = max(1, PLANE_INSTANT_BATCH // longest)
     parts = []
     for start in range(0, len(normals), size):
         here = slice(start, start + size)
@@ -59,10 +59,10 @@ def on_planes(
             count.alone(_turns(across @ stress.T, along @ stress.T), flight.order.count(case))
             for case, stress in enumerate(cases)
         ]
-        for n in range(PASSES):
+        for n in range(RAINFLOW_PASSES):
             for case, weight in _blocks(flight):
                 for point in zip(*left[case], strict=True):
-                    count.step(*point, weight if n == PASSES - 1 else 0)
+                    count.step(*point, weight if n == RAINFLOW_PASSES - 1 else 0)
         parts.append(count.found)
     return OnPlanes(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
@@ -81,7 +81,7 @@ def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
     the largest normal stress from each up to the next: (K, M), filled up with the last point.
     """
     zero = np.zeros((len(shear), 1))
-    grain = GRAIN * float(np.abs(shear).max(initial=0.0)) or 1.0
+    grain = MIN_SHEAR_STEP * float(np.abs(shear).max(initial=0.0)) or 1.0
     whole = np.concatenate([zero, np.round(shear / grain) * grain, zero], axis=1)
     top = np.concatenate([zero, normal, zero], axis=1)
     slope = np.sign(np.diff(whole, axis=1)).astype(np.int8)
@@ -127,7 +127,9 @@ class _Count:
 
     def __init__(self, size: int, k: float, life: Life) -> None:
         self._k, self._life = k, life
-        self._value, self._raw, self._top = (np.zeros((DEPTH, size)) for _ in range(3))
+        self._value, self._raw, self._top = (
+            np.zeros((INITIAL_STACK_DEPTH, size)) for _ in range(3)
+        )
         self._n = np.zeros(size, dtype=np.int64)
         self.found = np.zeros(size), np.zeros(size), np.zeros(size)
 

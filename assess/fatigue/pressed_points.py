@@ -15,14 +15,16 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import KDTree
 
-from fea.core.pressed import BINS, PressedArcs
-from fea.cut.evaluate import CutAnswer
+from fea.core.pressed import ARC_COUNT, PressedArcs
+from fea.cut.evaluate import CutField
 from fea.cut.free_points import FreePoints, relieved
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints
-from fea.harmonic.surface_stress import AT
+from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
-ALONG = 0.1  # of a distance along the pin counts, so that neighbours have the same angle
+AXIAL_DISTANCE_WEIGHT = (
+    0.1  # of a distance along the pin counts, so that neighbours have the same angle
+)
 
 Stress = Callable[[Ints, Floats, Ints], Floats]
 
@@ -32,14 +34,19 @@ class StandIns:
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.free, self._x = FreeSurface(of, pressed), of.fields.points
-        outline = np.flatnonzero(of.relieved[: of.fields.skin] < 0)[len(AT) // 2 :: len(AT)]
+        outline = np.flatnonzero(of.relieved[: of.fields.skin] < 0)[
+            len(EDGE_STATIONS) // 2 :: len(EDGE_STATIONS)
+        ]
         amid = np.flatnonzero(of.relieved >= 0)
         self._may = np.setdiff1d(np.concatenate([outline, amid]), of.fields.unread)
         self._known: dict[int, Mask] = {}
 
     def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
         """Of points (J,) at angles (J,), rad, those (J,) that stand for them at an instant."""
-        arc, out = np.rint(angles / (2.0 * np.pi) * BINS).astype(np.int64) % BINS, rows.copy()
+        arc, out = (
+            np.rint(angles / (2.0 * np.pi) * ARC_COUNT).astype(np.int64) % ARC_COUNT,
+            rows.copy(),
+        )
         some = np.flatnonzero(self.free.masked(rows))
         own, place = np.unique(rows[some], return_inverse=True)
         read = self.free.read(own, np.full(len(own), instant))[place, arc[some]]
@@ -64,7 +71,7 @@ class StandIns:
 class CutStandIns:
     """The same of the surface of a pin with cuts, by its points in space."""
 
-    def __init__(self, answer: CutAnswer, pressed: PressedArcs) -> None:
+    def __init__(self, answer: CutField, pressed: PressedArcs) -> None:
         cut, pieces = answer.surface, answer.solution.pieces
         each = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
         first = len(cut.points) - sum(len(x) for x in each)
@@ -86,7 +93,7 @@ class CutStandIns:
         lost, out = np.flatnonzero(~read[rows]), rows.copy()
         may = np.flatnonzero(read & self._may)
         if len(lost) and len(may):
-            scaled = self.points * [1.0, 1.0, ALONG]
+            scaled = self.points * [1.0, 1.0, AXIAL_DISTANCE_WEIGHT]
             out[lost] = may[np.atleast_1d(KDTree(scaled[may]).query(scaled[rows[lost]])[1])]
         return out
 

@@ -22,8 +22,8 @@ from assess.fatigue.records import CaseHistory
 from fea.core.voigt import VON_MISES, von_mises
 from pinbase.arrays import Floats
 
-SEEN = 0.05  # of the largest stress: a rule may be so far off
-BY_SIDE = "alternating shear, signed by its direction"
+MAX_RULE_ERROR = 0.05  # of the largest stress: a rule may be so far off
+SIGNED_SHEAR_RULE = "alternating shear, signed by its direction"
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class SignedCourse:
     @property
     def stands(self) -> bool:
         """Whether it stands for the history."""
-        return self.unseen <= SEEN
+        return self.unseen <= MAX_RULE_ERROR
 
 
 def course(cases: Sequence[CaseHistory]) -> SignedCourse:
@@ -63,7 +63,9 @@ def course(cases: Sequence[CaseHistory]) -> SignedCourse:
         return float(apart.max()) / largest
 
     plain = min(off(signed, line), off(signed, -line))
-    if plain <= SEEN or off(by_side, side * line) > SEEN:
+    if plain <= MAX_RULE_ERROR or off(by_side, side * line) > MAX_RULE_ERROR:
         return SignedCourse([case.signed for case in cases], largest, plain)
     ends = np.cumsum([len(case.signed) for case in cases])[:-1]
-    return SignedCourse(np.split(by_side, ends), largest, off(by_side, side * line), BY_SIDE)
+    return SignedCourse(
+        np.split(by_side, ends), largest, off(by_side, side * line), SIGNED_SHEAR_RULE
+    )

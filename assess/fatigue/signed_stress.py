@@ -14,7 +14,7 @@ import numpy as np
 from fea.core.voigt import von_mises
 from pinbase.arrays import Floats
 
-NONE = 1e-9  # of the von Mises stress: a smaller sum is none
+MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum is none
 
 
 def signed_von_mises(stress: Floats) -> Floats:
@@ -28,4 +28,4 @@ def signed_von_mises(stress: Floats) -> Floats:
         cosine = np.nan_to_num(13.5 * third / size**3)  # 3 sqrt(3) / 2 J3 / J2^(3/2)
     lode = np.arccos(np.clip(cosine, -1.0, 1.0)) / 3.0
     both = 2.0 * p - 2.0 / 3.0 * size * np.cos(lode - 2.0 * np.pi / 3.0)
-    return np.asarray(np.where(both < -NONE * size, -size, size))
+    return np.asarray(np.where(both < -MIN_STRESS_SUM * size, -size, size))

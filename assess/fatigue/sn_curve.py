@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 MeanStress = Literal["none", "fkm", "goodman", "swt", "walker"]
 
-SOFTER = 0.95  # of the knee
+SOFTENED_KNEE_RATIO = 0.95  # of the knee
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,10 @@ class Life:
         return np.asarray(np.where(ratio >= 1.0, ratio**above, low) / self.knee[1])
 
     def softer(self, equivalent: Floats) -> Floats:
-        """The same, with the slope above the knee down to SOFTER of it."""
+        """The same, with the slope above the knee down to SOFTENED_KNEE_RATIO of it."""
         ratio, damage = equivalent / self.knee[0], self.damage(equivalent)
         near = ratio ** self.slopes[0] / self.knee[1]
-        return np.asarray(np.where((ratio >= SOFTER) & (ratio < 1.0), near, damage))
+        return np.asarray(np.where((ratio >= SOFTENED_KNEE_RATIO) & (ratio < 1.0), near, damage))
 
 
 @dataclass(frozen=True)

@@ -7,16 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from assess.fatigue.pressed_points import CutStandIns, StandIns, Stress, replaced
-from fea.beam.model import BeamAnswer
+from fea.beam.model import BeamField
 from fea.core.pin_loads import PinLoads
-from fea.core.solution import Answer
-from fea.cut.evaluate import CutAnswer
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.core.solution import StressField
+from fea.cut.evaluate import CutField
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.five_numbers import BACK
+from fea.harmonic.five_numbers import COSINE_COMPONENTS
 from fea.harmonic.free_surface import surface_points
-from fea.solid.evaluate import SolidAnswer
-from fea.support.foundation.solve_on_foundations import FoundationAnswer
+from fea.solid.evaluate import SolidField
+from fea.support.foundation.solve_on_foundations import FoundationField
 from pinbase.arrays import Floats, Ints, Mask
 
 
@@ -36,22 +36,22 @@ class StressPoints:
     at: Stress
 
 
-def stress_points(answer: Answer | None, loads: PinLoads) -> StressPoints | None:
+def stress_points(answer: StressField | None, loads: PinLoads) -> StressPoints | None:
     """Of a solution and the loads of its case; None where nothing was solved."""
-    if isinstance(answer, HarmonicAnswer):
+    if isinstance(answer, HarmonicField):
         return _harmonic(answer, loads)
-    if isinstance(answer, BeamAnswer | FoundationAnswer):
+    if isinstance(answer, BeamField | FoundationField):
         return _beam(answer.points, answer.harmonics(loads), len(loads))
-    if isinstance(answer, CutAnswer):
+    if isinstance(answer, CutField):
         return _cut(answer, loads)
-    if isinstance(answer, SolidAnswer):
+    if isinstance(answer, SolidField):
         fields, surface = answer.solution.fields, answer.solution.outside.copy()
         surface[len(fields.surface.nodes) :] = False
         return _solid(fields.points, fields.read, surface, fields.coefficients(loads))
     return None
 
 
-def _harmonic(answer: HarmonicAnswer, loads: PinLoads) -> StressPoints:
+def _harmonic(answer: HarmonicField, loads: PinLoads) -> StressPoints:
     """Of the surface, where lugs press on it as pressed_points has it."""
     if loads.pressed is None:
         fields = answer.fields
@@ -76,7 +76,7 @@ def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
     amounts = np.zeros((len(loads), len(units), 2))
     for i, k in enumerate(units):
         amounts[:, i] = acting[fields.loads[k]]
-    even = BACK[:, None]
+    even = COSINE_COMPONENTS[:, None]
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
         turns = np.outer(angles, n)[:, None, :]
@@ -89,7 +89,7 @@ def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
     return at
 
 
-def _cut(answer: CutAnswer, loads: PinLoads) -> StressPoints:
+def _cut(answer: CutField, loads: PinLoads) -> StressPoints:
     cut, amounts = answer.surface, answer.coefficients(loads)
     if loads.pressed is None:
         return _solid(cut.points, cut.stress, cut.read, amounts)

@@ -11,16 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry import Coded
+from geometry import CodedError
 from pinbase.arrays import Floats
 
-COMMAND = "ccx"
-JOB = "job"
-TO_GET = "on Debian and Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
-FRD_TO_OURS = [0, 1, 2, 4, 5, 3]  # xx, yy, zz, xy, yz, zx there; xx, yy, zz, yz, xz, xy here
+CALCULIX_COMMAND = "ccx"
+JOB_NAME = "job"
+INSTALL_HINT = "on Debian and Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
+FRD_TO_VOIGT = [0, 1, 2, 4, 5, 3]  # xx, yy, zz, xy, yz, zx there; xx, yy, zz, yz, xz, xy here
 
 
-class CalculixError(Coded, RuntimeError):
+class CalculixError(CodedError, RuntimeError):
     """CalculiX failed; the message has the end of its output."""
 
 
@@ -36,18 +36,19 @@ class CalculixSolution:
 
 def installed() -> bool:
     """Whether there is a CalculiX to run."""
-    return shutil.which(COMMAND) is not None
+    return shutil.which(CALCULIX_COMMAND) is not None
 
 
 def run(folder: Path) -> str:
-    """Run CalculiX on the deck JOB.inp in a folder; returns its output.
+    """Run CalculiX on the deck JOB_NAME.inp in a folder; returns its output.
 
     Raises: CalculixError when it cannot be run or fails.
     """
     done = attempt(folder)
     if done.returncode:
         raise CalculixError(
-            f"{COMMAND} ended with status {done.returncode}: {end(done.stdout + done.stderr)}",
+            f"{CALCULIX_COMMAND} ended with status {done.returncode}: "
+            f"{end(done.stdout + done.stderr)}",
             "failed",
         )
     return done.stdout
@@ -58,7 +59,7 @@ def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
     threads = {"OMP_NUM_THREADS": str(os.cpu_count() or 1)}
     try:
         return subprocess.run(
-            [COMMAND, "-i", JOB],
+            [CALCULIX_COMMAND, "-i", JOB_NAME],
             cwd=folder,
             env=threads | os.environ,
             capture_output=True,
@@ -67,7 +68,7 @@ def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
         )
     except OSError as error:
         raise CalculixError(
-            f"{COMMAND} cannot be run ({error.strerror}); {TO_GET}", "not-installed"
+            f"{CALCULIX_COMMAND} cannot be run ({error.strerror}); {INSTALL_HINT}", "not-installed"
         ) from None
 
 
@@ -79,14 +80,14 @@ def solved(folder: Path, printed: str) -> CalculixSolution:
     seconds_of(printed)
     try:
         found = CalculixSolution(
-            displacements(folder / f"{JOB}.dat"), stresses(folder / f"{JOB}.frd")
+            displacements(folder / f"{JOB_NAME}.dat"), stresses(folder / f"{JOB_NAME}.frd")
         )
     except (OSError, ValueError, IndexError, StopIteration) as error:
         raise CalculixError(
-            f"{COMMAND} wrote no readable results ({error})", "unreadable-results"
+            f"{CALCULIX_COMMAND} wrote no readable results ({error})", "unreadable-results"
         ) from None
     if not (np.isfinite(found.displacement).all() and np.isfinite(found.stress).all()):
-        raise CalculixError(f"the results of {COMMAND} are not finite", "not-finite")
+        raise CalculixError(f"the results of {CALCULIX_COMMAND} are not finite", "not-finite")
     return found
 
 
@@ -94,7 +95,7 @@ def seconds_of(printed: str) -> float:
     """The run time that CalculiX reports, s. Raises: CalculixError when it failed before."""
     time = re.search(r"Total CalculiX Time:\s*(\S+)", printed)
     if "*ERROR" in printed or time is None:
-        raise CalculixError(f"{COMMAND} failed: {end(printed)}", "failed")
+        raise CalculixError(f"{CALCULIX_COMMAND} failed: {end(printed)}", "failed")
     return float(time[1])
 
 
@@ -122,4 +123,4 @@ def stresses(frd: Path) -> Floats:
             break
         if line.startswith(" -1"):  # then the node in 10 columns and six numbers of 12
             rows.append([float(line[i : i + 12]) for i in range(13, 85, 12)])
-    return np.array(rows)[:, FRD_TO_OURS]
+    return np.array(rows)[:, FRD_TO_VOIGT]

@@ -26,7 +26,7 @@ from assess.opinion import calculix
 from assess.opinion.calculix_deck import write_deck
 from assess.opinion.opinions import Opinion
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.solid.evaluate import SolidSolution, solid_solution
@@ -42,7 +42,7 @@ def second_opinions(
     material: Material,
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
-    peaks: tuple[Peak, ...],
+    peaks: tuple[Maximum, ...],
     distance: float,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Opinion, ...]:
@@ -80,13 +80,14 @@ def _compared(
     forces = fields.forces @ loads
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
-        deck = folder / f"{calculix.JOB}.inp"
+        deck = folder / f"{calculix.JOB_NAME}.inp"
         write_deck(deck, space.nodes, space.elements, material, fields.fixed, forces)
         found = calculix.solved(folder, calculix.run(folder))
     u = fields.displacement @ loads
     if found.displacement.shape != u.shape or len(found.stress) != len(u):
         raise calculix.CalculixError(
-            f"{calculix.COMMAND} did not write results for all {len(u)} nodes", "missing-nodes"
+            f"{calculix.CALCULIX_COMMAND} did not write results for all {len(u)} nodes",
+            "missing-nodes",
         )
     ours = von_mises(nodal_stress(space, material, u[..., None])[..., 0])
     theirs = von_mises(found.stress)

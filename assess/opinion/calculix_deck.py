@@ -12,7 +12,7 @@ from pinbase.arrays import Floats, Ints
 
 # C3D10 has the corners, then edges 01, 12, 02, 03, 13, 23, which is VTK's order and scikit-fem's
 # (not gmsh's: 03, 23, 13). A mirrored element is turned by exchanging its corners 1 and 2.
-MIRRORED = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
+MIRRORED_NODE_ORDER = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 
 
 def c3d10(nodes: Floats, elements: Ints) -> Ints:
@@ -22,7 +22,7 @@ def c3d10(nodes: Floats, elements: Ints) -> Ints:
     """
     x = nodes[elements[:, :4]]
     negative = np.linalg.det(x[:, 1:] - x[:, :1]) < 0.0
-    return np.where(negative[:, None], elements[:, MIRRORED], elements)
+    return np.where(negative[:, None], elements[:, MIRRORED_NODE_ORDER], elements)
 
 
 def write_deck(

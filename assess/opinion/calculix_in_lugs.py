@@ -20,7 +20,7 @@ from assess.opinion.calculix_row import section_of
 from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import Floats, PinLoads
 from fea.support.contact.records import BandContact, JointResult
 from fea.support.lugs.links import link_forces
@@ -28,15 +28,18 @@ from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin
 
 Meshes = tuple[Fineness, Fineness]
-HALF = Fineness(rings=4, sectors=16, eye=2), Fineness(rings=6, sectors=24, layers=3, eye=2)
-WHOLE = Fineness(rings=4, sectors=8, eye=1), Fineness(rings=6, sectors=16, eye=2)
-SMALL = 1e-3  # of the largest force: what CalculiX's model may lack
-UNLOADED = 1e-6  # of the largest force
-STATIONS = 401
+HALF_MODEL_MESHES = (
+    Fineness(rings=4, sectors=16, eye=2),
+    Fineness(rings=6, sectors=24, layers=3, eye=2),
+)
+FULL_MODEL_MESHES = Fineness(rings=4, sectors=8, eye=1), Fineness(rings=6, sectors=16, eye=2)
+MAX_OMITTED_FORCE = 1e-3  # of the largest force: what CalculiX's model may lack
+MIN_BAND_FORCE = 1e-6  # of the largest force
+MOMENT_STATION_COUNT = 401
 
 
 @dataclass(frozen=True)
-class Seated:
+class PinInLugs:
     """A pin in its lugs."""
 
     pin: Pin
@@ -45,8 +48,8 @@ class Seated:
 
 
 def opinion_in_lugs(
-    seated: Seated,
-    peak: Peak,
+    seated: PinInLugs,
+    peak: Maximum,
     joint: JointResult,
     progress: Callable[[str], None] = lambda _: None,
     meshes: Meshes | None = None,
@@ -54,7 +57,7 @@ def opinion_in_lugs(
     """Of a case with a peak and its contact there; the opinion has the reason if there is none."""
     answer = Opinion(peak.pin, peak.case, peak.max_von_mises, peak.own_error)
     try:
-        loads = across(seated, peak.governing)
+        loads = transverse(seated, peak.governing)
         found = []
         for number, mesh in enumerate(meshes or _meshes(loads), 1):
             progress(f"pin {peak.pin}, {peak.case}, contact by CalculiX, mesh {number} of 2")
@@ -64,7 +67,7 @@ def opinion_in_lugs(
     return _compared(answer, seated, peak, joint, found)
 
 
-def across(seated: Seated, governing: PinLoads | None) -> PinLoads:
+def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
     """The links' forces across the pin, in balance. Raises: ArgumentError for what CalculiX's model
     lacks; SolveError for forces out of balance.
     """
@@ -77,14 +80,14 @@ def across(seated: Seated, governing: PinLoads | None) -> PinLoads:
         ("torques", np.abs(loads.moments).max() / seated.pin.smallest_diameter),
         ("weight and inertia of the pin", weight * np.abs(loads.body).max()),
     ):
-        if size > SMALL * largest:
+        if size > MAX_OMITTED_FORCE * largest:
             raise ArgumentError(f"CalculiX's model has no {what}", "other-loads")
     plain = PinLoads(loads.case, loads.surfaces, loads.forces * [1.0, 1.0, 0.0])
     force = link_forces(seated.pin, 0.0, plain)
     return PinLoads(loads.case, seated.pin.connections, np.pad(force, ((0, 0), (0, 0), (0, 1))))
 
 
-def _require_modelled(seated: Seated) -> None:
+def _require_modelled(seated: PinInLugs) -> None:
     structure = [x.connection for x in seated.lugs if x.connection not in seated.pin.connections]
     tight = [lug.connection for lug in seated.lugs if lug.clearance < 0.0]
     if structure:
@@ -100,13 +103,13 @@ def _require_modelled(seated: Seated) -> None:
 def _meshes(loads: PinLoads) -> Meshes:
     """As fine as takes minutes."""
     _, half = plane_of(loads.forces[0, :, :2])
-    return HALF if half else WHOLE
+    return HALF_MODEL_MESHES if half else FULL_MODEL_MESHES
 
 
 def _compared(
     answer: Opinion,
-    seated: Seated,
-    peak: Peak,
+    seated: PinInLugs,
+    peak: Maximum,
     joint: JointResult,
     found: Sequence[JointOpinion],
 ) -> Opinion:
@@ -115,7 +118,7 @@ def _compared(
     moments = [largest_moment(x, pin) for x in found]
     stresses = [_stress(x, seated, peak) for x in found]
     coarse, fine = found
-    least = UNLOADED * max(band.force for band in joint.bands)
+    least = MIN_BAND_FORCE * max(band.force for band in joint.bands)
     contact = ContactOpinion(
         tuple(_band(pin, b, fine) for b in joint.bands if b.ends and b.force > least),
         joint.bending_moment,
@@ -128,7 +131,7 @@ def _compared(
     return replace(answer, unknowns=fine.unknowns, theirs=stresses[1], contact=contact)
 
 
-def _stress(found: JointOpinion, seated: Seated, peak: Peak) -> float:
+def _stress(found: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
     """At our maximum, Pa: on the surface where that is, or in the section that has it, by the
     forces of CalculiX's rings.
     """
@@ -140,7 +143,7 @@ def _stress(found: JointOpinion, seated: Seated, peak: Peak) -> float:
 
 def largest_moment(found: JointOpinion, pin: Pin) -> float:
     """Along the pin, N m."""
-    z = np.linspace(0.0, pin.length, STATIONS)
+    z = np.linspace(0.0, pin.length, MOMENT_STATION_COUNT)
     return float(np.linalg.norm(found.bending_moment(z), axis=1).max())
 
 

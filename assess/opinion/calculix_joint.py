@@ -37,12 +37,18 @@ from geometry import ArgumentError, Pin
 
 Ints = NDArray[np.int64]
 
-APPENDED = "zero-size increment is appended"
-USUAL = Fineness()
-FLAT = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
-IN_A_PLANE = 1e-6  # of the largest force: what may be across the plane of the others
-NEAR, STEPS, NATURAL = 12, 12, 1e-9  # elements in which a point is looked for, and how
-SIGNS = np.array([[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))])
+ZERO_INCREMENT_MESSAGE = "zero-size increment is appended"
+DEFAULT_FINENESS = Fineness()
+MIN_FLAT_LENGTH = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
+MAX_OUT_OF_PLANE_FORCE = 1e-6  # of the largest force: what may be across the plane of the others
+NEAREST_ELEMENTS, MAX_LOCATING_STEPS, LOCATING_TOLERANCE = (
+    12,
+    12,
+    1e-9,
+)  # elements in which a point is looked for, and how
+CORNER_SIGNS = np.array(
+    [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+)
 
 
 @dataclass(frozen=True)
@@ -118,7 +124,7 @@ class JointOpinion:
     def _stress_at(self, point: Floats) -> Floats:
         """(6,) Pa, linear within the element that has the point, or comes nearest to it."""
         corners = self.nodes[self.elements[:, :8]]
-        near = np.argsort(np.linalg.norm(corners.mean(axis=1) - point, axis=1))[:NEAR]
+        near = np.argsort(np.linalg.norm(corners.mean(axis=1) - point, axis=1))[:NEAREST_ELEMENTS]
         natural = [_natural(corners[e], point) for e in near]
         beyond = [float(np.abs(x).max()) for x in natural]
         best = int(np.argmin(beyond))
@@ -131,7 +137,7 @@ def joint_opinion(
     material: Material,
     lugs: Sequence[Lug],
     loads: PinLoads,
-    fineness: Fineness = USUAL,
+    fineness: Fineness = DEFAULT_FINENESS,
 ) -> JointOpinion:
     """CalculiX's opinion on a pin under loads of one instant: forces across of the links, no more.
 
@@ -148,7 +154,7 @@ def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> Joint
     """
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
-        deck.write(folder / f"{calculix.JOB}.inp")
+        deck.write(folder / f"{calculix.JOB_NAME}.inp")
         printed = calculix.run(folder)
         return _read(pin, deck, angle, folder, printed, scale)
 
@@ -195,7 +201,7 @@ def plane_of(force: Floats) -> tuple[float, bool]:
     """
     fx, fy = force[np.argmax(np.linalg.norm(force, axis=1))]
     across = np.abs(force @ [-fy, fx]).max() / np.hypot(fx, fy)
-    if across > IN_A_PLANE * np.hypot(fx, fy):
+    if across > MAX_OUT_OF_PLANE_FORCE * np.hypot(fx, fy):
         return 0.0, False
     return float(np.arctan2(fy, fx)), True
 
@@ -220,7 +226,11 @@ def _ring_ends(length: float, radius: float, count: int) -> Floats:
     since the parabola of one would press on the pin.
     """
     flat = length - 2.0 * radius
-    inner = radius + graded(flat, count) if flat > FLAT * length else np.array([length / 2.0])
+    inner = (
+        radius + graded(flat, count)
+        if flat > MIN_FLAT_LENGTH * length
+        else np.array([length / 2.0])
+    )
     if not radius:
         return inner
     edge = np.array([0.0, radius / 2.0])
@@ -278,17 +288,18 @@ def _read(
     seconds = calculix.seconds_of(printed)
     mesh = deck.pin.mesh
     try:
-        found = contact_forces(folder / f"{calculix.JOB}.dat")
-        stress = calculix.stresses(folder / f"{calculix.JOB}.frd")
+        found = contact_forces(folder / f"{calculix.JOB_NAME}.dat")
+        stress = calculix.stresses(folder / f"{calculix.JOB_NAME}.frd")
         names = [slave(eye.part.name, k) for eye in deck.eyes for k in range(len(eye.rings))]
         each = np.array([found[name] for name in names])
     except (OSError, ValueError, IndexError, KeyError, StopIteration) as error:
         raise calculix.CalculixError(
-            f"{calculix.COMMAND} wrote no readable results ({error})", "unreadable-results"
+            f"{calculix.CALCULIX_COMMAND} wrote no readable results ({error})", "unreadable-results"
         ) from None
     if len(stress) != len(mesh.nodes) or not np.isfinite(each).all():
         raise calculix.CalculixError(
-            f"{calculix.COMMAND} did not write finite results for the whole pin", "missing-nodes"
+            f"{calculix.CALCULIX_COMMAND} did not write finite results for the whole pin",
+            "missing-nodes",
         )
     c, s = np.cos(angle), np.sin(angle)
     back = np.array([[c, s], [-s, c]])
@@ -309,7 +320,7 @@ def _read(
         deck.unknowns,
         len(re.findall(r"^ iteration \d+", printed, re.MULTILINE)),
         seconds,
-        APPENDED in printed,
+        ZERO_INCREMENT_MESSAGE in printed,
     )
 
 
@@ -344,19 +355,19 @@ def contact_forces(dat: Path) -> dict[str, Floats]:
 
 def _trilinear(natural: Floats) -> tuple[Floats, Floats]:
     """Shape functions (8,) of a hexahedron's corners, and their slopes (8, 3)."""
-    parts = 1.0 + SIGNS * natural
+    parts = 1.0 + CORNER_SIGNS * natural
     shape = parts.prod(axis=1) / 8.0
     others = np.stack([parts[:, [1, 2]], parts[:, [0, 2]], parts[:, [0, 1]]], axis=1).prod(axis=2)
-    return shape, SIGNS * others / 8.0
+    return shape, CORNER_SIGNS * others / 8.0
 
 
 def _natural(corners: Floats, point: Floats) -> Floats:
     """Natural coordinates (3,) of a point in a hexahedron, by Newton's method."""
     x = np.zeros(3)
-    for _ in range(STEPS):
+    for _ in range(MAX_LOCATING_STEPS):
         shape, slopes = _trilinear(x)
         step = np.linalg.solve(corners.T @ slopes, point - shape @ corners)
         x = np.clip(x + step, -2.0, 2.0)
-        if np.abs(step).max() < NATURAL:
+        if np.abs(step).max() < LOCATING_TOLERANCE:
             break
     return x

@@ -16,16 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from assess.opinion.calculix_deck import real
-from assess.opinion.calculix_joint_mesh import INNER, OUTER, Hexahedra
+from assess.opinion.calculix_joint_mesh import INNER_FACE, OUTER_FACE, Hexahedra
 from fea.core.material import Material
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
-CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-LAST = "FREQUENCY=1000000"  # of the increments, at which results are written
-WEAK = 1e-7  # of Young's modulus times the pin's length: springs that hold what has no contact
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
+FACE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+LAST_INCREMENT_ONLY = "FREQUENCY=1000000"  # of the increments, at which results are written
+WEAK_SPRING_STIFFNESS = (
+    1e-7  # of Young's modulus times the pin's length: springs that hold what has no contact
+)
 
 
 @dataclass(frozen=True)
@@ -121,9 +123,9 @@ class JointDeck:
     def _surfaces(self, first: list[tuple[int, int]]) -> Iterator[str]:
         for eye, (_, start) in zip(self.eyes, first[1:], strict=True):
             bore = np.flatnonzero(eye.part.mesh.inner == eye.part.mesh.inner.min())
-            yield from _surface(f"BORE{eye.part.name}", start + bore, INNER)
+            yield from _surface(f"BORE{eye.part.name}", start + bore, INNER_FACE)
             for k, elements in enumerate(eye.rings):
-                yield from _surface(slave(eye.part.name, k), 1 + elements, OUTER)
+                yield from _surface(slave(eye.part.name, k), 1 + elements, OUTER_FACE)
 
     def _contact(self) -> Iterator[str]:
         yield "*SURFACE INTERACTION, NAME=DRY"
@@ -154,7 +156,7 @@ class JointDeck:
         number = sum(len(part.mesh.elements) for part in self._parts) + 1
         mesh, E = self.pin.mesh, self.pin.material.youngs_modulus
         length = float(np.ptp(mesh.nodes[:, 2]))
-        weak = WEAK * E * length
+        weak = WEAK_SPRING_STIFFNESS * E * length
         constrained = [(1 + n, axis, weak) for n in _ends(mesh) for axis in self.axes]
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
@@ -206,12 +208,12 @@ class JointDeck:
                     yield f"{self._auxiliary(b)[0]}, {axis}, {real(float(eye.force[axis - 1]))}"
         for eye in self.eyes:
             for k in range(len(eye.rings)):
-                name = eye.part.name
-                yield f"*CONTACT PRINT, SLAVE={slave(name, k)}, MASTER=BORE{name}, {LAST}"
+                pair = f"SLAVE={slave(eye.part.name, k)}, MASTER=BORE{eye.part.name}"
+                yield f"*CONTACT PRINT, {pair}, {LAST_INCREMENT_ONLY}"
                 yield "CF"
-        yield f"*NODE FILE, NSET={self.pin.name}, {LAST}"
+        yield f"*NODE FILE, NSET={self.pin.name}, {LAST_INCREMENT_ONLY}"
         yield "U"
-        yield f"*EL FILE, NSET={self.pin.name}, {LAST}"
+        yield f"*EL FILE, NSET={self.pin.name}, {LAST_INCREMENT_ONLY}"
         yield "S"
         yield "*END STEP"
 
@@ -290,12 +292,12 @@ def surface_weights(mesh: Hexahedra) -> tuple[Ints, Floats]:
     """Nodes (K,) of the outer surface, and the integrals of their shape functions, and of these
     times z, (K, 2) m^2, m^3.
     """
-    faces = mesh.face(np.flatnonzero(mesh.outer == mesh.outer.max()), OUTER)
+    faces = mesh.face(np.flatnonzero(mesh.outer == mesh.outer.max()), OUTER_FACE)
     nodes, number = np.unique(faces, return_inverse=True)
     x = mesh.nodes[faces]  # (F, 8, 3)
     out = np.zeros((len(nodes), 2))
-    for s, w in zip(GAUSS, WEIGHTS, strict=True):
-        for t, v in zip(GAUSS, WEIGHTS, strict=True):
+    for s, w in zip(GAUSS_POINTS, GAUSS_WEIGHTS, strict=True):
+        for t, v in zip(GAUSS_POINTS, GAUSS_WEIGHTS, strict=True):
             shape, slope = _serendipity(float(s), float(t))
             along = np.einsum("fnc,nd->fdc", x, slope)
             area = w * v * np.linalg.norm(np.cross(along[:, 0], along[:, 1]), axis=1)
@@ -307,7 +309,7 @@ def surface_weights(mesh: Hexahedra) -> tuple[Ints, Floats]:
 
 def _serendipity(s: float, t: float) -> tuple[Floats, Floats]:
     """Shape functions (8,) of a quadrilateral with middles, and their slopes (8, 2)."""
-    a, b = CORNERS.T
+    a, b = FACE_CORNERS.T
     p, q = 1.0 + a * s, 1.0 + b * t
     corner = 0.25 * p * q * (a * s + b * t - 1.0)
     ds = 0.25 * a * q * (2.0 * a * s + b * t)

@@ -20,19 +20,19 @@ Ints = NDArray[np.int64]
 
 # Pairs of corners of the nodes 9 to 20 of C3D20, and the corners of its faces 4 and 6, counted
 # from 0, which are the outer and the inner one of a cell drawn from a ring.
-EDGES = np.array(
+C3D20_EDGES = np.array(
     [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 )
-OUTER, INNER = 4, 6
-FACES = {OUTER: [1, 5, 6, 2, 17, 13, 18, 9], INNER: [3, 7, 4, 0, 19, 15, 16, 11]}
+OUTER_FACE, INNER_FACE = 4, 6
+FACE_NODES = {OUTER_FACE: [1, 5, 6, 2, 17, 13, 18, 9], INNER_FACE: [3, 7, 4, 0, 19, 15, 16, 11]}
 # Of the contact, times Young's modulus over the diameter. Halved or doubled it changes the moment
 # and the stress of a clevis by 0.1 to 0.2 %, of two lugs with clearance by up to 0.6 %.
-STIFFNESS = 200.0
-SMALL = (
+CONTACT_STIFFNESS = 200.0
+SMALL_LOAD_SCALE = (
     0.01  # so that displacements are small compared with elements: contact is found on moved nodes
 )
-CORE = 0.55  # of the least radius of a solid pin: half the side of the core, about
-ROUND = 0.4  # how round the core is: 0 a square, 1 a circle
+CORE_SIZE = 0.55  # of the least radius of a solid pin: half the side of the core, about
+CORE_ROUNDNESS = 0.4  # how round the core is: 0 a square, 1 a circle
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class Fineness:
     layers: int = 2
     eye: int = 3
     along: float = 4.0
-    stiffness: float = STIFFNESS
-    scale: float = SMALL
+    stiffness: float = CONTACT_STIFFNESS
+    scale: float = SMALL_LOAD_SCALE
 
     def __post_init__(self) -> None:
         if self.sectors % 8:
@@ -75,7 +75,7 @@ class Hexahedra:
 
     def face(self, elements: Ints, face: int) -> Ints:
         """Nodes (K, 8) of a face of elements: corners, then the middles of its edges."""
-        return self.elements[elements][:, FACES[face]]
+        return self.elements[elements][:, FACE_NODES[face]]
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: 
 
 def _radii(steps: list[float], solid: bool, layers: int) -> Floats:
     """Of all circles: those of the outline, and between them, finer towards the larger one."""
-    first = CORE * steps[0] if solid else steps[0]
+    first = CORE_SIZE * steps[0] if solid else steps[0]
     whole = [first, *steps] if solid else steps
     widest = (steps[-1] - first) / layers
     out = [whole[0]]
@@ -182,7 +182,7 @@ def _core(sectors: int, radius: float) -> tuple[Floats, Ints]:
     long, short = s * np.cos(side), s * np.sin(side)
     x = np.where(flat, np.sign(u) * long, short)
     y = np.where(flat, short, np.sign(v) * long)
-    square, weight = np.stack([u, v], axis=-1) * 0.8, (ROUND * s**2)[..., None]
+    square, weight = np.stack([u, v], axis=-1) * 0.8, (CORE_ROUNDNESS * s**2)[..., None]
     points = radius * ((1.0 - weight) * square + weight * np.stack([x, y], axis=-1))
     return points.reshape(-1, 2), np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
 
@@ -215,7 +215,7 @@ def _drawn(section: _Section, z: Floats, bore: Floats, outer: Floats) -> Hexahed
 
 def _quadratic(corners: Floats, elements: Ints, on: Floats) -> tuple[Floats, Ints]:
     """With nodes in the middles of edges, on the circle where both ends are; nodes in use only."""
-    edges = np.sort(elements[:, EDGES], axis=2).reshape(-1, 2)
+    edges = np.sort(elements[:, C3D20_EDGES], axis=2).reshape(-1, 2)
     pairs, number = np.unique(edges, axis=0, return_inverse=True)
     middle = corners[pairs].mean(axis=1)
     r = on[pairs]

@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from assess.opinion.calculix import COMMAND, JOB, CalculixError, attempt, end
+from assess.opinion.calculix import CALCULIX_COMMAND, JOB_NAME, CalculixError, attempt, end
 from assess.opinion.calculix_deck import mesh_lines, real
 from assess.opinion.opinions import LimitOpinion
 from assess.plastic.body import Ties
 from assess.plastic.flow import FlowRule
 from assess.plastic.limit_load import limit_on_mesh
-from assess.plastic.pin_body import PinBody, finer
-from assess.plastic.solve import SIZES, body_on
+from assess.plastic.pin_body import PinBody, refine
+from assess.plastic.solve import MESH_SIZES, body_on
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -25,20 +25,20 @@ from geometry import Pin
 from geometry.mesh.hexahedra import twenty
 from pinbase.arrays import Floats
 
-SMALLEST = 1e-3  # increment of the loads, of the largest
-LARGEST = 0.04
-BEYOND = 1.05  # of our factor: so far CalculiX is asked to load the pin
+MIN_INCREMENT = 1e-3  # increment of the loads, of the largest
+MAX_INCREMENT = 0.04
+MAX_LOAD_RATIO = 1.05  # of our factor: so far CalculiX is asked to load the pin
 
 
 def limit_opinion(
     pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
 ) -> LimitOpinion:
     """On the first mesh of assess.plastic.solve, under the loads of one instant."""
-    made = body_on(pin, FlowRule(material), clamps, loads, SIZES[0])
+    made = body_on(pin, FlowRule(material), clamps, loads, MESH_SIZES[0])
     try:
-        ours = limit_on_mesh(made.body, made.forces, finer(made.body.elements)).reached
+        ours = limit_on_mesh(made.body, made.forces, refine(made.body.elements)).reached
         with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
-            theirs = factor_reached(made, BEYOND * ours, Path(folder))
+            theirs = factor_reached(made, MAX_LOAD_RATIO * ours, Path(folder))
     except (CalculixError, SolveError) as error:
         return LimitOpinion(made.body.size, failure=f"limit load: {error}")
     return LimitOpinion(made.body.size, ours, theirs)
@@ -49,14 +49,16 @@ def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
 
     Raises: CalculixError when it converges in no increment.
     """
-    _write(pin, most, folder / f"{JOB}.inp")
-    done, status = attempt(folder), folder / f"{JOB}.sta"
+    _write(pin, most, folder / f"{JOB_NAME}.inp")
+    done, status = attempt(folder), folder / f"{JOB_NAME}.sta"
     lines = status.read_text("ascii").splitlines() if status.exists() else []
     reached = [
         float(line.split()[-2]) for line in lines if line.split()[:1] == ["1"] and "U" not in line
     ]
     if not reached:
-        raise CalculixError(f"{COMMAND} failed: {end(done.stdout + done.stderr)}", "failed")
+        raise CalculixError(
+            f"{CALCULIX_COMMAND} failed: {end(done.stdout + done.stderr)}", "failed"
+        )
     return most * reached[-1]
 
 
@@ -70,7 +72,7 @@ def _write(pin: PinBody, most: float, path: Path) -> None:
         *_supports(ties),
         "*STEP, INC=1000",
         "*STATIC",
-        f"{LARGEST}, 1., {SMALLEST}, {LARGEST}",
+        f"{MAX_INCREMENT}, 1., {MIN_INCREMENT}, {MAX_INCREMENT}",
         "*CLOAD",
         *_forces(ties, most * pin.forces),
         "*END STEP",

@@ -7,34 +7,34 @@ import numpy as np
 from assess.opinion.calculix_joint import JointOpinion
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.section.section_stress import AtSection, SectionAnswer
+from fea.section.section_stress import AtSection, SectionField
 from fea.support.lugs.rings import ring, ringed
 from geometry import Pin
 from pinbase.arrays import Floats, Ints, Mask
 
-PRESSED = 0.02  # of the largest pressure
-FACES = np.array(
+MIN_PRESSURE_SHARE = 0.02  # of the largest pressure
+HEXAHEDRON_FACES = np.array(
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 )
-LITTLE = 1e-9  # of lengths
+RELATIVE_LENGTH_TOLERANCE = 1e-9  # of lengths
 
 
 def section_of(found: JointOpinion, pin: Pin, material: Material) -> AtSection:
     """The largest stress of its sections, by the forces of its rings."""
     loads = ring_loads(found, pin)
-    return SectionAnswer(on_rings(found, pin), material, (), [loads]).place(loads)
+    return SectionField(on_rings(found, pin), material, (), [loads]).place(loads)
 
 
 def free(found: JointOpinion) -> Mask:
     """Which nodes (N,) are corners of elements on the pin's surface, none of which has a node
-    that is pressed: where s_rr on a ring is PRESSED of the largest there.
+    that is pressed: where s_rr on a ring is MIN_PRESSURE_SHARE of the largest there.
     """
     x, corners = found.nodes, found.elements[:, :8]
-    faces = corners[:, FACES].reshape(-1, 4)
+    faces = corners[:, HEXAHEDRON_FACES].reshape(-1, 4)
     each, count = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
     outer = each[count == 1]
     if found.half:  # without the plane of symmetry
-        outer = outer[np.abs(x[outer, 1]).max(axis=1) > LITTLE * np.abs(x).max()]
+        outer = outer[np.abs(x[outer, 1]).max(axis=1) > RELATIVE_LENGTH_TOLERANCE * np.abs(x).max()]
     surface = np.zeros(len(x), dtype=bool)
     surface[outer] = True
     touched = pressed(found)[found.elements].any(axis=1)
@@ -46,7 +46,7 @@ def pressed(found: JointOpinion) -> Mask:
     """Which nodes (N,) are pressed."""
     x = found.nodes
     r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
-    near = LITTLE * float(np.ptp(z))
+    near = RELATIVE_LENGTH_TOLERANCE * float(np.ptp(z))
     on = ((z[:, None] > found.ends[:, 0] - near) & (z[:, None] < found.ends[:, 1] + near)).any(1)
     layer = np.rint(z / near).astype(np.int64)
     _, number = np.unique(layer, return_inverse=True)
@@ -56,7 +56,7 @@ def pressed(found: JointOpinion) -> Mask:
     out = x[:, :2] / np.maximum(r, near)[:, None]
     plane = found.stress[:, [[0, 5], [5, 1]]]
     across = np.where(on, np.einsum("ni,nij,nj->n", out, plane, out), 0.0)
-    return np.asarray(across < PRESSED * across.min())
+    return np.asarray(across < MIN_PRESSURE_SHARE * across.min())
 
 
 def on_rings(found: JointOpinion, pin: Pin) -> Pin:
@@ -76,7 +76,7 @@ def ring_loads(found: JointOpinion, pin: Pin) -> PinLoads:
 
 def _by_band(found: JointOpinion, pin: Pin) -> list[tuple[str, Ints, Floats]]:
     """Each band's name, rows of its rings in the order of z, and their ends along it, m."""
-    out, tiny = [], LITTLE * pin.length
+    out, tiny = [], RELATIVE_LENGTH_TOLERANCE * pin.length
     for name in pin.connections:
         band = pin.band(name)
         own = (found.ends[:, 0] > band.z0 - tiny) & (found.ends[:, 1] < band.z1 + tiny)

@@ -23,9 +23,9 @@ from geometry import Pin
 from geometry.mesh.section_mesh import SectionSize, Spot, meridian_mesh
 from pinbase.arrays import Floats
 
-ACROSS = 20.0  # elements over the thinnest wall, which the bore leaves
-CLOSE = 0.01  # element at the root's edge and the load's, of the radius
-_ANY = Material("any", 1.0, 0.0)
+ELEMENTS_ACROSS_WALL = 20.0  # elements over the thinnest wall, which the bore leaves
+EDGE_ELEMENT_SIZE = 0.01  # element at the root's edge and the load's, of the radius
+_UNIT_MATERIAL = Material("any", 1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class BeamForces:
 def cantilever(pin: Pin, forces: dict[str, float], z: Floats) -> BeamForces:
     """The beam at z (Z,) in m; transverse forces (N) in one plane by band, each uniform over it."""
     units = tuple(UnitLoad(name, "force", 1) for name in forces)
-    beam = stepped_beam(pin, _ANY, units, ("start",))
+    beam = stepped_beam(pin, _UNIT_MATERIAL, units, ("start",))
     inside = beam.at(z) @ np.array(list(forces.values()))
     section = [beam.sections[c] for c in np.searchsorted(beam.stations[1:-1], z, side="right")]
     per_moment = np.array([s.outer / s.inertia for s in section])
@@ -93,8 +93,8 @@ def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats)
     Raises: MeshError, SolveError.
     """
     rims = ((radius, 0.0), (radius, float(z.max())))
-    spots = [Spot(r, at, CLOSE * radius, 0.2 * radius) for r, at in rims]
-    mesh = meridian_mesh(pin, SectionSize(ACROSS, 8.0, 0.2), spots)
+    spots = [Spot(r, at, EDGE_ELEMENT_SIZE * radius, 0.2 * radius) for r, at in rims]
+    mesh = meridian_mesh(pin, SectionSize(ELEMENTS_ACROSS_WALL, 8.0, 0.2), spots)
     load = UnitLoad(loaded, "force", 1)
     fields = HarmonicModel(pin, mesh, material, ("start",)).solve((load,))
     skin = fields.points[: fields.skin]

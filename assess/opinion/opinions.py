@@ -8,18 +8,18 @@ from dataclasses import dataclass
 from fea.support.contact.records import Couple, LineLoad
 from pinbase.dimensions import Length, Stress
 
-SAME_DISPLACEMENT = 1e-5  # of the largest; CalculiX prints 7 digits
-SAME_STRESS = 1e-4  # of the largest; CalculiX prints 6 digits of each component
+MAX_DISPLACEMENT_DIFFERENCE = 1e-5  # of the largest; CalculiX prints 7 digits
+MAX_STRESS_DIFFERENCE = 1e-4  # of the largest; CalculiX prints 6 digits of each component
 # Allowed deviation from the answer, in addition to its error, of the solid model's first mesh at a
 # fillet or where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes
 # only.
-SAME_MAXIMUM = 0.30
+MAX_MAXIMUM_DIFFERENCE = 0.30
 # For contact with lugs, on meshes that CalculiX solves in minutes: on random joints moments differ
 # by 3.5 % and loads by 6 % at most.
-SAME_MOMENT, SAME_LOAD = 0.05, 0.10
+MAX_MOMENT_DIFFERENCE, MAX_LOAD_DIFFERENCE = 0.05, 0.10
 # Our steps end where the work of flow is within 2 % of that of the loads; CalculiX goes on until it
 # finds no equilibrium, 0.7 % higher at most in docs/past-yield.md.
-SAME_LIMIT = 0.02
+MAX_LIMIT_LOAD_DIFFERENCE = 0.02
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class LimitOpinion:
     @property
     def complaint(self) -> str:
         """As an Opinion's."""
-        said = _beyond("its limit load is", self.difference, SAME_LIMIT)
+        said = _beyond("its limit load is", self.difference, MAX_LIMIT_LOAD_DIFFERENCE)
         return self.failure or "; ".join(said)
 
 
@@ -136,27 +136,29 @@ class Opinion:
 
     def _same_mesh(self) -> Iterator[str]:
         for what, value, limit in (
-            ("displacements", self.displacement, SAME_DISPLACEMENT),
-            ("von Mises stresses", self.stress, SAME_STRESS),
+            ("displacements", self.displacement, MAX_DISPLACEMENT_DIFFERENCE),
+            ("von Mises stresses", self.stress, MAX_STRESS_DIFFERENCE),
         ):
             if value is None or not value <= limit:
                 yield f"{what} on the same mesh differ by {value:.1e}, allowed {limit:.0e}"
-        yield from _beyond("its maximum is", self.deviation, SAME_MAXIMUM + self.own_error)
+        yield from _beyond(
+            "its maximum is", self.deviation, MAX_MAXIMUM_DIFFERENCE + self.own_error
+        )
 
     def _contact(self) -> Iterator[str]:
         assert self.contact is not None
-        limit = SAME_MOMENT + self.own_error
+        limit = MAX_MOMENT_DIFFERENCE + self.own_error
         yield from _beyond("its largest bending moment is", self.contact.moment_difference, limit)
         yield from _beyond(
             "its stress at the point of our maximum is",
             self.deviation,
-            SAME_MAXIMUM + self.own_error,
+            MAX_MAXIMUM_DIFFERENCE + self.own_error,
         )
         for band in self.contact.bands:
-            if not band.elsewhere <= SAME_LOAD:
+            if not band.elsewhere <= MAX_LOAD_DIFFERENCE:
                 yield (
                     f"{band.elsewhere:.1%} of the load of {band.name} acts at other places, "
-                    f"allowed {SAME_LOAD:.0%}"
+                    f"allowed {MAX_LOAD_DIFFERENCE:.0%}"
                 )
 
 

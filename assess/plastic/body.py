@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from assess.plastic.flow import Flow, FlowRule
-from fea.core.voigt import ENTRIES
+from fea.core.voigt import VOIGT_TO_TENSOR
 from pinbase.arrays import Floats, Ints, Mask
 
 
@@ -32,7 +32,7 @@ class Elements:
     def strain(self, displacement: Floats) -> Floats:
         """(M, Q, 6) with tensor shears, of a displacement (N, 3) m."""
         h = self.gradients.swapaxes(2, 3) @ displacement[self.numbers][:, None]
-        return np.stack([(h[..., a, b] + h[..., b, a]) / 2.0 for a, b in ENTRIES], -1)
+        return np.stack([(h[..., a, b] + h[..., b, a]) / 2.0 for a, b in VOIGT_TO_TENSOR], -1)
 
     def volume_change(self, displacement: Floats) -> Floats:
         """(M, Q), of a displacement (N, 3) m."""
@@ -132,7 +132,7 @@ class FlowingBody:
         """Strains with doubled shears (M, Q, 6, 3 K) of displacements."""
         g = self.elements.gradients
         out = np.zeros((*g.shape[:2], 6, *g.shape[2:]))
-        for row, (a, b) in enumerate(ENTRIES):
+        for row, (a, b) in enumerate(VOIGT_TO_TENSOR):
             out[:, :, row, :, b] = g[..., a]
             out[:, :, row, :, a] = g[..., b]
         return out.reshape(*g.shape[:2], 6, -1)

@@ -21,10 +21,12 @@ from pinbase.arrays import Floats
 
 # Part of the elastic stiffness in the tangent: keeps it positive definite at the limit load, where
 # Newton's method then converges linearly, by this ratio. The solution does not depend on it.
-ELASTIC_PART = 1e-6
-DOUBLED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])  # shears count twice in a product of tensors
-_ONE = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_ONE, _ONE) / 3.0
+ELASTIC_SHARE = 1e-6
+VOIGT_WEIGHTS = np.array(
+    [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
+)  # shears count twice in a product of tensors
+_IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_IDENTITY, _IDENTITY) / 3.0
 
 
 class Flow(NamedTuple):
@@ -77,8 +79,8 @@ class FlowRule:
         shear = self.material.lame[1]
         trial = self.material.stress(strain - plastic)
         pressure = trial[..., :3].sum(-1, keepdims=True) / 3.0
-        deviator = trial - pressure * _ONE
-        mises = np.sqrt(1.5 * (deviator**2 @ DOUBLED))
+        deviator = trial - pressure * _IDENTITY
+        mises = np.sqrt(1.5 * (deviator**2 @ VOIGT_WEIGHTS))
         strains, stresses = self.curve
         line = stresses + 3.0 * shear * strains
         driving = mises + 3.0 * shear * equivalent
@@ -93,7 +95,7 @@ class FlowRule:
         normal = np.where(flowing, ratio - hardening / (3.0 * shear + hardening), 0.0)
         flow = 1.5 * (after - equivalent)[..., None] * unit
         return Flow(
-            stress=ratio[..., None] * deviator + pressure * _ONE,
+            stress=ratio[..., None] * deviator + pressure * _IDENTITY,
             plastic=plastic + flow,
             equivalent=after,
             tangent=self._tangent(ratio, normal, unit),
@@ -105,14 +107,14 @@ class FlowRule:
         """
         lam, shear = self.material.lame
         bulk = lam + 2.0 * shear / 3.0
-        elastic = bulk * np.outer(_ONE, _ONE) + 2.0 * shear * DEVIATOR
+        elastic = bulk * np.outer(_IDENTITY, _IDENTITY) + 2.0 * shear * DEVIATOR
         along = unit[..., :, None] * (3.0 * shear * normal[..., None, None] * unit[..., None, :])
         softer = elastic - 2.0 * shear * (1.0 - ratio)[..., None, None] * DEVIATOR - along
-        return np.asarray((1.0 - ELASTIC_PART) * softer + ELASTIC_PART * elastic)
+        return np.asarray((1.0 - ELASTIC_SHARE) * softer + ELASTIC_SHARE * elastic)
 
     def dissipation(self, strain: Floats) -> Floats:
         """Largest work per volume (...), Pa, that flow by a strain (..., 6) can take: of its
         deviator.
         """
-        deviator = strain - strain[..., :3].mean(-1, keepdims=True) * _ONE
-        return np.asarray(self.strongest * np.sqrt(2.0 / 3.0 * (deviator**2 @ DOUBLED)))
+        deviator = strain - strain[..., :3].mean(-1, keepdims=True) * _IDENTITY
+        return np.asarray(self.strongest * np.sqrt(2.0 / 3.0 * (deviator**2 @ VOIGT_WEIGHTS)))

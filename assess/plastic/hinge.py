@@ -19,10 +19,11 @@ and stretches as the curve g has it, or twists as well, which takes
 s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by Schwarz's inequality, for a stretch
 e, a curvature k and a twist t). One is enough where one side of a span is free, three, which bend
 alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract:
-a hinge is ROOM away from it, where the solid has it too, and what is nearer slips and twists.
+a hinge is MIN_HINGE_DISTANCE away from it, where the solid has it too, and what is nearer slips
+and twists.
 
 Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
-so of a bracket only what is beyond BEAM_ERROR decides.
+so of a bracket only what is beyond HINGE_ERROR decides.
 
 Source: B. G. Neal, The Plastic Methods of Structural Analysis (1977), chapters 2, 3 and 6.
 """
@@ -39,13 +40,13 @@ from fea.beam.plastic_interaction import bent_and_pulled, plastic_torque
 from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads
+from fea.core.pin_loads import Loads
 from geometry import Pin
 from pinbase.arrays import Floats, Mask
 
-ROOM = 0.75  # of a diameter, between a clamp and the hinge next to it
-BEAM_ERROR = 0.15  # of the factor: an allowance, docs/past-yield.md
-PER_CELL = 101  # sections looked at in a cell
+MIN_HINGE_DISTANCE = 0.75  # of a diameter, between a clamp and the hinge next to it
+HINGE_ERROR = 0.15  # of the factor: an allowance, docs/past-yield.md
+SECTIONS_PER_CELL = 101  # sections looked at in a cell
 
 
 @dataclass(frozen=True)
@@ -64,9 +65,7 @@ class BeamBounds:
         return int(self.lower.argmin())
 
 
-def beam_bounds(
-    pin: Pin, material: Material, clamps: tuple[str, ...], loads: AnyLoads
-) -> BeamBounds:
+def beam_bounds(pin: Pin, material: Material, clamps: tuple[str, ...], loads: Loads) -> BeamBounds:
     """Of a pin with a yield strength, by its last hardening if it has any, for the upper bound."""
     units = acting(loads)
     first = material.yield_strength
@@ -86,7 +85,7 @@ def beam_bounds(
         slip = np.minimum(slip, last * _slip(span, strong, inside))
         room = _room(span, sections, z)
         if span.left and span.right:
-            away = room >= 2.0 * ROOM
+            away = room >= 2.0 * MIN_HINGE_DISTANCE
             power = _three_hinges(z, away, strong[:, MOMENT], inside[..., MOMENT])
         else:
             power = _one_mechanism(room, across, least)
@@ -98,8 +97,8 @@ def _sampled(
     forces: InternalForces, span: Span, amounts: Floats
 ) -> tuple[Floats, list[Circle], Floats]:
     """z (S,) m, sections (S) and V, M, N, T there, (T, 2, S, 4) by phase."""
-    cells = np.repeat(np.arange(span.first, span.last), PER_CELL)
-    part = np.tile(np.linspace(0.0, 1.0, PER_CELL), span.last - span.first)
+    cells = np.repeat(np.arange(span.first, span.last), SECTIONS_PER_CELL)
+    part = np.tile(np.linspace(0.0, 1.0, SECTIONS_PER_CELL), span.last - span.first)
     z = forces.stations[cells] + part * np.diff(forces.stations)[cells]
     inside = np.einsum("sqk,tpk->tpsq", forces.inside(cells, z), amounts)
     return z, [forces.sections[c] for c in cells], inside
@@ -153,7 +152,7 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
     """
     if not (span.left and span.right):
         return _inverse((np.linalg.norm(inside, axis=1) / strong)[..., SHEAR].max(axis=1))
-    ends = np.arange(len(strong)) % PER_CELL % (PER_CELL - 1) == 0
+    ends = np.arange(len(strong)) % SECTIONS_PER_CELL % (SECTIONS_PER_CELL - 1) == 0
     shear, most = inside[:, :, ends, SHEAR], strong[ends, SHEAR]
     jump = shear[:, :, :, None] - shear[:, :, None, :]
     power = np.linalg.norm(jump, axis=1) / (most[:, None] + most)
@@ -166,7 +165,7 @@ def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
     """
     steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
     apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
-    hinge = np.where(room >= 2.0 * ROOM, bent, 0.0)
+    hinge = np.where(room >= 2.0 * MIN_HINGE_DISTANCE, bent, 0.0)
     return np.asarray(np.maximum(np.maximum(across[..., TORQUE], apart), hinge).max(axis=1))
 
 

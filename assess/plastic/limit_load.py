@@ -6,8 +6,9 @@ that leaves free (normal stresses across, which change sign within an element) l
 exceed yield by 1 to 3 %, and the factor be above the exact one, as for any field of displacements
 that is too stiff. No finer mesh takes that away soon: 0.35 and 0.43 % in bending on the first two.
 So the lower bound is the factor less what it changed from the coarser to the finer mesh, and less
-WEAK_EQUILIBRIUM: twice the largest excess over 17 closed forms, rounded up (docs/past-yield.md).
-The increment of displacement, as a mechanism, gives the upper bound (assess.plastic.mechanism).
+EQUILIBRIUM_ALLOWANCE: twice the largest excess over 17 closed forms, rounded up
+(docs/past-yield.md). The increment of displacement, as a mechanism, gives the upper bound
+(assess.plastic.mechanism).
 
 Source: W. F. Chen, D. J. Han, Plasticity for Structural Engineers (1988), chapter 8, for the
 theorems; what elastic displacements give bounds the factor in the same way and sets the steps.
@@ -21,22 +22,22 @@ import numpy as np
 
 from assess.plastic.body import FlowingBody
 from assess.plastic.budget import Budget
-from assess.plastic.mechanism import Finer, UpperBound, upper_bound, work_of_flow
+from assess.plastic.mechanism import RefinedElements, UpperBound, upper_bound, work_of_flow
 from assess.plastic.path import EquilibriumPath, State
 from assess.plastic.records import LoadCurve
 from fea.core.linear_solver import SolveError
 from pinbase.arrays import Floats
 
 # Works at which equilibrium is sought, over that of the elastic body at its bound.
-WORKS = (0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.7, 2.2, 3.0, 4.0, 6.0, 9.0, 13.0, 20.0)
-WEAK_EQUILIBRIUM = 0.01  # of the factor: allowance for equilibrium of whole elements alone
-SETTLED = 2e-3  # growth of the factor in a step that ends it
-APART = 1.02  # the work of flow over that of the loads, at most, then
-UNSETTLED = 0.97  # the same, where Newton's method fails before
+WORK_RATIOS = (0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.7, 2.2, 3.0, 4.0, 6.0, 9.0, 13.0, 20.0)
+EQUILIBRIUM_ALLOWANCE = 0.01  # of the factor: allowance for equilibrium of whole elements alone
+STEP_GROWTH_TOLERANCE = 2e-3  # growth of the factor in a step that ends it
+MAX_FLOW_WORK_RATIO = 1.02  # the work of flow over that of the loads, at most, then
+MIN_FLOW_WORK_RATIO = 0.97  # the same, where Newton's method fails before
 
 
 @dataclass(frozen=True)
-class OnMesh:
+class MeshBracket:
     """reached: the largest load factor in equilibrium on one mesh, no bound by itself. above: its
     upper bound. steps, iterations: that it took. last: the last state.
     """
@@ -58,8 +59,8 @@ class OnMesh:
 
 
 def limit_on_mesh(
-    body: FlowingBody, forces: Floats, finer: Finer, budget: Budget | None = None
-) -> OnMesh:
+    body: FlowingBody, forces: Floats, finer: RefinedElements, budget: Budget | None = None
+) -> MeshBracket:
     """The limit load of a body under forces (U,) N; finer: the same elements with more points.
 
     Raises: SolveError when equilibrium is not found before the factor settles; OutOfTimeError.
@@ -68,18 +69,18 @@ def limit_on_mesh(
     first = work_of_flow(body, finer.elements, path.elastic)
     states, flows = [path.start()], np.inf
     try:
-        for state in path.steps(np.array(WORKS) * first):
+        for state in path.steps(np.array(WORK_RATIOS) * first):
             states.append(state)
             grown = work_of_flow(body, finer.elements, state.unknowns - states[-2].unknowns)
             flows = grown / (state.work - states[-2].work)
             if _settled(states[-2], state, flows):
                 break
     except SolveError:
-        if not states[-1].factor > UNSETTLED * flows:
+        if not states[-1].factor > MIN_FLOW_WORK_RATIO * flows:
             raise
     before, last = states[-2:]
     increment = last.unknowns - before.unknowns
-    return OnMesh(
+    return MeshBracket(
         unknowns=body.size,
         reached=max(s.factor for s in states),
         above=upper_bound(body, forces, finer, increment, last.flow.stress),
@@ -93,7 +94,10 @@ def limit_on_mesh(
 def _settled(before: State, now: State, flows: float) -> bool:
     if before.factor <= 0.0:
         return False
-    return now.factor / before.factor < 1.0 + SETTLED and flows < APART * now.factor
+    return (
+        now.factor / before.factor < 1.0 + STEP_GROWTH_TOLERANCE
+        and flows < MAX_FLOW_WORK_RATIO * now.factor
+    )
 
 
 def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> LoadCurve:
@@ -107,8 +111,8 @@ def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> Loa
     )
 
 
-def bracket(meshes: list[OnMesh]) -> tuple[float, float]:
+def bracket(meshes: list[MeshBracket]) -> tuple[float, float]:
     """Lower and upper bound from two meshes, the coarser first."""
     coarse, fine = meshes[-2:]
-    doubt = abs(coarse.reached - fine.reached) + WEAK_EQUILIBRIUM * fine.reached
+    doubt = abs(coarse.reached - fine.reached) + EQUILIBRIUM_ALLOWANCE * fine.reached
     return fine.reached - doubt, max(fine.above.factor, fine.reached)

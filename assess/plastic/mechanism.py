@@ -25,11 +25,11 @@ from assess.plastic.flow import DEVIATOR
 from fea.core.linear_solver import Analysis
 from pinbase.arrays import Floats
 
-PENALTY = 10.0  # of the change of volume over that of shape
+VOLUME_PENALTY = 10.0  # of the change of volume over that of shape
 
 
 @dataclass(frozen=True)
-class Finer:
+class RefinedElements:
     """The elements of a body with more quadrature points, F. reading: (F, Q) values there from
     those at the body's own points.
     """
@@ -50,7 +50,7 @@ class UpperBound:
 
 
 def upper_bound(
-    body: FlowingBody, forces: Floats, finer: Finer, mechanism: Floats, stress: Floats
+    body: FlowingBody, forces: Floats, finer: RefinedElements, mechanism: Floats, stress: Floats
 ) -> UpperBound:
     """By a mechanism (U,) m under forces (U,) N, with the stress (M, Q, 6) Pa of the last state."""
     mean = stress[..., :3].mean(-1)
@@ -65,7 +65,7 @@ def upper_bound(
 def isochoric(body: FlowingBody, forces: Floats, fine: Elements, mechanism: Floats) -> Floats:
     """The mechanism (U,) m next to another, of the same power, with less change of volume."""
     every = fine.gradients.reshape(*fine.weights.shape, -1)
-    penalty = PENALTY * fine.weights[..., None] * every
+    penalty = VOLUME_PENALTY * fine.weights[..., None] * every
     shape = body.stiffness(np.broadcast_to(2.0 * DEVIATOR, (*body.elements.weights.shape, 6, 6)))
     stiff = shape + body.assembled(penalty.swapaxes(1, 2) @ every)
     changed = fine.volume_change(body.displacement(mechanism))

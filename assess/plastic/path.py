@@ -22,10 +22,10 @@ from assess.plastic.flow import Flow
 from fea.core.linear_solver import Analysis, SolveError
 from pinbase.arrays import Floats
 
-TOLERANCE = 1e-6  # residual over the loads
-MOST_ITERATIONS = 40
-SEARCH = 0.8  # part of the slope at the start that may be left after an iteration
-HALVINGS = 6
+RESIDUAL_TOLERANCE = 1e-6  # residual over the loads
+MAX_NEWTON_ITERATIONS = 40
+MAX_SLOPE_SHARE = 0.8  # part of the slope at the start that may be left after an iteration
+MAX_STEP_HALVINGS = 6
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class EquilibriumPath:
             yield now
 
     def _reach(self, now: State, before: State | None, work: float) -> State:
-        for _ in range(HALVINGS):
+        for _ in range(MAX_STEP_HALVINGS):
             try:
                 return self.step(now, before, work)
             except SolveError as error:
@@ -90,7 +90,7 @@ class EquilibriumPath:
         u, factor, residuals = now.unknowns + guess, now.factor, []
         flow = self.body.flow(u, now.flow)
         size = float(np.linalg.norm(self.load))
-        for _ in range(MOST_ITERATIONS):
+        for _ in range(MAX_NEWTON_ITERATIONS):
             self.budget.require()
             inner = self.body.forces(flow.stress)
             solve = self._analysis.factorize(self.body.stiffness(flow.tangent))
@@ -98,12 +98,12 @@ class EquilibriumPath:
             factor = (work - self.load @ (u + a)) / (self.load @ b)
             residual = float(np.linalg.norm(factor * self.load - inner)) / size
             residuals.append(residual / max(abs(float(factor)), 1e-300))
-            if residuals[-1] < TOLERANCE:
+            if residuals[-1] < RESIDUAL_TOLERANCE:
                 return State(float(factor), u, work, flow, tuple(residuals))
             u, flow = self._search(u, a + factor * b, now.flow)
         raise SolveError(
             "the equilibrium of the flowing pin was not found: after "
-            f"{MOST_ITERATIONS} iterations {residuals[-1]:.1e} of the loads is unbalanced",
+            f"{MAX_NEWTON_ITERATIONS} iterations {residuals[-1]:.1e} of the loads is unbalanced",
             "no-convergence",
         )
 
@@ -114,8 +114,8 @@ class EquilibriumPath:
         if at_high <= 0.0:
             return u + along, flow
         low, at_low, at = 0.0, self._slope(self.body.flow(u, before), along), 1.0
-        most = SEARCH * abs(at_low)
-        for _ in range(HALVINGS):
+        most = MAX_SLOPE_SHARE * abs(at_low)
+        for _ in range(MAX_STEP_HALVINGS):
             if abs(at_high) <= most or at_low >= 0.0:
                 break
             at = low + max((high - low) * at_low / (at_low - at_high), 0.1 * (high - low))

@@ -20,9 +20,9 @@ from skfem import ElementHexS2
 
 from assess.plastic.body import Elements, FlowingBody, Ties
 from assess.plastic.flow import FlowRule
-from assess.plastic.mechanism import Finer
+from assess.plastic.mechanism import RefinedElements
 from fea.core.linear_solver import SolveError
-from fea.core.pin_loads import AnyLoads, UnitLoad
+from fea.core.pin_loads import Loads, UnitLoad
 from fea.core.tractions import Traction, closing_tractions, tractions_of
 from fea.solid.model import rigid_modes
 from fea.solid.nodal_loads import components
@@ -30,7 +30,7 @@ from geometry import Pin
 from geometry.mesh.hexahedra import HexMesh, HexSize, hexahedra
 from pinbase.arrays import Floats, Ints
 
-PLANE = 1e-6  # of the loads: less out of a plane is none
+OUT_OF_PLANE_TOLERANCE = 1e-6  # of the loads: less out of a plane is none
 
 Acting = tuple[tuple[UnitLoad, int, float], ...]  # unit loads with their phase and amount
 
@@ -54,7 +54,7 @@ class PinBody:
     sector: Sector
 
 
-def plane_of(loads: AnyLoads, instant: int) -> float:
+def plane_of(loads: Loads, instant: int) -> float:
     """Direction (rad from x) of most of the transverse loads."""
     vectors = [both[instant] for load, both in loads.coefficients().items() if load.n == 1]
     if not vectors:
@@ -69,13 +69,17 @@ def sector_of(acting: Acting) -> Sector:
     largest: dict[str, float] = {}
     for load, _, amount in acting:
         largest[load.kind] = max(largest.get(load.kind, 0.0), abs(amount))
-    some = [(load, p) for load, p, amount in acting if abs(amount) > PLANE * largest[load.kind]]
+    some = [
+        (load, p)
+        for load, p, amount in acting
+        if abs(amount) > OUT_OF_PLANE_TOLERANCE * largest[load.kind]
+    ]
     mirror = all(p == 0 for _, p in some)
     odd = all(load.n % 2 for load, _ in some)
     return Sector(1 if mirror and odd else 2 if mirror or odd else 4, mirror, odd)
 
 
-def acting_at(loads: AnyLoads, instant: int, angle: float = 0.0) -> Acting:
+def acting_at(loads: Loads, instant: int, angle: float = 0.0) -> Acting:
     """What acts at an instant, turned about the axis by an angle (rad)."""
     out = []
     for load, both in loads.coefficients().items():
@@ -119,11 +123,11 @@ def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
     return Elements(nodes, numbers, gradients, np.linalg.det(jacobian) * weights)
 
 
-def finer(elements: Elements) -> Finer:
+def refine(elements: Elements) -> RefinedElements:
     """Hexahedra with three instead of two quadrature points along each axis."""
     three = _gauss(3)[0]
     grid = np.stack(np.meshgrid(three, three, three, indexing="ij"), axis=-1).reshape(-1, 3)
-    return Finer(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
+    return RefinedElements(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
 
 
 def reading(local: Floats) -> Floats:
@@ -170,11 +174,11 @@ def _clamped(pin: Pin, mesh: HexMesh, clamps: tuple[str, ...]) -> Ints:
             at = pin.ends[name == "end"]
             found.append(np.flatnonzero(np.abs(mesh.nodes[:, 2] - at) < pin.tolerance))
         else:
-            found.append(np.unique(mesh.elements[_on(pin, mesh, name)][:, _FAR]))
+            found.append(np.unique(mesh.elements[_on(pin, mesh, name)][:, _OUTER_FACE_NODES]))
     return np.unique(np.concatenate(found))
 
 
-_FAR = np.flatnonzero(np.asarray(ElementHexS2().doflocs)[:, 0] == 1.0)
+_OUTER_FACE_NODES = np.flatnonzero(np.asarray(ElementHexS2().doflocs)[:, 0] == 1.0)
 
 
 def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
@@ -203,9 +207,9 @@ def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Fl
     cells = mesh.elements[_on(pin, mesh, t.surface)]
     g, weight = _gauss(3)
     grid = np.stack([np.ones(9), np.repeat(g, 3), np.tile(g, 3)])
-    basis = [ElementHexS2().lbasis(grid, k) for k in _FAR]
+    basis = [ElementHexS2().lbasis(grid, k) for k in _OUTER_FACE_NODES]
     shapes, slopes = np.stack([b[0] for b in basis]), np.stack([b[1] for b in basis])
-    corners = mesh.nodes[cells[:, _FAR]]
+    corners = mesh.nodes[cells[:, _OUTER_FACE_NODES]]
     x = np.einsum("kq,mka->mqa", shapes, corners)
     tangents = np.einsum("kaq,mkb->amqb", slopes[:, 1:], corners)
     area = (
@@ -214,7 +218,9 @@ def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Fl
     )
     out = np.zeros_like(mesh.nodes)
     np.add.at(
-        out, cells[:, _FAR], np.einsum("mq,kq,mqa->mka", area, shapes, components(t, x, n, phase))
+        out,
+        cells[:, _OUTER_FACE_NODES],
+        np.einsum("mq,kq,mqa->mka", area, shapes, components(t, x, n, phase)),
     )
     return out
 

@@ -14,9 +14,9 @@ from typing import Literal
 from assess.plastic.budget import Budget, OutOfTimeError
 from assess.plastic.flow import FlowRule
 from assess.plastic.flow_field import flow_field
-from assess.plastic.hinge import BEAM_ERROR, BeamBounds, beam_bounds
-from assess.plastic.limit_load import WEAK_EQUILIBRIUM, OnMesh, bracket, limit_on_mesh
-from assess.plastic.pin_body import PinBody, acting_at, finer, pin_body, plane_of
+from assess.plastic.hinge import HINGE_ERROR, BeamBounds, beam_bounds
+from assess.plastic.limit_load import EQUILIBRIUM_ALLOWANCE, MeshBracket, bracket, limit_on_mesh
+from assess.plastic.pin_body import PinBody, acting_at, pin_body, plane_of, refine
 from assess.plastic.records import LimitLoad, PlasticMesh
 from fea.core.material import Material
 from fea.core.memory import solid_memory
@@ -26,21 +26,23 @@ from geometry.mesh.hexahedra import HexSize
 
 Rung = Literal["auto", "solid"]
 
-SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
-WIDEST = 0.05 + WEAK_EQUILIBRIUM  # of a bracket, over its middle
-MOST_UNKNOWNS = 60_000  # of the solid: a minute or two
-PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first, about
-GROWTH = 1.5  # exponent of the time of a mesh over its unknowns, at least
-BEFORE_COLLAPSE = 0.95  # of the limit: at most the load after which the permanent set is reported
-TETRAHEDRA = (
+MESH_SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
+MAX_BRACKET = 0.05 + EQUILIBRIUM_ALLOWANCE  # of a bracket, over its middle
+MAX_SOLID_UNKNOWNS = 60_000  # of the solid: a minute or two
+SECONDS_PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first, about
+TIME_EXPONENT = 1.5  # exponent of the time of a mesh over its unknowns, at least
+MAX_SET_LOAD_SHARE = (
+    0.95  # of the limit: at most the load after which the permanent set is reported
+)
+TETRAHEDRA_NOTE = (
     "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
     "the metal flows"
 )
-TOO_LONG = (
+TIME_LIMIT_NOTE = (
     "limit load not computed, because it takes more than {:g} s of processor time: --limit-load "
     "computes it"
 )
-TOO_LARGE = "the solid would need more than {:,} unknowns or the memory that is allowed"
+SIZE_LIMIT_NOTE = "the solid would need more than {:,} unknowns or the memory that is allowed"
 
 
 def limit_load(
@@ -61,7 +63,7 @@ def limit_load(
     begin, budget = time.perf_counter(), Budget(seconds)
     rule = FlowRule(material)
     if not isinstance(pin, Pin):
-        return LimitLoad("none", note=TETRAHEDRA)
+        return LimitLoad("none", note=TETRAHEDRA_NOTE)
     if not pin.stepped:
         return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
     bounds = of_beam(pin, material, clamps, loads)
@@ -75,12 +77,12 @@ def limit_load(
                 carries,
                 hardening=bool(material.hardening),
                 seconds=time.perf_counter() - begin,
-                note=f"the theorems for beams; that decides by more than {BEAM_ERROR:.0%}",
+                note=f"the theorems for beams; that decides by more than {HINGE_ERROR:.0%}",
             )
     try:
         meshes, last, note = _meshes(pin, rule, clamps, loads, (memory, budget))
     except OutOfTimeError:
-        spent, note = time.perf_counter() - begin, TOO_LONG.format(seconds)
+        spent, note = time.perf_counter() - begin, TIME_LIMIT_NOTE.format(seconds)
         return LimitLoad("none", seconds=spent, note=note, stopped=True)
     if last is None or len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
@@ -91,9 +93,9 @@ def limit_load(
 
 def decided(bounds: BeamBounds) -> bool | None:
     """Whether a beam carries its loads at the first instant, None if its error leaves that open."""
-    if bounds.lower[0] > 1.0 + BEAM_ERROR:
+    if bounds.lower[0] > 1.0 + HINGE_ERROR:
         return True
-    return False if bounds.upper[0] < 1.0 - BEAM_ERROR else None
+    return False if bounds.upper[0] < 1.0 - HINGE_ERROR else None
 
 
 def of_beam(
@@ -111,7 +113,7 @@ def _meshes(
     clamps: tuple[str, ...],
     loads: PinLoads,
     most: tuple[float | None, Budget],
-) -> tuple[list[OnMesh], PinBody | None, str]:
+) -> tuple[list[MeshBracket], PinBody | None, str]:
     """The finest two at least, if there is room for them, with the body of the last; why not
     otherwise. most: memory, MB, and time.
 
@@ -120,22 +122,22 @@ def _meshes(
     the one before it.
     """
     memory, budget = most
-    meshes: list[OnMesh] = []
+    meshes: list[MeshBracket] = []
     last: PinBody | None = None
     took = 0.0
-    for size in SIZES:
+    for size in MESH_SIZES:
         made = body_on(pin, rule, clamps, loads, size)
         too_much = memory is not None and solid_memory(made.body.size) > memory
-        if made.body.size > MOST_UNKNOWNS or too_much:
-            return meshes, last, TOO_LARGE.format(MOST_UNKNOWNS)
+        if made.body.size > MAX_SOLID_UNKNOWNS or too_much:
+            return meshes, last, SIZE_LIMIT_NOTE.format(MAX_SOLID_UNKNOWNS)
         if last is None:
-            budget.require(made.body.size * PER_UNKNOWN)
+            budget.require(made.body.size * SECONDS_PER_UNKNOWN)
         else:
-            budget.require(took * (made.body.size / last.body.size) ** GROWTH)
+            budget.require(took * (made.body.size / last.body.size) ** TIME_EXPONENT)
         last, before = made, budget.spent
-        meshes.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements), budget))
+        meshes.append(limit_on_mesh(made.body, made.forces, refine(made.body.elements), budget))
         took = budget.spent - before
-        if len(meshes) > 1 and narrow(*bracket(meshes)):
+        if len(meshes) > 1 and narrow_enough(*bracket(meshes)):
             break
     return meshes, last, ""
 
@@ -147,20 +149,20 @@ def body_on(
     return pin_body(pin, rule, clamps, acting_at(loads, 0, -plane_of(loads, 0)), size)
 
 
-def narrow(lower: float, upper: float) -> bool:
+def narrow_enough(lower: float, upper: float) -> bool:
     """Whether a bracket is, and does not leave open whether the pin carries its loads."""
-    return upper - lower <= WIDEST * (upper + lower) / 2.0 and not lower < 1.0 < upper
+    return upper - lower <= MAX_BRACKET * (upper + lower) / 2.0 and not lower < 1.0 < upper
 
 
 def _of_solid(
-    meshes: list[OnMesh], bounds: BeamBounds | None, rule: FlowRule, note: str
+    meshes: list[MeshBracket], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
     lower, upper = bracket(meshes)
     finest = meshes[-1]
     if bounds is not None and bounds.slip[0] < upper:
         upper, note = float(bounds.slip[0]), "slip of a section is the upper bound"
         lower = min(lower, 2.0 * upper - finest.reached)  # as far below as the mesh is above
-    at = min(1.0, BEFORE_COLLAPSE * lower)
+    at = min(1.0, MAX_SET_LOAD_SHARE * lower)
     return LimitLoad(
         "solid",
         lower,

@@ -11,8 +11,8 @@ from assess.strength.situation import Situation
 from fea.support.contact.records import Couple
 from pinbase.dimensions import Time
 
-OPPOSED = -0.99  # cosine between the forces of outer lugs and of the middle one
-EQUAL = 0.05  # by which outer lugs may differ in force, width and gap
+MAX_OPPOSED_COSINE = -0.99  # cosine between the forces of outer lugs and of the middle one
+LAYOUT_TOLERANCE = 0.05  # by which outer lugs may differ in force, width and gap
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def layout(s: Situation) -> str:
         (left.length, right.length),
         (middle.z0 - left.z1, right.z0 - middle.z1),
     )
-    same = all(abs(a - b) <= EQUAL * max(a, b) for a, b in pairs)
+    same = all(abs(a - b) <= LAYOUT_TOLERANCE * max(a, b) for a, b in pairs)
     return "double shear" if same else "double shear, not symmetrical"
 
 
@@ -77,4 +77,4 @@ def _opposed(force: np.ndarray) -> bool:
     if not size.all():
         return False
     along = force / size[:, None]
-    return bool(max(along[0] @ along[1], along[2] @ along[1]) <= OPPOSED)
+    return bool(max(along[0] @ along[1], along[2] @ along[1]) <= MAX_OPPOSED_COSINE)

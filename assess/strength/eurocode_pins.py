@@ -24,35 +24,35 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from assess.strength.margin import RATIO, Margin
+from assess.strength.margin import RATIO_DIMENSION, Margin
 from assess.strength.section_forces import SectionForces
 from assess.strength.situation import Situation
 from assess.strength.worst import Check, strength_key
 from pinbase.arrays import Floats
 
-M0, M2, M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
+GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
 
 _CLAUSE = "EN 1993-1-8, 3.13"
 _TABLE = f"{_CLAUSE}.2, table 3.10"
-SHEAR = Check("EN 1993 shear", _TABLE, "ultimate", "force")
-BEARING = Check("EN 1993 bearing", _TABLE, "ultimate", "force")
-BENDING = Check("EN 1993 bending", _TABLE, "ultimate", "moment")
-INTERACTION = Check("EN 1993 shear and bending", _TABLE, "ultimate", RATIO)
-BEARING_SER = Check("EN 1993 bearing, replaceable", _TABLE, "limit", "force")
-BENDING_SER = Check("EN 1993 bending, replaceable", _TABLE, "limit", "moment")
-CONTACT_SER = Check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", "limit", "stress")
+SHEAR_CHECK = Check("EN 1993 shear", _TABLE, "ultimate", "force")
+BEARING_CHECK = Check("EN 1993 bearing", _TABLE, "ultimate", "force")
+BENDING_CHECK = Check("EN 1993 bending", _TABLE, "ultimate", "moment")
+INTERACTION_CHECK = Check("EN 1993 shear and bending", _TABLE, "ultimate", RATIO_DIMENSION)
+BEARING_SER_CHECK = Check("EN 1993 bearing, replaceable", _TABLE, "limit", "force")
+BENDING_SER_CHECK = Check("EN 1993 bending, replaceable", _TABLE, "limit", "moment")
+CONTACT_SER_CHECK = Check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", "limit", "stress")
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:
     """F_v,Rd in N of a shear plane of `area`, m^2, and ultimate strength, Pa."""
-    return 0.6 * area * ultimate / M2
+    return 0.6 * area * ultimate / GAMMA_M2
 
 
 def bearing_resistance(
     thickness: Floats, diameter: Floats, strength: Floats, *, replaceable: bool = False
 ) -> Floats:
     """F_b,Rd in N, or F_b,Rd,ser of a replaceable pin; m, and the lower yield strength in Pa."""
-    part = 0.6 / M6_SER if replaceable else 1.5 / M0
+    part = 0.6 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0
     return part * thickness * diameter * strength
 
 
@@ -60,7 +60,7 @@ def bending_resistance(
     modulus: Floats | float, strength: float, *, replaceable: bool = False
 ) -> Floats | float:
     """M_Rd in N m, or M_Rd,ser of a replaceable pin; section modulus in m^3, yield in Pa."""
-    return (0.8 / M6_SER if replaceable else 1.5 / M0) * modulus * strength
+    return (0.8 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0) * modulus * strength
 
 
 def double_shear_moment(force: float, outer: float, middle: float, gap: float) -> float:
@@ -87,43 +87,43 @@ def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
 
 def eurocode_bending(s: Situation, forces: SectionForces) -> list[Margin]:
     """Shear and bending of table 3.10."""
-    bending = [_bending(s, forces, BENDING_SER)] if s.replaceable else []
+    bending = [_bending(s, forces, BENDING_SER_CHECK)] if s.replaceable else []
     return [*_resistances(s, forces), *bending]
 
 
 def eurocode_bearing(s: Situation) -> list[Margin]:
     """Bearing and contact of table 3.10."""
     if not s.replaceable:
-        return [_bearing(s, BEARING)]
-    return [_bearing(s, BEARING), _bearing(s, BEARING_SER), _contact(s)]
+        return [_bearing(s, BEARING_CHECK)]
+    return [_bearing(s, BEARING_CHECK), _bearing(s, BEARING_SER_CHECK), _contact(s)]
 
 
 def _resistances(s: Situation, forces: SectionForces) -> list[Margin]:
     """Of the pin in shear, in bending and in both."""
     fu, fy = s.material.ultimate_strength, s.material.yield_strength
-    bending = _bending(s, forces, BENDING)
+    bending = _bending(s, forces, BENDING_CHECK)
     needs = [
         strength_key(s.material.name, which)
         for which, value in (("ultimate", fu), ("yield", fy))
         if value is None
     ]
     if fu is None:
-        return [SHEAR.lacks(s, needs[0]), bending, INTERACTION.lacks(s, *needs)]
+        return [SHEAR_CHECK.lacks(s, needs[0]), bending, INTERACTION_CHECK.lacks(s, *needs)]
     sheared = np.asarray(shear_resistance(forces.of_sections("area"), fu))
-    shear = SHEAR.along(s, forces, forces.shear, sheared)
+    shear = SHEAR_CHECK.along(s, forces, forces.shear, sheared)
     if fy is None:
-        return [shear, bending, INTERACTION.lacks(s, *needs)]
+        return [shear, bending, INTERACTION_CHECK.lacks(s, *needs)]
     bent = np.asarray(bending_resistance(forces.of_sections("modulus"), fy))
     used = np.hypot((forces.moment / bent).max(axis=1), (forces.shear / sheared).max(axis=1))
     note = "root of the sum of squares; the clause's sum is its square"
-    return [shear, bending, INTERACTION.along(s, forces, used[:, None], np.ones(1), note)]
+    return [shear, bending, INTERACTION_CHECK.along(s, forces, used[:, None], np.ones(1), note)]
 
 
 def _bending(s: Situation, forces: SectionForces, check: Check) -> Margin:
     fy = s.material.yield_strength
     if fy is None:
         return check.lacks(s, strength_key(s.material.name, "yield"))
-    modulus, ser = forces.of_sections("modulus"), check is BENDING_SER
+    modulus, ser = forces.of_sections("modulus"), check is BENDING_SER_CHECK
     resisted = np.asarray(bending_resistance(modulus, fy, replaceable=ser))
     return check.along(s, forces, forces.moment, resisted)
 
@@ -148,7 +148,7 @@ def _bearing(s: Situation, check: Check) -> Margin:
         np.array([b.length for b in bands]),
         np.array([2.0 * b.radius for b in bands]),
         np.array(strengths),
-        replaceable=check is BEARING_SER,
+        replaceable=check is BEARING_SER_CHECK,
     )
     bare = [name for name in s.loads.surfaces if s.lug(name) is None]
     basis = f"strength of the pin alone at {', '.join(bare)}: no lug given" if bare else ""
@@ -159,17 +159,19 @@ def _contact(s: Situation) -> Margin:
     """Of bands in lugs with a clearance."""
     strengths, lacking = _lower_strengths(s)
     if lacking:
-        return CONTACT_SER.lacks(s, *lacking)
+        return CONTACT_SER_CHECK.lacks(s, *lacking)
     lugs = [s.lug(name) for name in s.loads.surfaces]
     loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.clearance > 0.0]
     if not loose:
-        return CONTACT_SER.lacks(s, f"a clearance in pin.{s.pin.name}.lug")
+        return CONTACT_SER_CHECK.lacks(s, f"a clearance in pin.{s.pin.name}.lug")
     holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
     at = PinInHole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
     stress = contact_stress(s.across[:, loose], at)
-    allowed = 2.5 / M6_SER * np.array(strengths)[loose]
+    allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
     names = tuple(s.loads.surfaces[k] for k in loose)
-    found = CONTACT_SER.worst(s, stress, allowed, names, "the factor is the root of that on loads")
+    found = CONTACT_SER_CHECK.worst(
+        s, stress, allowed, names, "the factor is the root of that on loads"
+    )
     return replace(found, factor=math.sqrt(found.factor))
 
 

@@ -30,14 +30,14 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design"
-JOINTS = f"{SHIGLEY}, 8-12"
-CONVENTION = f"{JOINTS}; yield as its strength is a convention"
-MEAN_SHEAR = "single shear, mean"
-NEUTRAL_AXIS = "single shear, at the neutral axis"
-DOUBLE_SHEAR = "double shear, mean"
-BEARING = "bearing"
-BENDING = "bending"
-HALVES = 0.1  # part of a band's load by which its two sides may differ in double shear
+SHIGLEY_JOINTS = f"{SHIGLEY}, 8-12"
+BEARING_SOURCE = f"{SHIGLEY_JOINTS}; yield as its strength is a convention"
+MEAN_SHEAR_METHOD = "single shear, mean"
+NEUTRAL_AXIS_METHOD = "single shear, at the neutral axis"
+DOUBLE_SHEAR_METHOD = "double shear, mean"
+BEARING_METHOD = "bearing"
+BENDING_METHOD = "bending"
+MAX_HALF_DIFFERENCE = 0.1  # part of a band's load by which its two sides may differ in double shear
 
 
 def hand_checks(
@@ -58,11 +58,13 @@ def hand_checks(
     cell, z, t, largest = _largest(forces, c, MOMENT)
     bent = _label(pin, forces, cell), z, _time(loads, t)
     made = (
-        HandCheck(MEAN_SHEAR, *shear, mean, in_shear, "V / A", JOINTS, ruptures="shear"),
-        HandCheck(NEUTRAL_AXIS, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
+        HandCheck(
+            MEAN_SHEAR_METHOD, *shear, mean, in_shear, "V / A", SHIGLEY_JOINTS, ruptures="shear"
+        ),
+        HandCheck(NEUTRAL_AXIS_METHOD, *shear, highest, in_shear, formula, f"{SHIGLEY}, 3-11"),
         *_double_shear(pin, forces, c, loads, in_shear),
         *_bearing(pin, loads, yields),
-        HandCheck(BENDING, *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
+        HandCheck(BENDING_METHOD, *bent, largest, yields, "M c / I", f"{SHIGLEY}, 3-10"),
     )
     return tuple(replace(check, material=material.name) for check in made)
 
@@ -115,10 +117,12 @@ def _double_shear(
         V = np.einsum("sk,tpk->stp", ends[:, SHEAR], c)
         load = np.linalg.norm(V[0] - V[1], axis=1)
         t = int(load.argmax())
-        if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= HALVES * load[t]:
+        if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= MAX_HALF_DIFFERENCE * load[t]:
             area = min(forces.sections[i].area for i in adjacent)
             stress, at = float(load[t]) / (2.0 * area), (band.name, band.middle, _time(loads, t))
-            found = HandCheck(DOUBLE_SHEAR, *at, stress, strength, "F / (2 A)", JOINTS)
+            found = HandCheck(
+                DOUBLE_SHEAR_METHOD, *at, stress, strength, "F / (2 A)", SHIGLEY_JOINTS
+            )
             out.append(replace(found, ruptures="shear"))
     return out
 
@@ -133,7 +137,7 @@ def _bearing(pin: Pin, loads: PinLoads, strength: float | None) -> list[HandChec
         if size[t] > 0.0:
             pressure = float(size[t]) / (2.0 * band.radius * band.length)
             at = band.name, band.middle, _time(loads, t)
-            found = HandCheck(BEARING, *at, pressure, strength, "F / (d L)", CONVENTION)
+            found = HandCheck(BEARING_METHOD, *at, pressure, strength, "F / (d L)", BEARING_SOURCE)
             out.append(replace(found, ruptures="bearing"))
     return out
 

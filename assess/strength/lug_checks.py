@@ -26,18 +26,18 @@ from types import MappingProxyType
 
 import numpy as np
 
-from assess.strength.hand_checks import CONVENTION, JOINTS
+from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS
 from assess.strength.records import HandCheck
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin
 
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
-NET = "F / ((W - D) t)"
-OUT = "F / (t (sqrt(W^2 - (D sin 40°)^2) - D cos 40°))"
-BEARING = "F / (d t)"
-PLANES = math.radians(40.0)  # of shear-out, off the direction of the force
-BORED_FOR_THE_PIN: Mapping[str, float] = MappingProxyType({})
+NET_SECTION_FORMULA = "F / ((W - D) t)"
+SHEAR_OUT_FORMULA = "F / (t (sqrt(W^2 - (D sin 40°)^2) - D cos 40°))"
+BEARING_FORMULA = "F / (d t)"
+SHEAR_PLANE_ANGLE = math.radians(40.0)  # of shear-out, off the direction of the force
+NO_BUSHING_BORES: Mapping[str, float] = MappingProxyType({})
 
 
 def net_section_stress(force: float, outer: float, bore: float, thickness: float) -> float:
@@ -54,7 +54,7 @@ def shear_out_stress(force: float, outer: float, bore: float, thickness: float) 
     Raises and Source as `net_section_stress`.
     """
     _require_eye(outer, bore)
-    across, along = bore * math.sin(PLANES), bore * math.cos(PLANES)
+    across, along = bore * math.sin(SHEAR_PLANE_ANGLE), bore * math.cos(SHEAR_PLANE_ANGLE)
     length = (math.sqrt(outer**2 - across**2) - along) / 2.0
     return force / (2.0 * length * thickness)
 
@@ -68,7 +68,7 @@ def lug_checks(
     pin: Pin,
     lugs: Sequence[Lug],
     loads: PinLoads,
-    bores: Mapping[str, float] = BORED_FOR_THE_PIN,
+    bores: Mapping[str, float] = NO_BUSHING_BORES,
 ) -> tuple[HandCheck, ...]:
     """Three checks of every loaded lug, at the instant when the force across the pin is largest.
 
@@ -100,11 +100,11 @@ def _of_lug(pin: Pin, lug: Lug, loads: PinLoads, bushed: float | None) -> tuple[
     net = net_section_stress(force, W, bore, thickness)
     out = shear_out_stress(force, W, bore, thickness)
     found = (
-        ("lug, net section", net, yields, NET, JOINTS, "ultimate"),
-        ("lug, shear-out", out, in_shear, OUT, BRUHN, "shear"),
+        ("lug, net section", net, yields, NET_SECTION_FORMULA, SHIGLEY_JOINTS, "ultimate"),
+        ("lug, shear-out", out, in_shear, SHEAR_OUT_FORMULA, BRUHN, "shear"),
         (
             *("lug, bearing", bearing_stress(force, inside, thickness), yields),
-            *(BEARING, CONVENTION, "bearing"),
+            *(BEARING_FORMULA, BEARING_SOURCE, "bearing"),
         ),
     )
     time = None if loads.times is None else float(loads.times[t])

@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
-from assess.strength.records import FOR_COMPARISON, shown_with_basis
+from assess.strength.records import COMPARISON_SUFFIX, shown_with_basis
 from pinbase.dimensions import Time
 
 Level = Literal["limit", "ultimate"]
-RATIO = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
+RATIO_DIMENSION = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
 
 
 @dataclass(frozen=True)
@@ -78,11 +78,11 @@ class PinMargin:
         return -1.0 if used is None else used
 
 
-def compared(margin: Margin) -> Margin:
+def for_comparison(margin: Margin) -> Margin:
     """The same for comparison only."""
-    return replace(margin, method=f"{margin.method}, {FOR_COMPARISON}", governs=False)
+    return replace(margin, method=f"{margin.method}, {COMPARISON_SUFFIX}", governs=False)
 
 
-def not_made(method: str, clause: str, level: Level, factor: float, needs: str) -> Margin:
+def skipped(method: str, clause: str, level: Level, factor: float, needs: str) -> Margin:
     """A check that was not made, and what it needs."""
     return Margin(method, clause, level, None, None, factor, needs=needs)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from assess.strength.margin import Level, Margin, PinMargin, not_made
+from assess.strength.margin import Level, Margin, PinMargin, skipped
 from assess.strength.records import HandCheck
 from assess.strength.situation import LoadFactors
 from assess.strength.worst import strength_key
@@ -48,7 +48,7 @@ def _margin(
 ) -> Margin:
     factor = factors.at(level)
     if strength is None:
-        lacks = not_made(check.name, check.source, level, factor, key)
+        lacks = skipped(check.name, check.source, level, factor, key)
         return replace(lacks, governs=check.governs)
     basis = "; ".join(filter(None, (check.basis, check.formula)))
     return Margin(

@@ -22,14 +22,14 @@ import math
 
 import numpy as np
 
-from assess.strength.margin import RATIO, Margin
+from assess.strength.margin import RATIO_DIMENSION, Margin
 from assess.strength.section_forces import SectionForces
 from assess.strength.situation import Situation
 from assess.strength.worst import Check, strength_key
 from fea.beam.round_section import Circle
 
-PLASTIC = Check("plastic bending and shear", "rule of pinstress", "ultimate", RATIO)
-RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
+PLASTIC_CHECK = Check("plastic bending and shear", "rule of pinstress", "ultimate", RATIO_DIMENSION)
+INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
 
 
 def plastic_shear(section: Circle, strength: float) -> float:
@@ -42,8 +42,8 @@ def plastic_margin(s: Situation, forces: SectionForces) -> Margin:
     """Of the section that is nearest to a hinge."""
     fy = s.material.yield_strength
     if fy is None:
-        return PLASTIC.lacks(s, strength_key(s.material.name, "yield"))
+        return PLASTIC_CHECK.lacks(s, strength_key(s.material.name, "yield"))
     M = fy * forces.of_sections("plastic_modulus")
     V = np.array([plastic_shear(section, fy) for section in forces.sections])
     used = np.hypot(forces.moment / M, forces.shear / V)
-    return PLASTIC.along(s, forces, used, np.ones(used.shape[1]), RULE)
+    return PLASTIC_CHECK.along(s, forces, used, np.ones(used.shape[1]), INTERACTION_RULE)

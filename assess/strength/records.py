@@ -18,9 +18,9 @@ from pinbase.dimensions import (
     Time,
 )
 
-JOINT_MODEL = "joint model"  # as the basis of section forces
-FOR_COMPARISON = "for comparison"
-WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
+JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
+COMPARISON_SUFFIX = "for comparison"
+COMPARISON_WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,13 @@ class HandCheck:
     @property
     def compared(self) -> HandCheck:
         """The same for comparison only."""
-        return replace(self, name=f"{self.name}, {FOR_COMPARISON}", governs=False)
+        return replace(self, name=f"{self.name}, {COMPARISON_SUFFIX}", governs=False)
 
 
 def shown_with_basis(name: str, basis: str) -> str:
     """The name of a check, and the joint model where it takes the section forces of that."""
-    named = JOINT_MODEL in name or not basis.startswith(JOINT_MODEL)
-    return name if named else f"{name} ({JOINT_MODEL})"
+    named = JOINT_MODEL_BASIS in name or not basis.startswith(JOINT_MODEL_BASIS)
+    return name if named else f"{name} ({JOINT_MODEL_BASIS})"
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class BeamCheck:
         z, beam = self.z, self.beam_axial_stress
         error = (stress - beam) / beam.max()
         loaded = z[-1]
-        inside = (z >= WINDOW[0] * loaded) & (z <= WINDOW[1] * loaded)
+        inside = (z >= COMPARISON_WINDOW[0] * loaded) & (z <= COMPARISON_WINDOW[1] * loaded)
         worst = int(np.abs(error).argmax())
         return Difference(
             rms=float(np.sqrt(np.mean(error[inside] ** 2))),

@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.strength.records import JOINT_MODEL
+from assess.strength.records import JOINT_MODEL_BASIS
 from assess.strength.situation import Situation
 from fea.beam.line_load import acting, shares
 from fea.beam.round_section import Circle, weakest
@@ -28,8 +28,8 @@ from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
 from fea.support.contact.records import JointForces
 from pinbase.arrays import Floats
 
-EVEN = "even load on each band"
-SHARED = "the couple that is left over is shared by all bands"
+EVEN_LOAD_BASIS = "even load on each band"
+SHARED_COUPLE_BASIS = "the couple that is left over is shared by all bands"
 Cells = NDArray[np.intp]  # (S,) numbers of a beam's cells
 
 
@@ -69,7 +69,7 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     both = np.concatenate([outside, at_bands], axis=1)
     at_middles = _sized(s, forces, there, where, both)
     middles_of = "forces at the middles of bands"
-    return even, replace(at_middles, basis=even.basis.replace(EVEN, middles_of))
+    return even, replace(at_middles, basis=even.basis.replace(EVEN_LOAD_BASIS, middles_of))
 
 
 def of_joint(s: Situation, joint: JointForces) -> SectionForces:
@@ -85,7 +85,7 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
         np.tile(joint.shear, 2),
         np.tile(joint.moment, 2),
         joint.times,
-        JOINT_MODEL,
+        JOINT_MODEL_BASIS,
     )
 
 
@@ -132,5 +132,5 @@ def _sized(
         V.T,
         M.T,
         s.loads.times,
-        EVEN if s.balanced else f"{EVEN}; {SHARED}",
+        EVEN_LOAD_BASIS if s.balanced else f"{EVEN_LOAD_BASIS}; {SHARED_COUPLE_BASIS}",
     )

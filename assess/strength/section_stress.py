@@ -20,14 +20,20 @@ import math
 
 import numpy as np
 
-from assess.strength.hand_checks import BENDING, JOINTS, MEAN_SHEAR, NEUTRAL_AXIS, SHIGLEY
+from assess.strength.hand_checks import (
+    BENDING_METHOD,
+    MEAN_SHEAR_METHOD,
+    NEUTRAL_AXIS_METHOD,
+    SHIGLEY,
+    SHIGLEY_JOINTS,
+)
 from assess.strength.records import HandCheck
 from assess.strength.section_forces import SectionForces
 from assess.strength.situation import Situation
 from pinbase.arrays import Floats
 
-OF_JOINT = f"{BENDING}, joint model", "Shigley, 3-10"
-CONCENTRATED = f"{BENDING}, concentrated forces", "Shigley, problem 3-40"
+JOINT_MODEL_BENDING = f"{BENDING_METHOD}, joint model", "Shigley, 3-10"
+CONCENTRATED_BENDING = f"{BENDING_METHOD}, concentrated forces", "Shigley, problem 3-40"
 
 
 def shear_checks(s: Situation, forces: SectionForces) -> tuple[HandCheck, HandCheck]:
@@ -36,9 +42,9 @@ def shear_checks(s: Situation, forces: SectionForces) -> tuple[HandCheck, HandCh
     strength = yields / math.sqrt(3.0) if yields else None
     mean = forces.shear / forces.of_sections("area")
     solid = not any(section.inner for section in forces.sections)
-    axis = NEUTRAL_AXIS, "4 V / (3 A)" if solid else "V Q / (I t)", f"{SHIGLEY}, 3-11"
+    axis = NEUTRAL_AXIS_METHOD, "4 V / (3 A)" if solid else "V Q / (I t)", f"{SHIGLEY}, 3-11"
     return (
-        _largest(s, forces, mean, strength, (MEAN_SHEAR, "V / A", JOINTS), "shear"),
+        _largest(s, forces, mean, strength, (MEAN_SHEAR_METHOD, "V / A", SHIGLEY_JOINTS), "shear"),
         _largest(s, forces, mean * forces.of_sections("vq_it"), strength, axis),
     )
 

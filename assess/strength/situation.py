@@ -17,8 +17,8 @@ from fea.support.lugs.lug import Lug
 from geometry import Pin
 from pinbase.arrays import Floats
 
-SMALL = 0.01  # couple that balance leaves, of the largest force times the pin's length
-SUPPORTS = 2  # lugs of a structure whose forces follow from equilibrium
+MAX_LEFT_COUPLE = 0.01  # couple that balance leaves, of the largest force times the pin's length
+SUPPORT_COUNT = 2  # lugs of a structure whose forces follow from equilibrium
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Situation:
         if self.clamps:
             return True
         left = out_of_balance(self.pin, self.by_formula)
-        return left.couple <= SMALL * left.largest * self.pin.length
+        return left.couple <= MAX_LEFT_COUPLE * left.largest * self.pin.length
 
     @property
     def joint_governs(self) -> bool:
@@ -95,7 +95,7 @@ def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoa
     """
     if not structure:
         return loads
-    if len(structure) != SUPPORTS:
+    if len(structure) != SUPPORT_COUNT:
         return None
     first, second = (pin.band(name).middle for name in structure)
     middles = np.array([pin.band(name).middle for name in loads.surfaces])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from assess.strength.margin import Level, Margin, not_made
+from assess.strength.margin import Level, Margin, skipped
 from assess.strength.section_forces import SectionForces
 from assess.strength.situation import Situation
 from pinbase.arrays import Floats
@@ -59,7 +59,7 @@ class Check:
     def lacks(self, s: Situation, *needs: str) -> Margin:
         """Not made, for want of something."""
         factor = s.factors.at(self.level)
-        return not_made(self.method, self.clause, self.level, factor, ", ".join(needs))
+        return skipped(self.method, self.clause, self.level, factor, ", ".join(needs))
 
 
 def strength_key(material: str, which: str) -> str:

@@ -14,12 +14,12 @@ from benchmarks.cuts.cut_calculix import Other, in_calculix_locally
 from benchmarks.cuts.cut_cost import FURTHER, SHAFT, D, cut_cost, four_point
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.cut.evaluate import CutAnswer, cut_result, cut_solution
+from fea.cut.evaluate import CutField, cut_result, cut_solution
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
-from fea.solve.solve_pin import Asked, Model, Solution, singularities_of, solve_pin
+from fea.solve.solve_pin import Model, Requirement, Solution, singularities_of, solve_pin
 from geometry import CutPin, Hole
 
 HOLE = 0.004
@@ -112,7 +112,7 @@ def _single(pin: CutPin, name: str, level: int) -> tuple[Other, float]:
     found = cut_result(solution, zones, loads)
     spent = time.process_time() - start
     again = time.process_time()
-    CutAnswer(solution, zones).maxima(_loads(name, FURTHER))
+    CutField(solution, zones).maxima(_loads(name, FURTHER))
     return Other(found.unknowns, found.maximum, spent), time.process_time() - again
 
 
@@ -144,10 +144,10 @@ def _loads(name: str, count: int = 1) -> PinLoads:
 
 
 def _solved(pin: CutPin, loads: PinLoads, model: Model, tolerance: float) -> Solution:
-    return solve_pin(pin, STEEL, (), (loads,), Asked(tolerance, model))[0]
+    return solve_pin(pin, STEEL, (), (loads,), Requirement(tolerance, model))[0]
 
 
-def _stress(peak: Peak) -> tuple[float, float]:
+def _stress(peak: Maximum) -> tuple[float, float]:
     assert peak.max_von_mises is not None
     assert peak.error_estimate is not None
     return peak.max_von_mises, peak.error_estimate

@@ -15,7 +15,7 @@ from assess.opinion.calculix_deck import write_deck
 from benchmarks.random_pins import STEEL
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.cut.local_fields import ELSEWHERE, RATIO
+from fea.cut.local_fields import CUT_LOW_STRESS_POWER, LOCAL_MESH_RATIO
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import surface
 from fea.solid.evaluate import solid_solution
@@ -63,7 +63,9 @@ def in_calculix_locally(
     """
     piece = Piece(pin.profile, 0.0, pin.profile.length, 0.0, pin.cuts, (), (False, False))
     start = time.process_time()
-    mesh = piece_mesh(piece, RATIO ** (level * ELSEWHERE), spots, RATIO**level)
+    mesh = piece_mesh(
+        piece, LOCAL_MESH_RATIO ** (level * CUT_LOW_STRESS_POWER), spots, LOCAL_MESH_RATIO**level
+    )
     spent = time.process_time() - start
     model, units = SolidModel(pin, mesh, STEEL, ()), acting((loads,))
     boundary, c = surface(model.space), loads.coefficients()
@@ -80,7 +82,7 @@ def _solved(
 ) -> Other:
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
-        deck = folder / f"{calculix.JOB}.inp"
+        deck = folder / f"{calculix.JOB_NAME}.inp"
         write_deck(deck, space.nodes, space.elements, STEEL, fixed, forces)
         if steps > 1:
             text = deck.read_text(encoding="ascii")

@@ -13,7 +13,7 @@ import numpy as np
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
 
 D, MIDDLE, TOLERANCE, FURTHER = 0.02, 0.08, 0.01, 200
@@ -64,7 +64,7 @@ def cut_cost() -> str:
 def measured(kind: str) -> list[str | int]:
     """The row of a kind; memory is that of this whole process."""
     pin, loads, start = CutPin.of(SHAFT, (KINDS[kind],)), four_point(), time.process_time()
-    found = solve_pin(pin, STEEL, (), (loads,), Asked(TOLERANCE))[0]
+    found = solve_pin(pin, STEEL, (), (loads,), Requirement(TOLERANCE))[0]
     spent, peak = time.process_time() - start, found.peak
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     assert found.answer is not None

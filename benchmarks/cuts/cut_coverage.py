@@ -21,13 +21,13 @@ from benchmarks import ROOT
 from benchmarks.cuts.random_cuts import CutTrial, cut_trials, kind_trials
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
-from fea.core.mesh_result import MeshResult
-from fea.core.peak import Peak
+from fea.core.mesh_result import MeshMaximum
+from fea.core.peak import Maximum
 from fea.cut.evaluate import cut_result, cut_solution
 from fea.cut.local_fields import LocalFineness
-from fea.cut.region import BEYOND, loaded_bands, pieces
+from fea.cut.region import PIECE_REACH, loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
-from fea.solve.solve_pin import Asked, singularities_of, solve_pin
+from fea.solve.solve_pin import Requirement, singularities_of, solve_pin
 
 COUNT, KINDS, SEED = 30, 6, 7
 TOLERANCE = 0.02
@@ -131,7 +131,7 @@ def _code() -> str:
 def _trial(trial: CutTrial) -> Inside | None:
     """None where the whole pin is solid, or the maximum at a singularity."""
     start = time.process_time()
-    asked = Asked(TOLERANCE)
+    asked = Requirement(TOLERANCE)
     found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)[0].peak
     spent = time.process_time() - start
     if found.model != "harmonic+local" or found.verdict == "singular":
@@ -148,7 +148,7 @@ def _trial(trial: CutTrial) -> Inside | None:
     )  # fmt: skip
 
 
-def _references(trial: CutTrial, found: Peak) -> list[MeshResult]:
+def _references(trial: CutTrial, found: Maximum) -> list[MeshMaximum]:
     """Of both meshes, the second of which is about the places that the first found."""
     pin, clamps, loads = trial.pin, trial.clamps, trial.loads
     assert found.location is not None
@@ -156,7 +156,7 @@ def _references(trial: CutTrial, found: Peak) -> list[MeshResult]:
     zones = singularities_of(pin.profile, STEEL, clamps, (loads,))
     problem = SectionProblem(pin.profile, STEEL, clamps, (loads,), zones)
     bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
-    about = pieces(pin, clamps, LONGER * BEYOND, bands)
+    about = pieces(pin, clamps, LONGER * PIECE_REACH, bands)
     last = len(found.history) - 1
     before = cut_result(cut_solution(problem, about, 0, (), bands), zones, loads)
     out = []

@@ -14,7 +14,7 @@ from benchmarks.failures.draw import INK, line_style, note
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, evenly, finest, revolved
 from fea.core.pin_loads import Floats
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from reports.data.results import PinResult
@@ -116,7 +116,7 @@ def units() -> Sizes:
         scaled = Pin(pin.name, segments, k * pin.fillet)
         forces = replace(loads, forces=k * k * loads.forces)
         material = material_of(name, "metres")
-        (found,) = solve_pin(scaled, material, ("start",), (forces,), Asked(tolerance=0.02))
+        (found,) = solve_pin(scaled, material, ("start",), (forces,), Requirement(tolerance=0.02))
         stress.append(found.peak.max_von_mises or 0.0)
         r = meridian_mesh(scaled, SectionSize()).mesh.doflocs[0]
         taken.append(float(np.mean(np.isclose(r, scaled.band("a").radius))))

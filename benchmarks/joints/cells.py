@@ -13,18 +13,18 @@ from benchmarks.joints.random_pins import PinTrial, pin_trials
 from benchmarks.timing import table
 from fea.core.pin_loads import Floats
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicAnswer
-from fea.section.place import FLEXIBILITIES
-from fea.section.section_stress import SectionAnswer
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.solve.verdict import NOISE
+from fea.harmonic.evaluate import HarmonicField
+from fea.section.place import FLEXIBILITY_ERROR
+from fea.section.section_stress import SectionField
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.verdict import FIRST_MESH_SCATTER
 from fea.support.contact.pressure_loads import resultants
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import compare
 
 COUNT, SEED = 24, 3
-REFERENCE = Cells(16, 72, 16, 16.0)
-FINE_MESHES = Cells(8, 36, 12, 20.0)
+REFERENCE = Resolution(16, 72, 16, 16.0)
+FINE_MESHES = Resolution(8, 36, 12, 20.0)
 PLACES = "surface", "section", "beneath"
 OFTEN = 0.95
 
@@ -53,18 +53,18 @@ def cells() -> str:
     meshes = [x.mesh for x in found if x.mesh]
     soft = [x.flexibilities for x in found if x.flexibilities is not None]
     off = np.array([m[1] for m in meshes])
-    estimate = np.maximum([m[0] for m in meshes], NOISE["harmonic"] / 4.0)
+    estimate = np.maximum([m[0] for m in meshes], FIRST_MESH_SCATTER["harmonic"] / 4.0)
     more = [
         ("surface, second mesh", str(len(off)), *_spread(off), f"{np.mean(off <= estimate):.0%}"),
         ("section, meshes of flexibilities", str(len(soft)), *_spread(np.array(soft)),
-         f"{np.mean(np.array(soft) <= FLEXIBILITIES):.0%}"),
+         f"{np.mean(np.array(soft) <= FLEXIBILITY_ERROR):.0%}"),
     ]  # fmt: skip
     return f"{first}\n\n{table((*head[:5], 'estimated covers'), more)}"
 
 
 def _row(found: list[CellError], k: int) -> tuple[str, ...]:
     off, told = (np.array([getattr(x, name)[k] for x in found]) for name in ("off", "estimate"))
-    meshes = FLEXIBILITIES if PLACES[k] == "section" else NOISE["harmonic"] / 4.0
+    meshes = FLEXIBILITY_ERROR if PLACES[k] == "section" else FIRST_MESH_SCATTER["harmonic"] / 4.0
     covered = [f"{np.mean(off <= told + x):.0%}" for x in (1e-4, meshes)]
     return str(len(off)), *_spread(off), *covered, f"{(off / (told + meshes)).max():.2f}"
 
@@ -84,9 +84,9 @@ def cell_errors(count: int, seed: int) -> Iterator[CellError]:
 
 def cell_error(trial: PinTrial, meshes: bool) -> CellError:
     """meshes: whether those are tried, too."""
-    model = _model(trial, Cells())
+    model = _model(trial, Resolution())
     contact = model.solve(trial.given.cases[0])
-    (compared,) = compare(model, [contact], Asked(), vary=(False,))
+    (compared,) = compare(model, [contact], Requirement(), vary=(False,))
     estimate = np.array([getattr(compared.cells, name) for name in PLACES])
     history, here = _stress(model, contact, 3 if meshes else 2)
     finer = _model(trial, REFERENCE)
@@ -100,23 +100,23 @@ def cell_error(trial: PinTrial, meshes: bool) -> CellError:
     return CellError(trial.name, estimate, np.abs(here / truth - 1.0), mesh, soft)
 
 
-def _model(trial: PinTrial, size: Cells) -> JointModel:
+def _model(trial: PinTrial, size: Resolution) -> ContactModel:
     given = trial.given
-    return JointModel(given.pin, given.material, given.lugs, size)
+    return ContactModel(given.pin, given.material, given.lugs, size)
 
 
-def _stress(model: JointModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
+def _stress(model: ContactModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
     """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
-    asked = Asked(model="harmonic", meshes=meshes, tolerance=1e-9)
+    asked = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
     (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), asked, first=model.first)
-    assert isinstance(found.answer, HarmonicAnswer)
+    assert isinstance(found.answer, HarmonicField)
     history = [step.max_von_mises for step in found.peak.history]
     below = beneath(found.answer.fields, contact.loads, found.answer.singularities).value
     surface = found.peak.places.surface.max_von_mises if found.peak.places else history[-1]
     return history, np.array([surface, _section(model, contact), below])
 
 
-def _section(model: JointModel, contact: JointContact) -> float:
+def _section(model: ContactModel, contact: JointContact) -> float:
     waves = model.waves(contact.contact)
     loads = resultants(model.pin, model.rings, waves, contact.loads.links)
-    return SectionAnswer(model.pin, model.material, (), [loads]).largest(loads)[0]
+    return SectionField(model.pin, model.material, (), [loads]).largest(loads)[0]

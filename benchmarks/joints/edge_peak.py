@@ -16,7 +16,7 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.edge_peak import contact_edges
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -24,8 +24,12 @@ ALUMINIUM = Material("aluminium", 70e9, 0.33)
 # Shrink fits: radius of the edges and length, of the diameter. Their elements, of the radius.
 FITS = tuple(product((STEEL, ALUMINIUM), (0.01, 0.02, 0.05), (0.5, 1.0, 2.0)))
 INTERFERENCE, ELEMENT = 1e-3, 1.0 / 600.0
-ALIKE = Cells(8, 6, 0), Cells(4, 6, 0), Cells(8, 6, 0, beside=1.0 / 300.0)  # round the axis
-RESOLVED = Cells(8, 24, 8, beside=1.0 / 200.0)
+ALIKE = (
+    Resolution(8, 6, 0),
+    Resolution(4, 6, 0),
+    Resolution(8, 6, 0, beside=1.0 / 300.0),
+)  # round the axis
+RESOLVED = Resolution(8, 24, 8, beside=1.0 / 200.0)
 # Inner, outer lugs and gap, mm; radius of the edges, of the diameter; clearance, mm; lugs of; load,
 # of the usual one.
 TRIED: tuple[tuple[tuple[float, float, float], float, float, Material, float], ...] = (
@@ -64,12 +68,14 @@ def shrink_fit(radius: float, length: float) -> ShrinkFit:
     return ShrinkFit(D, length * D, radius * D, EYE, INTERFERENCE * D, D)
 
 
-def shrunk(fit: ShrinkFit, material: Material, cells: Cells) -> JointContact:
+def shrunk(fit: ShrinkFit, material: Material, cells: Resolution) -> JointContact:
     """The same by rings; material: of the lug."""
     over = Segment(fit.over, fit.diameter)
     pin = Pin("P", (over, Segment(fit.length, fit.diameter, connection="M"), over))
     lug = Lug("M", fit.outer, material, -fit.interference, edge_radius=fit.radius)
-    return JointModel(pin, STEEL, [lug], cells).solve(PinLoads("fit", ("M",), np.zeros((1, 1, 3))))
+    return ContactModel(pin, STEEL, [lug], cells).solve(
+        PinLoads("fit", ("M",), np.zeros((1, 1, 3)))
+    )
 
 
 def _clevises() -> str:

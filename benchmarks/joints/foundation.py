@@ -18,13 +18,13 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.section.section_stress import SectionAnswer
+from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.section.section_stress import SectionField
 from fea.solve.solve_pin import singularities_of
 from fea.support.contact.bending import shear_force
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import AtPlaces
-from fea.support.foundation.bounds import Bounded, bounded
+from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import (
     FoundationModel,
     Stiffness,
@@ -36,7 +36,7 @@ from fea.support.lugs.lug import Lug
 from geometry import Band, Pin, Segment
 
 PINS, SEED = 40, 3  # 1, 2 and 5 served to find the constants
-FINE = Cells(rings=8, sectors=48, highest=16)
+FINE = Resolution(rings=8, sectors=48, highest=16)
 ENDS = 0.04, 0.15  # of a lug's length
 CLEARANCES = 0.001, 0.003  # of the diameter
 PRESSURE = 1e8  # Pa, the mean over the most loaded lug at which clearances count
@@ -76,14 +76,14 @@ def foundation() -> str:
     )
 
 
-def contact_places(trial: JointTrial, model: JointModel | None = None) -> AtPlaces:
+def contact_places(trial: JointTrial, model: ContactModel | None = None) -> AtPlaces:
     """Stress by contact, of one instant, on the first mesh."""
-    joint = model or JointModel(trial.pin, trial.material, trial.lugs)
+    joint = model or ContactModel(trial.pin, trial.material, trial.lugs)
     loads = joint.solve(trial.loads).loads
     singular = singularities_of(joint.pin, joint.material, (), (loads,))
     problem = SectionProblem(joint.pin, joint.material, (), (loads,), singular, joint.first)
-    answer = HarmonicAnswer(harmonic_solution(problem, 0, 1.0), singular)
-    sections = SectionAnswer(joint.pin, joint.material, (), [loads.on_rings])
+    answer = HarmonicField(harmonic_solution(problem, 0, 1.0), singular)
+    sections = SectionField(joint.pin, joint.material, (), [loads.on_rings])
     below = beneath(answer.fields, loads, singular).value
     return AtPlaces(answer.largest(loads)[0], sections.largest(loads.on_rings)[0], below)
 
@@ -102,22 +102,24 @@ def played(trial: JointTrial, play: float) -> JointTrial:
     return replace(trial, lugs=lugs, loads=loads)
 
 
-def bounds_of(trial: JointTrial) -> Bounded:
+def bounds_of(trial: JointTrial) -> StressBounds:
     """By the beam on foundations."""
     model = FoundationModel(trial.pin, trial.material, trial.lugs)
-    return bounded(FoundationStress.of(model), model.solve(trial.loads))
+    return stress_bounds(FoundationStress.of(model), model.solve(trial.loads))
 
 
 def _stresses() -> str:
     """The row by contact, over the beam's, and within its bounds with what lies beneath."""
     trials = joint_trials(PINS, UNSEEN)
-    joints = [JointModel(t.pin, t.material, t.lugs) for t in trials]
+    joints = [ContactModel(t.pin, t.material, t.lugs) for t in trials]
     rows = [_stress_row(trials, joints, play) for play in PLAYS]
     head = ("clearance [p/E d]", "pins", "contact over beam, median", "5th to 95th percentile")
     return table((*head, "upper bound over beam, median", "within the bounds"), rows)
 
 
-def _stress_row(trials: list[JointTrial], joints: list[JointModel], play: float) -> tuple[str, ...]:
+def _stress_row(
+    trials: list[JointTrial], joints: list[ContactModel], play: float
+) -> tuple[str, ...]:
     ratios, tops, inside = [], [], 0
     for trial, joint in zip(trials, joints, strict=True):
         loose = played(trial, play)
@@ -148,7 +150,7 @@ def largest_moment(moment: Callable[[Floats], Floats], pin: Pin) -> float:
 
 
 def _contact(trial: JointTrial) -> JointContact:
-    return JointModel(trial.pin, trial.material, trial.lugs, FINE).solve(trial.loads)
+    return ContactModel(trial.pin, trial.material, trial.lugs, FINE).solve(trial.loads)
 
 
 def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) -> Compared:
@@ -294,7 +296,7 @@ def _rise(trial: JointTrial, contact: JointContact, clearance: float) -> float:
         replace(lug, clearance=clearance * 2.0 * b.radius)
         for lug, b in zip(trial.lugs, bands, strict=True)
     ]
-    loose = JointModel(trial.pin, trial.material, lugs, FINE).solve(loads)
+    loose = ContactModel(trial.pin, trial.material, lugs, FINE).solve(loads)
     before = factor * largest_moment(contact.bending_moment, trial.pin)
     return largest_moment(loose.bending_moment, trial.pin) / float(before) - 1.0
 

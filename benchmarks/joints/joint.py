@@ -18,10 +18,10 @@ import numpy as np
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -46,7 +46,7 @@ TRUTH = (
     (40, 20, 2, 0.05, 0.4197, 304.0),
 )
 INSTANTS = 201
-COARSE, USUAL, FINE = Cells(4, 24, 8), Cells(), Cells(12, 48, 16)
+COARSE, USUAL, FINE = Resolution(4, 24, 8), Resolution(), Resolution(12, 48, 16)
 RADII = (0.0, 0.01, 0.025, 0.05)  # of the edges, of the diameter
 
 
@@ -55,7 +55,9 @@ def joint() -> str:
     return f"{_accuracy()}\n\n{_convergence()}\n\n{_times()}"
 
 
-def _model(inner: float, outer: float, gap: float, of_all: Lug, cells: Cells = USUAL) -> JointModel:
+def _model(
+    inner: float, outer: float, gap: float, of_all: Lug, cells: Resolution = USUAL
+) -> ContactModel:
     """A clevis, mm, whose lugs are as `of_all` but for the tilt of the outer ones."""
     over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
     left, middle, right = (
@@ -66,7 +68,7 @@ def _model(inner: float, outer: float, gap: float, of_all: Lug, cells: Cells = U
     shank = E * EYE * (outer / 1e3) ** 3 / (12.0 * ARM)
     tilt = dict(zip(NAMES, (shank, math.inf, shank), strict=True))
     lugs = [replace(of_all, connection=name, tilt=k) for name, k in tilt.items()]
-    return JointModel(pin, STEEL, lugs, cells)
+    return ContactModel(pin, STEEL, lugs, cells)
 
 
 def _pull(angle: Floats) -> PinLoads:
@@ -111,8 +113,10 @@ def _at_mid_span(
     middle = (2.0 + outer + gap + inner / 2.0) / 1e3
     bending = abs(found.bending_moment(np.array([middle]))[0, 0, 0])
     nominal = FORCE / 2.0 * (outer / 2.0 + gap + inner / 4.0) / 1e3
-    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Asked(model="harmonic", meshes=2))
-    assert isinstance(solution.answer, HarmonicAnswer)
+    (solution,) = solve_pin(
+        found.pin, STEEL, (), (found.loads,), Requirement(model="harmonic", meshes=2)
+    )
+    assert isinstance(solution.answer, HarmonicField)
     fields = solution.answer.fields
     near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - middle)
     stress = Circumference(fields, found.loads).envelope(np.array([near.argmin()]), np.zeros(1))
@@ -143,7 +147,7 @@ def _times() -> str:
     return table((*head, f"{INSTANTS} instants [s]", "steps of the active set"), rows)
 
 
-def _times_on(cells: Cells) -> tuple[str, ...]:
+def _times_on(cells: Resolution) -> tuple[str, ...]:
     new = partial(_model, 20, 10, 1, Lug("all", EYE, STEEL, 5e-5), cells)
     first, _ = _timed(lambda _: new(), str)
     one, _ = _timed(lambda model: model.solve(_growing(1)), new)

@@ -11,17 +11,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from assess.opinion.calculix import COMMAND, TO_GET, CalculixError, installed
+from assess.opinion.calculix import CALCULIX_COMMAND, INSTALL_HINT, CalculixError, installed
 from assess.opinion.calculix_joint import JointOpinion, edges, joint_opinion
-from assess.opinion.calculix_joint_mesh import STIFFNESS, Fineness
+from assess.opinion.calculix_joint_mesh import CONTACT_STIFFNESS, Fineness
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.support.contact.solve_in_lugs import ROUGH_CELLS
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.support.contact.solve_in_lugs import ROUGH
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -36,11 +36,11 @@ MESHES = (
     Fineness(rings=6, sectors=16, eye=2),
     EVERY,
     Fineness(sectors=32, layers=3, eye=2, along=8.0),
-    Fineness(rings=6, sectors=16, eye=2, stiffness=STIFFNESS / 2.0),
-    Fineness(rings=6, sectors=16, eye=2, stiffness=STIFFNESS * 2.0),
+    Fineness(rings=6, sectors=16, eye=2, stiffness=CONTACT_STIFFNESS / 2.0),
+    Fineness(rings=6, sectors=16, eye=2, stiffness=CONTACT_STIFFNESS * 2.0),
     Fineness(rings=6, sectors=16, eye=2, scale=1.0),
 )
-CELLS = ROUGH_CELLS, Cells(6, 24, 8), Cells(), Cells(10, 48, 16)
+CELLS = ROUGH, Resolution(6, 24, 8), Resolution(), Resolution(10, 48, 16)
 USUAL = 2  # of these
 INSTANTS = 201
 SHAPES = "plain", "stepped", "hollow"
@@ -92,7 +92,7 @@ class Ours:
 def joint_ccx() -> str:
     """Five tables."""
     if not installed():
-        return f"CalculiX is not installed (no {COMMAND}); {TO_GET}"
+        return f"CalculiX is not installed (no {CALCULIX_COMMAND}); {INSTALL_HINT}"
     joints = drawn(COUNT, SEED)
     parts = [_described(joints), _beside(joints), _meshes(joints[REFINED])]
     return "\n\n".join([*parts, _ours(joints[REFINED]), _motion(joints[REFINED])])
@@ -208,15 +208,15 @@ def _theirs(joint: Joint, fineness: Fineness) -> tuple[JointOpinion, float] | Ca
     return found, used - before.children_user - before.children_system
 
 
-def ours(joint: Joint, cells: Cells = CELLS[USUAL]) -> Ours:
+def ours(joint: Joint, cells: Resolution = CELLS[USUAL]) -> Ours:
     """Contact, then stress to 2 %, of which the largest away from edges."""
     start = time.process_time()
-    model = JointModel(joint.pin, STEEL, joint.lugs, cells)
+    model = ContactModel(joint.pin, STEEL, joint.lugs, cells)
     found = model.solve(joint.loads)
     pressed = time.process_time()
-    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Asked(model="harmonic"))
+    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Requirement(model="harmonic"))
     done = time.process_time()
-    assert isinstance(solution.answer, HarmonicAnswer)
+    assert isinstance(solution.answer, HarmonicField)
     fields, bounds = solution.answer.fields, edges(joint.pin)
     away = np.hypot(*(fields.points[:, :2, None] - bounds.T).transpose(1, 0, 2))
     outside = (away > DISTANCE * joint.pin.smallest_diameter).all(axis=1)
@@ -284,7 +284,7 @@ def _motion(joint: Joint) -> str:
     return table((*head, f"{INSTANTS} times its processor [s]", "times ours"), rows)
 
 
-def _about(cells: Cells) -> str:
+def _about(cells: Resolution) -> str:
     return f"{cells.rings} rings, {cells.sectors} sectors, n to {cells.highest}"
 
 

@@ -20,15 +20,15 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
 from fea.harmonic.assembly import Section
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
 from fea.harmonic.model import HarmonicBody
-from fea.section.section_stress import SectionAnswer
+from fea.section.section_stress import SectionField
 from fea.solve.refine import singularities_of
-from fea.solve.requirement import Asked
-from fea.support.contact.contact import Pressed, rotation
+from fea.solve.requirement import Requirement
+from fea.support.contact.contact import ContactState, rotation
 from fea.support.contact.flexibility import RingBody, lug_rings
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import Pin
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
@@ -38,7 +38,7 @@ from pinbase.arrays import Floats
 
 JOINTS = 4
 CHECKED = 2  # parameters of each, those that matter most, that are compared with differences
-ROUGH = Cells(4, 24, 8)  # of whole solutions for differences
+ROUGH = Resolution(4, 24, 8)  # of whole solutions for differences
 ALL = 1e-15  # what a pattern of pressures must add
 STEP = 1e-4  # of a parameter
 
@@ -72,8 +72,8 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
     lugs = [
         replace(x, material=replace(x.material, name=f"lug {x.connection}")) for x in trial.lugs
     ]
-    given = InLugs(pin, material, tuple(lugs), (trial.loads,))
-    (made,), solving = timed(lambda: solve_in_lugs(given, Asked()))
+    given = PinProblem(pin, material, tuple(lugs), (trial.loads,))
+    (made,), solving = timed(lambda: solve_in_lugs(given, Requirement()))
     every = list(parameters(pin, material, lugs))
     places = made.solution.peak.places
     assert places is not None
@@ -100,10 +100,10 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
 
 def solved_in_lugs(
     made: LugSolution, material: Material
-) -> tuple[SolvedCase, JointModel, PinLoads]:
+) -> tuple[SolvedCase, ContactModel, PinLoads]:
     """What is differentiated of a solution."""
     solution, answer = made.solution, made.solution.answer
-    assert isinstance(answer, HarmonicAnswer)
+    assert isinstance(answer, HarmonicField)
     assert made.rings is not None
     assert made.model is not None
     assert solution.peak.governing is not None
@@ -170,7 +170,7 @@ class WholeJoint:
     """A joint, its maximum on the meshes of a solution as they are moved: of a place."""
 
     solved: SolvedCase
-    model: JointModel
+    model: ContactModel
     links: PinLoads
     place: Place = "surface"
 
@@ -209,13 +209,13 @@ class WholeJoint:
         loads = other.patterns([(waves, ALL)]).loads(waves, links, arcs)
         if self.place == "section":
             on_rings = loads.on_rings
-            return SectionAnswer(other.pin, material, (), [on_rings]).place(on_rings).value
+            return SectionField(other.pin, material, (), [on_rings]).place(on_rings).value
         mesh = self.solved.solution.mesh
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         shift = _moved(mesh, model.pin, other.pin, reaches).nodes - mesh.nodes
         return moved_maximum(self.solved, other.pin, shift, material, loads)
 
-    def _pressed(self, model: JointModel) -> Pressed:
+    def _pressed(self, model: ContactModel) -> ContactState:
         """With the cells where they are."""
         (before,) = self.model.pressed(self.links)
         turn = rotation(before.angle)
@@ -235,11 +235,11 @@ def whole_joint(
     material: Material,
     lugs: Sequence[Lug],
     links: PinLoads,
-    cells: Cells,
+    cells: Resolution,
     place: Place = "surface",
 ) -> WholeJoint:
     """Solved on its first mesh, with all harmonics of contact."""
-    model = JointModel(pin, material, lugs, cells)
+    model = ContactModel(pin, material, lugs, cells)
     found = model.pressed(links)
     waves = model.waves(found)
     loads = model.patterns([(waves, ALL)]).loads(waves, links, model.arcs(found))

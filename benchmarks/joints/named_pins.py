@@ -12,10 +12,10 @@ from benchmarks.joints.joint import ARM, EYE, FORCE, NAMES, SHARE, STEEL, D, E
 from benchmarks.joints.turned_ccx import Groove
 from benchmarks.timing import table
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -32,7 +32,7 @@ class NamedPin:
     """What other programs find, MPa; by: which."""
 
     name: str
-    solve: Callable[[], Peak]
+    solve: Callable[[], Maximum]
     by: str
     surface: Known = None
     section: Known = None
@@ -44,7 +44,7 @@ def clevis(
     gap: tuple[Segment, ...] = (Segment(0.001, D),),
     bore: float = 0.0,
     interference: float = 0.0,
-) -> InLugs:
+) -> PinProblem:
     """A pull of 50 kN; thick: inner and outer lugs, mm, of which the outer ones tilt against shanks
     of 40 mm; all of the same interference of the diameters, m.
     """
@@ -60,21 +60,21 @@ def clevis(
     tilts = zip(NAMES, (shank, math.inf, shank), strict=True)
     lugs = tuple(Lug(name, EYE, STEEL, -interference, tilt=k) for name, k in tilts)
     along = FORCE * SHARE[None, :, None] * np.eye(3)[0]
-    return InLugs(pin, STEEL, lugs, (PinLoads("pull", NAMES, along),))
+    return PinProblem(pin, STEEL, lugs, (PinLoads("pull", NAMES, along),))
 
 
-def peak_of(given: InLugs) -> Peak:
+def peak_of(given: PinProblem) -> Maximum:
     """Of its only case."""
-    (found,) = solve_in_lugs(given, Asked())
+    (found,) = solve_in_lugs(given, Requirement())
     return found.solution.peak
 
 
-def grooved() -> InLugs:
+def grooved() -> PinProblem:
     """One in each gap, hence longer gaps."""
     return clevis(gap=GROOVE.segments)
 
 
-def clamp_beside_fillet() -> Peak:
+def clamp_beside_fillet() -> Maximum:
     """Held on its surface up to 0.15 d before a fillet of 0.1 d, in tension."""
     segments = (
         Segment(D, D, name="held"),
@@ -84,7 +84,7 @@ def clamp_beside_fillet() -> Peak:
     pin = Pin("C", segments, 0.1 * D)
     loads = PinLoads("tension", ("L",), np.array([[[0.0, 0.0, CLAMPED]]]))
     steel = Material("steel", 205e9, 0.3)
-    return solve_pin(pin, steel, ("held",), (loads,), Asked())[0].peak
+    return solve_pin(pin, steel, ("held",), (loads,), Requirement())[0].peak
 
 
 PROTOTYPE = "a prototype, coarse to fine cells"

@@ -12,10 +12,10 @@ from benchmarks.joints.joint import ARM, EYE, FORCE, NAMES, SHARE, STEEL, TRUTH,
 from benchmarks.joints.named_pins import named_pins
 from benchmarks.joints.random_pins import Checked, check, pin_trials
 from benchmarks.timing import table
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Asked
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.solve.solve_pin import Requirement
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -51,8 +51,8 @@ def _gear() -> str:
         if task.pin.name not in GEAR or not isinstance(task.pin, Pin):
             continue
         cases = tuple(case for case in task.loads if case.case == "landing")
-        given = InLugs(task.pin, task.material, task.lugs, cases, {}, task.ranges, None)
-        (found,) = solve_in_lugs(given, Asked())
+        given = PinProblem(task.pin, task.material, task.lugs, cases, {}, task.ranges, None)
+        (found,) = solve_in_lugs(given, Requirement())
         (low, high), section = GEAR[task.pin.name]
         span = f"{low:g}" if low == high else f"{low:g} to {high:g}"
         ours = _numbers(found.solution.peak, 1e3 * PSI, 4)
@@ -61,7 +61,7 @@ def _gear() -> str:
     return table(head, sorted(rows))
 
 
-def _numbers(peak: Peak, unit: float, digits: int) -> tuple[str, str, str, str]:
+def _numbers(peak: Maximum, unit: float, digits: int) -> tuple[str, str, str, str]:
     """Surface, section, row and what lies beneath."""
     found = peak.places
     assert found is not None
@@ -92,7 +92,7 @@ def _clevises() -> str:
     return table((*head, "beneath [MPa]"), rows)
 
 
-def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Peak:
+def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Maximum:
     """Of a clevis of benchmarks/joints/joint.py, mm, whose outer lugs tilt against their shanks."""
     over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
     left, middle, right = (
@@ -107,8 +107,8 @@ def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Peak
         for name, tilt in zip(NAMES, tilts, strict=True)
     )
     along = FORCE * SHARE[None, :, None] * [[[1.0, 0.0, 0.0]]]
-    given = InLugs(pin, STEEL, lugs, (PinLoads("pull", NAMES, along),))
-    (found,) = solve_in_lugs(given, Asked())
+    given = PinProblem(pin, STEEL, lugs, (PinLoads("pull", NAMES, along),))
+    (found,) = solve_in_lugs(given, Requirement())
     return found.solution.peak
 
 

@@ -14,8 +14,8 @@ from fea.core.over_time import Between
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import PressedCell
 from fea.harmonic.fields import MeridianFields
-from fea.solve.solve_pin import Asked
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.solve_pin import Requirement
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -30,7 +30,7 @@ AHEAD = 1e-6  # of the diameter: how near a point is to the end of a cell that i
 class PinTrial:
     """A pin in its lugs in one case; between: of a motion."""
 
-    given: InLugs
+    given: PinProblem
 
     @property
     def name(self) -> str:
@@ -67,7 +67,7 @@ def _trial(rng: np.random.Generator, k: int) -> PinTrial:
     title = f"{k}: {' '.join(shape)}{', a tube' if bore else ''}"
     loads = _loads(rng, names, d, 4 if k % 3 == 2 else 1)
     between = {} if loads.times is None else {"pull": _between(loads)}
-    return PinTrial(InLugs(Pin(title, tuple(segments)), STEEL, tuple(lugs), (loads,), between))
+    return PinTrial(PinProblem(Pin(title, tuple(segments)), STEEL, tuple(lugs), (loads,), between))
 
 
 def _gap(
@@ -153,12 +153,12 @@ class Checked:
         return self.read > (self.row + self.error) * (1.0 + 1e-9)
 
 
-def check(trial: PinTrial, asked: Asked | None = None) -> Checked:
+def check(trial: PinTrial, asked: Requirement | None = None) -> Checked:
     """Solve a pin and read its surface again.
 
     Raises: as solve_in_lugs.
     """
-    (found,) = solve_in_lugs(trial.given, asked or Asked())
+    (found,) = solve_in_lugs(trial.given, asked or Requirement())
     return checked(found)
 
 

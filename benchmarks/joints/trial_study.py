@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.joints.random_pins import STEEL, PinTrial
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.solve_in_lugs import InLugs
+from fea.support.contact.solve_in_lugs import PinProblem
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -87,4 +87,4 @@ def tapered(bore: float) -> PinTrial:
     lugs = Lug("A", 0.05, STEEL, 2e-5, tilt=2e5), Lug("B", 0.06, STEEL, tilt=5e5)
     loads = PinLoads("pull", ("A", "B"), np.array([[[-20e3, 5e3, 0.0], [20e3, -5e3, 0.0]]]))
     pin = Pin("a cone, hollow" if bore else "a cone", segments)
-    return PinTrial(InLugs(pin, STEEL, lugs, (loads,)))
+    return PinTrial(PinProblem(pin, STEEL, lugs, (loads,)))

@@ -14,8 +14,8 @@ from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.solve.refine import STEP
-from fea.solve.solve_pin import Asked, Solution, singularities_of, solve_pin
+from fea.solve.refine import MESH_RATIO
+from fea.solve.solve_pin import Requirement, Solution, singularities_of, solve_pin
 
 Row = dict[str, Any]
 
@@ -27,7 +27,7 @@ TERMS = 10  # harmonics of a bearing pressure in the truth
 def solved(trial: Trial, tolerance: float = 0.02) -> Solution:
     """By the ladder."""
     (found,) = solve_pin(
-        trial.pin, STEEL, trial.clamps, (trial.loads,), Asked(tolerance, required=1.0)
+        trial.pin, STEEL, trial.clamps, (trial.loads,), Requirement(tolerance, required=1.0)
     )
     return found
 
@@ -39,7 +39,7 @@ def truth(trial: Trial, meshes: int, material: Material = STEEL, beyond: int = B
     level = meshes - 1 + beyond
     loads = replace(trial.loads, terms=TERMS)
     problem = SectionProblem(trial.pin, material, constrained, (loads,), singularities)
-    fine = harmonic_solution(problem, level, STEP)
+    fine = harmonic_solution(problem, level, MESH_RATIO)
     return harmonic_result(fine, singularities, loads).maximum
 
 

@@ -17,10 +17,10 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.assembly import Section
-from fea.harmonic.evaluate import HarmonicAnswer, _ends, _rims
+from fea.harmonic.evaluate import HarmonicField, _ends, _rims
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import singularities_of, solve_pin
 from geometry import Pin
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
@@ -57,11 +57,11 @@ def price() -> str:
 
 
 def _row(trial: Trial) -> tuple[object, ...]:
-    solution, solving = timed(lambda: _solved(trial, Asked(model="harmonic")))
+    solution, solving = timed(lambda: _solved(trial, Requirement(model="harmonic")))
     every = list(dimensions(trial.pin))
     ours, deriving = timed(lambda: derivatives(solution, every))
     scale = max(abs(one.value * ours.by_dimension[one.key]) for one in every)
-    fine = derivatives(_solved(trial, Asked(FINE, model="harmonic")), every)
+    fine = derivatives(_solved(trial, Requirement(FINE, model="harmonic")), every)
     theirs = by_differences(solution)
     off = max(abs(one.value * (ours.by_dimension[one.key] - theirs[one.key])) for one in every)
     return (
@@ -90,9 +90,9 @@ def timed(work: Callable[[], T]) -> tuple[T, float]:
     return made, time.process_time() - start
 
 
-def _solved(trial: Trial, asked: Asked) -> SolvedCase:
+def _solved(trial: Trial, asked: Requirement) -> SolvedCase:
     (found,) = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)
-    assert isinstance(found.answer, HarmonicAnswer)
+    assert isinstance(found.answer, HarmonicField)
     assert found.peak.governing is not None
     zones = found.answer.singularities
     loads = found.peak.governing

@@ -14,9 +14,9 @@ from assess.opinion.calculix import installed
 from assess.opinion.calculix_plastic import factor_reached
 from assess.plastic.body import Elements, FlowingBody, untied
 from assess.plastic.flow import FlowRule
-from assess.plastic.limit_load import OnMesh, limit_on_mesh
-from assess.plastic.mechanism import Finer
-from assess.plastic.pin_body import PinBody, acting_at, finer, pin_body
+from assess.plastic.limit_load import MeshBracket, limit_on_mesh
+from assess.plastic.mechanism import RefinedElements
+from assess.plastic.pin_body import PinBody, acting_at, pin_body, refine
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
@@ -58,7 +58,7 @@ def limit_load() -> str:
             begin = time.perf_counter()
             acting = acting_at(problem.loads, 0)
             made = pin_body(problem.pin, RULE, problem.clamps, acting, size)
-            found = limit_on_mesh(made.body, made.forces, finer(made.body.elements))
+            found = limit_on_mesh(made.body, made.forces, refine(made.body.elements))
             one = one or found.reached
             theirs = (
                 _calculix(made, found)
@@ -96,7 +96,7 @@ def _couples(axis: int) -> PinLoads:
     return PinLoads("couples", ("a", "b"), np.zeros((1, 2, 3)), moments)
 
 
-def _calculix(made: PinBody, found: OnMesh) -> tuple[float, float]:
+def _calculix(made: PinBody, found: MeshBracket) -> tuple[float, float]:
     """Its load factor, and its run time in s."""
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
@@ -115,7 +115,7 @@ def _tetrahedra(problem: Problem, size: MeshSize, one: float) -> tuple[str, ...]
     ties = untied(len(space.nodes)).without((3 * nodes[:, None] + np.arange(3)).ravel())
     elements = Elements(space.nodes, space.elements, space.gradients, space.weights)
     body = FlowingBody(elements, ties, RULE)
-    same = Finer(elements, np.eye(elements.weights.shape[1]))
+    same = RefinedElements(elements, np.eye(elements.weights.shape[1]))
     found = limit_on_mesh(body, np.asarray(ties.matrix.T @ forces.ravel()), same)
     spent = time.perf_counter() - begin
     return _row(problem.name, "tetrahedra, 10 nodes", found, one, spent, None)
@@ -124,7 +124,7 @@ def _tetrahedra(problem: Problem, size: MeshSize, one: float) -> tuple[str, ...]
 def _row(
     name: str,
     kind: str,
-    found: OnMesh,
+    found: MeshBracket,
     one: float,
     seconds: float,
     theirs: tuple[float, float] | None,

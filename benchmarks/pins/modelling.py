@@ -15,8 +15,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.superposition import Circumference
-from fea.solve.refine import STEP
-from fea.solve.solve_pin import Asked, singularities_of, solve_pin
+from fea.solve.refine import MESH_RATIO
+from fea.solve.solve_pin import Requirement, singularities_of, solve_pin
 from geometry import Pin
 from pinstress import load_study
 from pinstress.analysis.plan import prepare
@@ -55,7 +55,7 @@ def holding() -> str:
             ((), replace(loads, distribution="uniform")),
             ((), loads),
         )
-        peaks = [solve_pin(pin, steel, held, (way,), Asked())[0].peak for held, way in ways]
+        peaks = [solve_pin(pin, steel, held, (way,), Requirement())[0].peak for held, way in ways]
         values = [p.max_von_mises or float("nan") for p in peaks]
         told = [f"{v / 1e6:.2f} {p.verdict}" for v, p in zip(values, peaks, strict=True)]
         rows.append((name, *told, values[0] / values[2], values[1] / values[2]))
@@ -77,7 +77,7 @@ def terms() -> str:
         pin, loads = _revolved(task), replace(task.loads[0], terms=TRUE_TERMS)
         singularities = singularities_of(pin, steel, (), (loads,))
         problem = SectionProblem(pin, steel, (), (loads,), singularities)
-        solution = harmonic_solution(problem, LEVEL, STEP)
+        solution = harmonic_solution(problem, LEVEL, MESH_RATIO)
         true = harmonic_result(solution, singularities, loads).maximum
         few = (
             harmonic_result(solution, singularities, replace(loads, terms=n)).maximum for n in TERMS
@@ -100,7 +100,7 @@ def instants() -> str:
         cases = [task.between[CASE](np.linspace(start, end, n)) for n in counts]
         singularities = singularities_of(pin, steel, (), (cases[-1],))
         problem = SectionProblem(pin, steel, (), (cases[-1],), singularities)
-        solution = harmonic_solution(problem, LEVEL, STEP)
+        solution = harmonic_solution(problem, LEVEL, MESH_RATIO)
         among = solution.fields.outside(singularities)
         *few, true = (Circumference(solution.fields, loads).top(among).value for loads in cases)
         rows.append((name, *(f"{100.0 * (value / true - 1.0):+.3f}" for value in few)))

@@ -9,9 +9,9 @@ from benchmarks import ROOT
 from benchmarks.timing import table
 from fea.solve.single_mesh import Rung
 from pinstress import load_study
-from pinstress.explore.chart.chart import NAMES, ChartPlan, chart, plan_chart
+from pinstress.explore.chart.chart import ELEMENT_NAMES, ChartPlan, chart, plan_chart
 from pinstress.explore.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
-from pinstress.explore.chart.mesh_sequences import FIRST
+from pinstress.explore.chart.mesh_sequences import FIRST_SOLID_LEVEL
 from reports.data.chart import Chart, ChartPoint
 from reports.format.numbers import engineering
 from reports.plots.chart import chart_plot
@@ -88,8 +88,8 @@ def _further(plan: ChartPlan, found: Chart) -> list[ChartPoint]:
     """Curved solid elements on finer meshes than are charted, once each, until the error is reached
     or they become too large.
     """
-    stress, level = plan.study.system.factor("stress"), FIRST["curved"] + MESHES
-    points = [p for p in found.points if p.element == NAMES["curved"] and not p.failed]
+    stress, level = plan.study.system.factor("stress"), FIRST_SOLID_LEVEL["curved"] + MESHES
+    points = [p for p in found.points if p.element == ELEMENT_NAMES["curved"] and not p.failed]
     more: list[ChartPoint] = []
     while error((points + more)[-1]) > TOLERANCE and ((points + more)[-1].dofs or 0) < LARGEST:
         made = _measured(MeasureJob(plan.problem, Rung("solid", "curved", level)))
@@ -109,7 +109,7 @@ def _further(plan: ChartPlan, found: Chart) -> list[ChartPoint]:
 
 def _row(found: Chart, further: list[ChartPoint]) -> tuple[str, ...]:
     curves = found.curves
-    curves["solid", NAMES["curved"]] += further
+    curves["solid", ELEMENT_NAMES["curved"]] += further
     beam = next((c[0] for (model, _), c in curves.items() if model == "beam"), None)
     (plane,) = (c for (model, _), c in curves.items() if model == "harmonic")
     solids = [c for (model, _), c in curves.items() if model == "solid"]

@@ -11,9 +11,9 @@ import numpy as np
 
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
-from fea.beam.stress_concentration import BENDING, TENSION, TORSION, shoulder_factor
+from fea.beam.stress_concentration import BENDING_FIT, TENSION_FIT, TORSION_FIT, shoulder_factor
 from fea.core.pin_loads import Floats, PinLoads
-from fea.core.voigt import TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.superposition import Circumference
@@ -36,7 +36,7 @@ SHAPES = (
     (3.0, 0.3),
 )  # D/d, r/d
 KINDS = ("bending", "tension", "torsion")
-CHARTS = (BENDING, TENSION, TORSION)
+CHARTS = (BENDING_FIT, TENSION_FIT, TORSION_FIT)
 QUICK = SectionSize(2.8, 5.6, 0.6)  # for 1 %
 GOOD = SectionSize(6.0, 14.0, 0.3)  # for 0.3 %
 FINEST = SectionSize(20.0, 44.0, 0.1)  # ten times the unknowns of GOOD
@@ -97,7 +97,7 @@ def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, flo
     top = around.top(near)
     at = np.flatnonzero(near)
     s = around.stress(at, 0, np.array([top.angle]))[:, 0]
-    return top.value, float(np.abs(np.linalg.eigvalsh(s[:, TENSOR])).max())
+    return top.value, float(np.abs(np.linalg.eigvalsh(s[:, TENSOR_TO_VOIGT])).max())
 
 
 def shoulders() -> str:

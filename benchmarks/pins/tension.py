@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from assess.opinion.calculix import JOB, installed, seconds_of, stresses
+from assess.opinion.calculix import JOB_NAME, installed, seconds_of, stresses
 from assess.opinion.calculix import run as run_calculix
 from assess.opinion.calculix_deck import mesh_lines
 from benchmarks.pins.shoulders import CHARTS, FINEST, KINDS, D, Run, run, shoulder
@@ -87,9 +87,9 @@ def axisymmetric(pin: Pin, size: SectionSize) -> tuple[float, float]:
     space = Section(section)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / f"{JOB}.inp").write_text("\n".join(_deck(section, space)) + "\n")
+        (folder / f"{JOB_NAME}.inp").write_text("\n".join(_deck(section, space)) + "\n")
         seconds_of(run_calculix(folder))
-        stress = stresses(folder / f"{JOB}.frd")
+        stress = stresses(folder / f"{JOB_NAME}.frd")
     assert len(stress) == len(space.nodes)
     at = stress[np.unique(section.edges["fillet 2"])]
     tensor = at[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]

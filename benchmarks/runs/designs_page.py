@@ -16,7 +16,7 @@ from benchmarks.runs.page import chromium
 from benchmarks.timing import table
 from pinstress.explore.sweep.design_columns import designs_of
 from pinstress.explore.sweep.page import write_designs_page
-from reports.format.template import VENDOR
+from reports.format.template import VENDOR_FOLDER
 from tests.support.results.made_up_designs import made_up_designs
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def _vega(designs: pa.Table, path: Path) -> float:
     scripts = "".join(
         f"<script>{text}</script>"
         for text in (
-            (VENDOR / "vega.min.js").read_text(encoding="utf-8"),
+            (VENDOR_FOLDER / "vega.min.js").read_text(encoding="utf-8"),
             f"const spec = {json.dumps(spec)}; let view = new vega.View(vega.parse(spec), "
             "{renderer: 'canvas', container: '#v'}); view.runAsync()"
             ".then(() => performance.mark('ready'));",

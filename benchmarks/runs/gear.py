@@ -10,16 +10,16 @@ from functools import partial
 from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.solve.refine import STEP
+from fea.solve.refine import MESH_RATIO
 from fea.solve.solve_pin import singularities_of, solve_pin
 from geometry import Pin
-from pinbase.processes.pool import Job, Tell, side_by_side
+from pinbase.processes.pool import Job, Tell, in_parallel
 from pinstress import load_study
 from pinstress.analysis.cache.serialise import pack
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.stored import question
+from pinstress.analysis.stored import cache_key
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
@@ -86,23 +86,23 @@ def _material(plan: Plan, pin: str) -> Material:
     return material(plan.study, plan.study.table.pin[pin].material)
 
 
-def _peaks(plans: Sequence[Plan], processes: int) -> list[tuple[bytes, Peak]]:
+def _peaks(plans: Sequence[Plan], processes: int) -> list[tuple[bytes, Maximum]]:
     """Of all plans, each with what was asked; what several ask alike is solved once, as a second
     run finds it cached.
     """
 
-    def job(plan: Plan, task: Task) -> Job[list[Peak]]:
-        def solve(_: Tell) -> list[Peak]:
+    def job(plan: Plan, task: Task) -> Job[list[Maximum]]:
+        def solve(_: Tell) -> list[Maximum]:
             steel = _material(plan, task.pin.name)
             found = solve_pin(task.pin, steel, task.clamps, task.loads, plan.asked)
             return [s.peak for s in found]
 
         return Job(task.pin.name, solve)
 
-    asked = [(pack(question(plan, task)), plan, task) for plan in plans for task in plan.tasks]
+    asked = [(pack(cache_key(plan, task)), plan, task) for plan in plans for task in plan.tasks]
     work = {key: (plan, task) for key, plan, task in asked}
     order = sorted(work, key=lambda key: -len(work[key][1].pin.connections))  # as in a run
-    done = side_by_side([job(*work[key]) for key in order], processes)
+    done = in_parallel([job(*work[key]) for key in order], processes)
     found = dict(zip(order, done, strict=True))
     peaks = [(key, found[key]) for key, _, _ in asked]
     return [(key, peak) for key, own in peaks if isinstance(own, list) for peak in own]
@@ -120,7 +120,7 @@ class _Row:
 
 
 def _whole(way: str, *plans: Plan) -> _Row:
-    found: list[tuple[bytes, Peak]] = []
+    found: list[tuple[bytes, Maximum]] = []
 
     def solve(processes: int) -> None:
         found[:] = _peaks(plans, processes)
@@ -146,10 +146,12 @@ def _one(plan: Plan) -> list[tuple[object, ...]]:
         def solve(level: int = level, unknowns: list[int] = unknowns) -> None:
             held = tuple(pin.surface(c) for c in task.clamps)
             problem = SectionProblem(pin, steel, held, (loads,), singularities)
-            solution = harmonic_solution(problem, level, STEP)
+            solution = harmonic_solution(problem, level, MESH_RATIO)
             unknowns.append(harmonic_result(solution, singularities, loads).unknowns)
 
         spent = seconds(solve)
         units = len(loads.coefficients())
-        rows.append((f"{STEP**level:.2f}", unknowns[0], units, len(loads), f"{1e3 * spent:.0f}"))
+        rows.append(
+            (f"{MESH_RATIO**level:.2f}", unknowns[0], units, len(loads), f"{1e3 * spent:.0f}")
+        )
     return rows

@@ -6,7 +6,7 @@ import time
 
 from benchmarks.timing import table
 from pinstress.explore.size.least_weight import lighten
-from pinstress.explore.size.lightest_pin import Aim
+from pinstress.explore.size.lightest_pin import WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import load_study
 from pinstress.study.reading.shipped import shipped
@@ -20,7 +20,7 @@ def saved() -> str:
     for name, factor in FACTORS.items():
         study = load_study(shipped(f"{name}.toml"))
         before = time.process_time()
-        found = lighten(study, Aim(factor))
+        found = lighten(study, WeightGoal(factor))
         spent = time.process_time() - before
         pins, designs = len(found.pins), sum(each.solved for each in found.pins)
         lines.append(

@@ -18,8 +18,8 @@ import numpy as np
 
 from benchmarks.timing import Floats, power, table
 from pinstress import Study, shipped_studies, study_from
-from pinstress.explore.sweep.batches import Batch, Batches, Done, aim_of
-from pinstress.explore.sweep.sweep import Kept, Sweep, planned, solved
+from pinstress.explore.sweep.batches import Batch, Batches, SolvedBatch, aim_of
+from pinstress.explore.sweep.sweep import MemoryStore, Sweep, planned, solved
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_side_by_side
 
 COUNTS = 250, 500, 1_000  # designs of other shapes
@@ -139,7 +139,7 @@ def _watched() -> Iterator[Memory]:
 def _measured(study: Study, jobs: int) -> Measured:
     with _watched() as used:
         start = time.perf_counter()
-        solved(planned(study), Kept(), jobs)
+        solved(planned(study), MemoryStore(), jobs)
         spent = time.perf_counter() - start
     return Measured(spent, used.cpu, used.most)
 
@@ -164,9 +164,9 @@ def _asking(study: Study, key: str) -> Study:
     return study_from(study.text.replace("[analysis]", f"[analysis]\n{key}"))
 
 
-def _solved_by(jobs: int, plan: Sweep, some: range) -> tuple[float, list[Done]]:
+def _solved_by(jobs: int, plan: Sweep, some: range) -> tuple[float, list[SolvedBatch]]:
     """Wall time of some designs, s, and their batches."""
-    found: list[Done] = []
+    found: list[SolvedBatch] = []
     others = set(range(len(plan.values))) - set(some)
     batches = Batches(plan.problem.numbers, plan.values, others, jobs)
     start = time.perf_counter()
@@ -189,7 +189,7 @@ def _efficiency() -> str:
     """
     plan = planned(_study(COMPARED * (ROUNDS + 1)))
     rounds = [range(k * COMPARED, (k + 1) * COMPARED) for k in range(ROUNDS + 1)]
-    times, batches = [], list[Done]()
+    times, batches = [], list[SolvedBatch]()
     for some in rounds:  # the first that imports are done
         spent: list[float] = []
         for jobs in (1, 2):
@@ -211,8 +211,8 @@ def _efficiency() -> str:
     )
 
 
-def _nothing(problem: object, batch: Batch) -> Done:
-    return Done(batch, [], 0.0)
+def _nothing(problem: object, batch: Batch) -> SolvedBatch:
+    return SolvedBatch(batch, [], 0.0)
 
 
 def _overhead(plan: Sweep) -> tuple[float, float]:

@@ -11,7 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from assess.opinion.calculix import COMMAND, JOB, TO_GET, CalculixSolution, installed, solved
+from assess.opinion.calculix import (
+    CALCULIX_COMMAND,
+    INSTALL_HINT,
+    JOB_NAME,
+    CalculixSolution,
+    installed,
+    solved,
+)
 from assess.opinion.calculix_deck import write_deck
 from benchmarks.processes import Process, process
 from benchmarks.solids.calculix_ours import FILLET, STEEL, Floats, Ints, Loaded, Ours
@@ -20,7 +27,7 @@ from benchmarks.solids.solid_peers import FINER, bare_mesh, cost, ratios, solved
 from benchmarks.timing import table
 from fea.core.voigt import von_mises
 
-MISSING = f"CalculiX is not installed (no {COMMAND}); {TO_GET}"
+MISSING = f"CalculiX is not installed (no {CALCULIX_COMMAND}); {INSTALL_HINT}"
 AGREEMENT = ("unknowns", "displacements", "our peak", "ours, averaged only", "CalculiX's peak")
 
 
@@ -101,10 +108,12 @@ def pair(factor: float) -> Pair:
         pin = Loaded(mesh)
         space, boundary = pin.space, pin.boundary
         fixed = (3 * pin.held[:, None] + np.arange(3)).ravel()
-        write_deck(folder / f"{JOB}.inp", space.nodes, space.elements, STEEL, fixed, pin.forces)
+        write_deck(
+            folder / f"{JOB_NAME}.inp", space.nodes, space.elements, STEEL, fixed, pin.forces
+        )
         on_fillet = np.isin(boundary.facets, mesh.boundaries[FILLET])
         ours, process_of_ours = solved_by_us(folder)
-        theirs = process([COMMAND, "-i", JOB], folder)
+        theirs = process([CALCULIX_COMMAND, "-i", JOB_NAME], folder)
         return Pair(
             np.unique(boundary.corners[on_fillet]),
             ours,

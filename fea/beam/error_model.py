@@ -2,8 +2,9 @@
 
 Where the beam's stress is s at a point, that of elasticity is taken to be within
 
-    s (1 +- (PLAIN + the larger of SHOULDER at a notch and ROOT within a diameter of a clamp
-             + TWICE d / length between two clamps)) +- LOCAL p
+    s (1 +- (PLAIN_SECTION_ERROR + the larger of NOTCH_ERROR at a notch and CLAMP_ERROR within a
+    diameter of a clamp
+             + CLAMPED_SPAN_ERROR d / length between two clamps)) +- LOCAL_STRESS_FACTOR p
 
 p being the largest over the bands of the sum of nominal pressures, F / (d L) and those of axial
 forces, moments and torques, for a tube times radius over wall. A notch's part covers the error of
@@ -28,7 +29,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.beam.maximum import harmonics, highest
+from fea.beam.maximum import harmonics, von_mises_maxima
 from fea.beam.stress import TZ, ZZ, BeamStress
 from fea.beam.timoshenko import InternalForces, Span
 from fea.core.pin_loads import PinLoads
@@ -36,18 +37,18 @@ from fea.core.tractions import pressure_amplitude
 from geometry import Band, Pin
 from pinbase.arrays import Floats
 
-PLAIN = 0.05
-SHOULDER = 0.12
-ROOT = 0.15
-TWICE = 0.5
-LOCAL = 0.8
-_NEGLIGIBLE = 1e-6  # of the largest stress
+PLAIN_SECTION_ERROR = 0.05
+NOTCH_ERROR = 0.12
+CLAMP_ERROR = 0.15
+CLAMPED_SPAN_ERROR = 0.5
+LOCAL_STRESS_FACTOR = 0.8
+_MIN_STRESS_SHARE = 1e-6  # of the largest stress
 
-LEAVES_OUT = (
+BEAM_OMISSIONS = (
     "Beam theory omits local stresses within about a diameter of loads, shoulders and clamps, and "
     "pressures without a resultant; the error estimate includes their measured effect."
 )
-AT_CLAMPS = " At the edges of clamps no maximum exists."
+CLAMP_EDGE_REMARK = " At the edges of clamps no maximum exists."
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = (
     Raises: ValueError when the beam has no field for a part of the loads.
     """
     stress = harmonics(beam, loads)
-    found = highest(stress)
+    found = von_mises_maxima(stress)
     point, instant = found.place
     largest = float(found.von_mises[point, instant])
     unknown = _without_factor(beam, stress, found.von_mises, largest)
@@ -88,7 +89,7 @@ def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = (
         theta=float(found.theta[point, instant]),
         instant=instant,
         without_factor=unknown,
-        leaves_out=LEAVES_OUT + (AT_CLAMPS if clamps else ""),
+        leaves_out=BEAM_OMISSIONS + (CLAMP_EDGE_REMARK if clamps else ""),
     )
 
 
@@ -97,16 +98,16 @@ def _relative(beam: BeamStress) -> Floats:
     z, stations, sections = beam.points[:, 1], beam.forces.stations, beam.forces.sections
     near, between = np.zeros(len(z)), np.zeros(len(z))
     if beam.notches:
-        near[-len(beam.notches) :] = SHOULDER
+        near[-len(beam.notches) :] = NOTCH_ERROR
     for span in beam.forces.spans:
         first, last = stations[span.first], stations[span.last]
         ends = ((first, span.left, span.first), (last, span.right, span.last - 1))
         for edge, clamped, cell in ends:
             if clamped:
                 here = np.abs(z - edge) <= 2.0 * sections[cell].outer
-                near[here] = np.maximum(near[here], ROOT)
+                near[here] = np.maximum(near[here], CLAMP_ERROR)
         between[(z >= first) & (z <= last)] = between_clamps(beam.forces, span)
-    return np.asarray(PLAIN + near + between)
+    return np.asarray(PLAIN_SECTION_ERROR + near + between)
 
 
 def between_clamps(forces: InternalForces, span: Span) -> float:
@@ -114,7 +115,7 @@ def between_clamps(forces: InternalForces, span: Span) -> float:
     if not (span.left and span.right):
         return 0.0
     thickest = 2.0 * max(s.outer for s in forces.sections[span.first : span.last])
-    return TWICE * min(
+    return CLAMPED_SPAN_ERROR * min(
         1.0, thickest / float(forces.stations[span.last] - forces.stations[span.first])
     )
 
@@ -129,7 +130,7 @@ def _local(pin: Pin, loads: PinLoads) -> Floats:
         across = np.hypot(x, y) / (d * length)
         tractions = np.abs(z) / (np.pi * d * length) + 2.0 * np.abs(mz) / (np.pi * d * d * length)
         here = (
-            LOCAL
+            LOCAL_STRESS_FACTOR
             / _wall(pin, band)
             * (across + 6.0 * np.hypot(mx, my) / (d * length**2) + tractions)
         )
@@ -161,7 +162,7 @@ def _without_factor(
 ) -> tuple[str, ...]:
     """Notches whose factor is missing for a load that acts there."""
     out = []
-    least = _NEGLIGIBLE * largest
+    least = _MIN_STRESS_SHARE * largest
     first = len(beam.points) - len(beam.notches)
     for i, notch in enumerate(beam.notches, first):
         acting = (

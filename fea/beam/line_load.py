@@ -13,7 +13,7 @@ import numpy as np
 
 from fea.beam.round_section import Circle
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads, UnitLoad, require_solved
+from fea.core.pin_loads import Loads, UnitLoad, require_solved
 from fea.core.tractions import Traction, closing_tractions, tractions_of
 from geometry import ArgumentError, Pin
 from pinbase.arrays import Floats
@@ -24,12 +24,12 @@ def loads_sections(load: UnitLoad) -> bool:
     return load.n < 2 and not (load.kind == "pressure" and load.n == 0)
 
 
-def acting(loads: AnyLoads) -> tuple[UnitLoad, ...]:
+def acting(loads: Loads) -> tuple[UnitLoad, ...]:
     """The unit loads of which a beam notices anything."""
     return tuple(u for u in loads.coefficients() if loads_sections(u))
 
 
-def shares(units: tuple[UnitLoad, ...], loads: AnyLoads) -> Floats:
+def shares(units: tuple[UnitLoad, ...], loads: Loads) -> Floats:
     """How much of each of K unit loads acts, (T, 2, K) by phase; zero of those that no section
     notices.
 

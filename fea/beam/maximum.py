@@ -12,18 +12,18 @@ import numpy as np
 
 from fea.beam.line_load import shares
 from fea.beam.stress import BeamStress
-from fea.core.pin_loads import AnyLoads
+from fea.core.pin_loads import Loads
 from fea.core.voigt import VON_MISES
 from pinbase.arrays import Floats
 
-ANGLES = 48
-_THETA = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
-_ODD = np.array([3, 5])  # tz, rt go with sin psi
-_NEGLIGIBLE = 1e-9
+ANGLE_COUNT = 48
+_THETA = 2.0 * np.pi * np.arange(ANGLE_COUNT) / ANGLE_COUNT
+_SINE_COMPONENTS = np.array([3, 5])  # tz, rt go with sin psi
+_CURVATURE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
-class Highest:
+class VonMisesMaxima:
     """von_mises: (S, T) Pa, each the maximum over the circumference at a point and an instant;
     theta: where (rad).
     """
@@ -38,18 +38,22 @@ class Highest:
         return int(point), int(instant)
 
 
-def harmonics(beam: BeamStress, loads: AnyLoads) -> Floats:
+def harmonics(beam: BeamStress, loads: Loads) -> Floats:
     """Stress (3, S, 6, T) in Pa: constant, times cos theta, times sin theta."""
     c = shares(beam.loads, loads)
     across = np.array([load.n == 1 for load in beam.loads], dtype=bool)
     first, second = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * across) for p in (0, 1))
     even, odd = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * ~across) for p in (0, 1))
     a, b, s = even, first.copy(), second.copy()
-    a[:, _ODD], b[:, _ODD], s[:, _ODD] = -odd[:, _ODD], -second[:, _ODD], first[:, _ODD]
+    a[:, _SINE_COMPONENTS], b[:, _SINE_COMPONENTS], s[:, _SINE_COMPONENTS] = (
+        -odd[:, _SINE_COMPONENTS],
+        -second[:, _SINE_COMPONENTS],
+        first[:, _SINE_COMPONENTS],
+    )
     return np.stack([a, b, s])
 
 
-def highest(stress: Floats) -> Highest:
+def von_mises_maxima(stress: Floats) -> VonMisesMaxima:
     """Largest von Mises stress over the circumference of stresses (3, S, 6, T) as from
     `harmonics`.
     """
@@ -83,8 +87,8 @@ def highest(stress: Floats) -> Highest:
     for _ in range(4):
         slope = once(t + quarter) + 2.0 * twice(t + 0.5 * quarter)
         bend = -once(t) - 4.0 * twice(t)
-        downwards = bend < -_NEGLIGIBLE * best
+        downwards = bend < -_CURVATURE_TOLERANCE * best
         t = np.where(downwards, t - slope / np.where(downwards, bend, 1.0), t)
     value = q[0] + once(t) + twice(t)
     at, best = np.where(value > best, t, at), np.maximum(value, best)
-    return Highest(np.sqrt(np.maximum(best, 0.0)), at)
+    return VonMisesMaxima(np.sqrt(np.maximum(best, 0.0)), at)

@@ -10,19 +10,19 @@ import numpy as np
 
 from fea.beam.error_model import BeamEstimate, beam_estimate
 from fea.beam.line_load import acting
-from fea.beam.maximum import harmonics, highest
+from fea.beam.maximum import harmonics, von_mises_maxima
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
-from fea.core.mesh_result import MeshResult
-from fea.core.peak import ErrorParts, Note, Peak, Refinement, accuracy
-from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
+from fea.core.mesh_result import MeshMaximum
+from fea.core.peak import ErrorParts, Maximum, Reason, Refinement, accuracy
+from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
 from fea.core.solution import Picture
-from fea.singular.singularities import Singularity, outside
+from fea.singular.singularities import Zone, outside
 from geometry import Pin
 from pinbase.arrays import Floats
 
 
-class BeamAnswer:
+class BeamField:
     """A pin as a beam, with the unit loads of a case."""
 
     def __init__(
@@ -41,29 +41,29 @@ class BeamAnswer:
         """Where its stress is, (S, 2): r, z in m."""
         return self._beam.points
 
-    def harmonics(self, loads: AnyLoads) -> Floats:
+    def harmonics(self, loads: Loads) -> Floats:
         """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
         return harmonics(self._beam, loads)
 
-    def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
-        return np.asarray(highest(harmonics(self._beam, loads)).von_mises.max(axis=0))
+        return np.asarray(von_mises_maxima(harmonics(self._beam, loads)).von_mises.max(axis=0))
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the index of its instant."""
-        found = highest(harmonics(self._beam, loads))
+        found = von_mises_maxima(harmonics(self._beam, loads))
         point, instant = found.place
         return float(found.von_mises[point, instant]), instant
 
-    def result(self, singularities: Sequence[Singularity]) -> MeshResult:
+    def result(self, singularities: Sequence[Zone]) -> MeshMaximum:
         """The largest stress outside the singular zones, as for the other models."""
-        found = highest(harmonics(self._beam, self.case))
+        found = von_mises_maxima(harmonics(self._beam, self.case))
         r, z = self._beam.points.T
         value = np.where(outside(singularities, r, z)[:, None], found.von_mises, 0.0)
         point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
         at, theta = float(r[point]), float(found.theta[point, instant])
         location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))
-        return MeshResult(0, float(value[point, instant]), instant, location)
+        return MeshMaximum(0, float(value[point, instant]), instant, location)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
         """None: a beam has no field over its surface."""
@@ -74,10 +74,10 @@ class BeamAnswer:
         """Of the loads that have a resultant, at the instant of the largest stress, J."""
         coefficients = self.case.coefficients()
         felt = {unit: coefficients[unit] for unit in self._beam.loads}
-        amounts = Amounts(self.case.case, felt, len(self.case))
+        amounts = LoadAmounts(self.case.case, felt, len(self.case))
         return self._beam.energy.of(amounts, self.estimate.instant)
 
-    def peak(self, tolerance: float, seconds: float, note: Note, rise: float = 0.0) -> Peak:
+    def peak(self, tolerance: float, seconds: float, note: Reason, rise: float = 0.0) -> Maximum:
         """The peak with the beam's own error; where it has none, an error of the whole value. rise:
         by how much the maximum may be higher between instants, Pa.
         """
@@ -91,12 +91,12 @@ class BeamAnswer:
         own = accuracy(relative, tolerance, known)
         if found.without_factor:
             notches = ", ".join(found.without_factor)
-            own = Note(
+            own = Reason(
                 f"no notch factor is available for {notches}, so the stress there is not included",
                 ("no-notch-factor",),
             )
-        own = own + Note(f". {found.leaves_out.rstrip('.')}") + note
-        return Peak(
+        own = own + Reason(f". {found.leaves_out.rstrip('.')}") + note
+        return Maximum(
             pin=self.pin.name,
             case=self.case.case,
             model="beam",

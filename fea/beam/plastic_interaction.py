@@ -22,7 +22,7 @@ import numpy as np
 from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
 
-POINTS = 201  # of the curve
+CURVE_POINTS = 201  # of the curve
 
 
 def bent_and_pulled(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
@@ -32,7 +32,7 @@ def bent_and_pulled(section: Circle, moment: Floats, axial: Floats) -> tuple[Flo
     lever, on_m, on_n = _curve(section)
     slope = np.arctan2(on_n, on_m)
     first = np.searchsorted(slope, np.arctan2(axial, moment), side="right") - 1
-    first = np.clip(first, 0, POINTS - 2)
+    first = np.clip(first, 0, CURVE_POINTS - 2)
     dm, dn = np.diff(on_m)[first], np.diff(on_n)[first]
     most = (moment * dn - axial * dm) / (on_m[first] * dn - on_n[first] * dm)
     flows = [
@@ -63,9 +63,9 @@ def plastic_torque(section: Circle) -> float:
 
 
 def _curve(section: Circle) -> tuple[Floats, Floats, Floats]:
-    """c Np / Mp, M/Mp and N/Np, (POINTS,) each, from bending alone to pulling alone."""
+    """c Np / Mp, M/Mp and N/Np, (CURVE_POINTS,) each, from bending alone to pulling alone."""
     a, b = section.outer, section.inner
-    c = a * np.sin(np.linspace(0.0, np.pi / 2.0, POINTS))
+    c = a * np.sin(np.linspace(0.0, np.pi / 2.0, CURVE_POINTS))
     bending = (_power(a, c) - _power(b, c)) / (a**3 - b**3)
     pulling = (_within(a, c) - _within(b, c)) / section.area
     return c * section.area / section.plastic_modulus, bending, pulling

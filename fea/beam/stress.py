@@ -23,7 +23,7 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
-PER_CELL = 33  # points in a cell, in addition to where a moment is largest
+POINTS_PER_CELL = 33  # points in a cell, in addition to where a moment is largest
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
     cells, z = [], []
     for c in forces.free:
         a, b = forces.stations[c : c + 2]
-        here = set(np.linspace(a, b, PER_CELL).tolist())
+        here = set(np.linspace(a, b, POINTS_PER_CELL).tolist())
         for shear in forces.coefficients[c, :3, SHEAR].T:
             roots = a + np.polynomial.Polynomial(shear).trim().roots()
             here |= {float(x.real) for x in roots if abs(x.imag) == 0.0 and a < x.real < b}

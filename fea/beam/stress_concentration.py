@@ -25,7 +25,7 @@ from geometry import Pin
 Row = tuple[float, float, float]
 Fit = tuple[tuple[float, float], Row, Row, Row, Row]  # h/r from, to; C1 to C4
 
-TENSION: tuple[Fit, ...] = (
+TENSION_FIT: tuple[Fit, ...] = (
     (
         (0.1, 2.0),
         (0.926, 1.157, -0.099),
@@ -41,7 +41,7 @@ TENSION: tuple[Fit, ...] = (
         (-0.593, -0.028, -0.106),
     ),
 )
-BENDING: tuple[Fit, ...] = (
+BENDING_FIT: tuple[Fit, ...] = (
     (
         (0.1, 2.0),
         (0.947, 1.206, -0.131),
@@ -57,7 +57,7 @@ BENDING: tuple[Fit, ...] = (
         (-3.839, 3.070, -0.600),
     ),
 )
-TORSION: tuple[Fit, ...] = (
+TORSION_FIT: tuple[Fit, ...] = (
     (
         (0.25, 4.0),
         (0.905, 0.783, -0.075),
@@ -67,8 +67,10 @@ TORSION: tuple[Fit, ...] = (
     ),
 )
 
-PEAK = 0.3  # of the radius: how far the peak lies from where the shaft ends (bending; measured)
-LARGEST_BORE = 0.25  # of d: it takes 0.4 % of the shaft's I, and the fits are for solid shafts
+PEAK_OFFSET = (
+    0.3  # of the radius: how far the peak lies from where the shaft ends (bending; measured)
+)
+MAX_BORE_RATIO = 0.25  # of d: it takes 0.4 % of the shaft's I, and the fits are for solid shafts
 
 
 def shoulder_factor(
@@ -125,14 +127,14 @@ def _shoulder(pin: Pin, i: int) -> Notch:
     on = i if left.diameters[1] < right.diameter else i + 1
     thin, thick = sorted((left.diameters[1], right.diameter))
     rho, where = pin.fillet_at(i), f"at z = {pin.stations[i + 1]:.4g} m"
-    away = (1.0 - PEAK) * rho
+    away = (1.0 - PEAK_OFFSET) * rho
     z = pin.stations[i + 1] + (away if on == i + 1 else -away)
     if rho == 0.0:
         return Notch(z, on, None, None, None, f"a sharp inner corner {where}")
-    if max(left.bores[1], right.bore) > LARGEST_BORE * thin:
+    if max(left.bores[1], right.bore) > MAX_BORE_RATIO * thin:
         return Notch(z, on, None, None, None, f"the fillet of a tube {where}")
     bending, tension, torsion = (
-        shoulder_factor(fits, thick, thin, rho) for fits in (BENDING, TENSION, TORSION)
+        shoulder_factor(fits, thick, thin, rho) for fits in (BENDING_FIT, TENSION_FIT, TORSION_FIT)
     )
     why = f"a fillet {where} with h/r = {(thick - thin) / 2.0 / rho:.3g}"
     return Notch(z, on, bending, tension, torsion, why)

@@ -33,8 +33,10 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 SHEAR, MOMENT, AXIAL, TORQUE = range(4)
-SLICE = 0.01  # by which a cone's diameter or bore changes over a cell, of the wall
-_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(4)  # exact for products of our cubics
+MAX_CONE_CHANGE = 0.01  # by which a cone's diameter or bore changes over a cell, of the wall
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(
+    4
+)  # exact for products of our cubics
 
 
 @dataclass(frozen=True)
@@ -137,11 +139,13 @@ def _stations(pin: Pin, constrained: list[tuple[float, float]]) -> Floats:
 
 
 def _on_cones(pin: Pin) -> Iterator[float]:
-    """Where to cut cones, as finely as SLICE says."""
+    """Where to cut cones, as finely as MAX_CONE_CHANGE says."""
     for s, z in zip(pin.segments, pin.stations, strict=False):
         (d0, d1), (b0, b1) = s.diameters, s.bores
         change = max(abs(d1 - d0), abs(b1 - b0)) / min(*s.walls, d0, d1)
-        yield from np.linspace(z, z + s.length, math.ceil(change / SLICE) + 1)[1:-1].tolist()
+        yield from np.linspace(z, z + s.length, math.ceil(change / MAX_CONE_CHANGE) + 1)[
+            1:-1
+        ].tolist()
 
 
 def _section(pin: Pin, a: float, b: float) -> Circle:
@@ -182,13 +186,13 @@ def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
 
 def _at_gauss(lengths: Floats, coefficients: Floats) -> Floats:
     """Internal forces (C, G, 4, K) at the Gauss points of cells, of coefficients (C, 4, 4, K)."""
-    s = lengths[:, None] * 0.5 * (1.0 + _GAUSS)
+    s = lengths[:, None] * 0.5 * (1.0 + _GAUSS_POINTS)
     return np.asarray(np.einsum("cgp,cpqk->cgqk", s[..., None] ** np.arange(4), coefficients))
 
 
 def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floats:
     """Integrals (I, K) of internal forces (C, G, 4, I) on the strains by others, (C, G, 4, K)."""
-    scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _WEIGHT, soft, one)
+    scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _GAUSS_WEIGHTS, soft, one)
     return np.asarray(np.einsum("cgqi,cgqk->ik", scaled, other))
 
 

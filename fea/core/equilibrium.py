@@ -1,10 +1,11 @@
 """Whether an unconstrained pin can be solved: what its loads leave over, and what reacts it.
 
-One rule for forces and couples, stated here alone (SMALL, MOST). What is left over of the forces is
-measured by the largest of them; a couple across the axis by that force times the length of the pin
-(or by the largest moment that is given, if that is more); a torque about the axis by the largest
-torque. Above SMALL there is a warning, above MOST the pin is not solved; below, its bands share
-it (`fea.core.tractions.closing_tractions`).
+One rule for forces and couples, stated here alone (MIN_WARNED_IMBALANCE, MAX_IMBALANCE). What is
+left over of the forces is measured by the largest of them; a couple across the axis by that force
+times the length of the pin (or by the largest moment that is given, if that is more); a torque
+about the axis by the largest torque. Above MIN_WARNED_IMBALANCE there is a warning, above
+MAX_IMBALANCE the pin is not solved; below, its bands share it
+(`fea.core.tractions.closing_tractions`).
 
 What supports carry is not left over (`Carried`): a clamp carries everything, so clamped pins are
 not asked. Lugs of a structure carry forces across the axis, two of them couples too. A lug whose
@@ -25,11 +26,17 @@ from fea.core.pin_loads import PinLoads
 from geometry import CutPin, Pin, PinLike
 from pinbase.arrays import Floats
 
-SMALL = 0.01  # of the largest force or torque: less is round-off of numbers that were typed
-MOST = 0.1  # of it: more means that a load or a support is missing
-NOISE = 1e-9  # of the largest load: smaller ones are zero
-FREE = 1e-6  # of the largest couple: more has no solution in lugs that are all free to tilt
-ALONE = 1e-6  # of the largest couple: what may remain where one changed force is enough
+MIN_WARNED_IMBALANCE = (
+    0.01  # of the largest force or torque: less is round-off of numbers that were typed
+)
+MAX_IMBALANCE = 0.1  # of it: more means that a load or a support is missing
+BALANCE_NOISE = 1e-9  # of the largest load: smaller ones are zero
+MAX_FREE_COUPLE = (
+    1e-6  # of the largest couple: more has no solution in lugs that are all free to tilt
+)
+SINGLE_FORCE_TOLERANCE = (
+    1e-6  # of the largest couple: what may remain where one changed force is enough
+)
 
 
 class Carried(NamedTuple):
@@ -43,7 +50,7 @@ class Carried(NamedTuple):
     lugs: bool = False
 
 
-NOTHING = Carried()
+NO_SUPPORT = Carried()
 
 
 @dataclass(frozen=True)
@@ -68,11 +75,11 @@ class Balance:
     @property
     def notable(self) -> bool:
         """Whether what is left over is more than round-off of typed numbers."""
-        return max(self.shares) > SMALL
+        return max(self.shares) > MIN_WARNED_IMBALANCE
 
 
 def out_of_balance(
-    pin: PinLike, loads: PinLoads, density: float | None = None, carried: Carried = NOTHING
+    pin: PinLike, loads: PinLoads, density: float | None = None, carried: Carried = NO_SUPPORT
 ) -> Balance:
     """The balance of a pin without clamps under its loads and, with a density (kg/m^3), its own
     weight and inertia. carried: by its supports.
@@ -88,7 +95,7 @@ def out_of_balance(
     moments = loads.moments
     turning = max(largest * pin.length, _largest(moments[..., :2]))
     twisting = float(np.abs(moments[..., 2]).max(initial=0.0))
-    least = NOISE * max(largest, _largest(moments) / pin.length)
+    least = BALANCE_NOISE * max(largest, _largest(moments) / pin.length)
     across, along = not carried.force, not carried.along
     each = (
         (np.maximum(across * _size(force[:, :2]), along * np.abs(force[:, 2])), largest, least),
@@ -140,20 +147,23 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     elif len(pin.connections) < 2:
         why = "the pin is not clamped and only one connection bears on it, so nothing reacts its "
         return f"{why}load; {clamp}", "one-band"
-    if force > MOST:
+    if force > MAX_IMBALANCE:
         said = f"their resultant is {force:.2g} of the largest load (its {react} "
-        return f"{loose}{said}at most {MOST:g}); {clamp}", "force-imbalance"
-    if torque > MOST:
+        return f"{loose}{said}at most {MAX_IMBALANCE:g}); {clamp}", "force-imbalance"
+    if torque > MAX_IMBALANCE:
         said = f"their torque about the axis is {torque:.2g} of the largest applied (its {react} "
-        return f"{loose}{said}at most {MOST:g}); {clamp}", "torque-imbalance"
-    if carried.lugs and couple > FREE + force / 2.0:  # the links share the force
+        return f"{loose}{said}at most {MAX_IMBALANCE:g}); {clamp}", "torque-imbalance"
+    if carried.lugs and couple > MAX_FREE_COUPLE + force / 2.0:  # the links share the force
         said = f"their couple across the axis is {couple:.2g} of the largest force times the "
         said += "length of the pin, which no lug reacts, since all are free to tilt; "
         return f"{loose}{said}give a lug the stiffness of its tilt", "couple-imbalance"
-    if couple > MOST:
+    if couple > MAX_IMBALANCE:
         said = f"their couple across the axis is {couple:.2g} of the largest force times the "
-        said += f"length of the pin (its bands react at most {MOST:g}); give it lugs, whose tilt "
-        return f"{loose}{said}carries couples ({name}.lug), or {clamp}", "couple-imbalance"
+        said += f"length of the pin (its bands react at most {MAX_IMBALANCE:g}); give it lugs, "
+        return (
+            f"{loose}{said}whose tilt carries couples ({name}.lug), or {clamp}",
+            "couple-imbalance",
+        )
     return None, ""
 
 
@@ -169,11 +179,15 @@ def closing(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | 
     z = {name: pin.band(name).middle - middle for name in loads.surfaces}
     now = dict(zip(loads.surfaces, loads.forces[instant, :, :2], strict=True))
     largest = _largest(loads.forces)
-    alone = [n for n in z if np.linalg.norm(z[n] * left - first) <= ALONE * largest * pin.length]
+    alone = [
+        n
+        for n in z
+        if np.linalg.norm(z[n] * left - first) <= SINGLE_FORCE_TOLERANCE * largest * pin.length
+    ]
     found = [{name: -left} for name in alone]
     if not found:
         for a, b in combinations(z, 2):
-            if abs(z[a] - z[b]) > NOISE * pin.length:
+            if abs(z[a] - z[b]) > BALANCE_NOISE * pin.length:
                 at_b = (first - z[a] * left) / (z[a] - z[b])
                 found.append({a: -left - at_b, b: at_b})
     found = [x for x in found if _remains(now, x, largest)]

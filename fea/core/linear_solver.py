@@ -11,8 +11,8 @@ from functools import partial
 import numpy as np
 import scipy.sparse as sp
 
-from geometry import Coded
-from geometry.mesh.gmsh_session import ONE_AT_A_TIME
+from geometry import CodedError
+from geometry.mesh.gmsh_session import GMSH_LOCK
 from pinbase.arrays import Floats, Ints
 from pinbase.platform import offered
 
@@ -21,16 +21,16 @@ Solve = Callable[[Floats], Floats]
 # Relative change of the solution by one more step of iterative refinement: an estimate of round-off
 # in the matrix times its condition. Stresses are off by twice that. Measured on clamped pins: 2e-10
 # at a length of 10 diameters, 4e-7 at 200, 1e-4 at 1000, 2e-3 at 2000; 1 on an unconstrained pin.
-LARGEST_CHANGE = 1e-3
+MAX_REFINEMENT_CHANGE = 1e-3
 # Residual over |K| |x| + |b|: 1e-16 with a working solver, whatever the matrix.
-LARGEST_BACKWARD_ERROR = 1e-10
-INDEFINITE = (
+MAX_BACKWARD_ERROR = 1e-10
+INDEFINITE_MESSAGE = (
     "the stiffness matrix is not positive definite: the pin is not fully constrained, its mesh has "
     "inverted elements, or a part of it is so slender or thin that round-off exceeds its stiffness"
 )
 
 
-class SolveError(Coded, ArithmeticError):
+class SolveError(CodedError, ArithmeticError):
     """The linear system could not be solved; the message says why and what may help."""
 
 
@@ -85,20 +85,21 @@ def _require_right(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> None
     stiffness = float(K.data.max())  # on the diagonal, and at most the norm
     most = stiffness * size + float(np.linalg.norm(b))
     backward = residual / most if most > 0.0 else residual
-    if not backward < LARGEST_BACKWARD_ERROR:
+    if not backward < MAX_BACKWARD_ERROR:
         raise SolveError(
             f"the backward error of the solution is {backward:.1e} (limit "
-            f"{LARGEST_BACKWARD_ERROR:.0e}), so it does not solve the equations; this is a "
+            f"{MAX_BACKWARD_ERROR:.0e}), so it does not solve the equations; this is a "
             "fault of the solver or the machine, not of the pin",
             "backward-error",
         )
     if not size:
         return
     change = float(np.linalg.norm(solve(left))) / size
-    if not change < LARGEST_CHANGE:
+    if not change < MAX_REFINEMENT_CHANGE:
         raise SolveError(
             f"round-off changes the solution by a fraction of {change:.1e} (limit "
-            f"{LARGEST_CHANGE:.0e}): the pin is not fully constrained, is too slender or too "
+            f"{MAX_REFINEMENT_CHANGE:.0e}): the pin is not fully constrained, is too slender or "
+            f"too "
             "thin-walled for this model, or its Poisson's ratio is too close to 0.5",
             "ill-conditioned",
         )
@@ -176,7 +177,7 @@ class _Cholmod:
         try:
             cholmod.numeric(self._matrix, self._factor)
         except ArithmeticError:
-            raise SolveError(INDEFINITE, "not-positive-definite") from None
+            raise SolveError(INDEFINITE_MESSAGE, "not-positive-definite") from None
 
         def solve(b: Floats) -> Floats:
             x = matrix(np.asfortranarray(b.reshape(len(b), -1)))
@@ -200,7 +201,7 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     graph.setdiag(0)
     graph.eliminate_zeros()
     adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
-    with ONE_AT_A_TIME:  # METIS draws random numbers
+    with GMSH_LOCK:  # METIS draws random numbers
         order = np.asarray(pymetis.nested_dissection(adjacency)[0])
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
@@ -214,7 +215,7 @@ def _superlu(K: sp.csr_matrix, order: Ints | None = None) -> Solve:
     from scipy.sparse.linalg import splu
 
     if not (K.diagonal() > 0.0).all():
-        raise SolveError(INDEFINITE, "not-positive-definite")
+        raise SolveError(INDEFINITE_MESSAGE, "not-positive-definite")
     matrix = K.tocsc() if order is None else K[order][:, order].tocsc()
     try:
         factor = splu(

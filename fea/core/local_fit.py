@@ -8,9 +8,9 @@ from scipy.spatial import cKDTree
 
 from pinbase.arrays import Floats, Ints
 
-NEIGHBOURS = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
-MANY = 4  # samples for each point: with more, a tree that is sooner built
-_LITTLE = 1e-10  # added where samples leave slope or curvature open, of their number
+FIT_SAMPLES = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
+TREE_SAMPLE_RATIO = 4  # samples for each point: with more, a tree that is sooner built
+_REGULARISATION = 1e-10  # added where samples leave slope or curvature open, of their number
 
 
 def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
@@ -56,11 +56,11 @@ def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> s
 
 
 def nearest(samples: Floats, points: Floats) -> Ints:
-    """Numbers (P, C) of the samples (S, 2) that are nearest to points (P, 2): NEIGHBOURS, or all of
-    fewer.
+    """Numbers (P, C) of the samples (S, 2) that are nearest to points (P, 2): FIT_SAMPLES, or all
+    of fewer.
     """
-    count = min(NEIGHBOURS, len(samples))
-    slow = MANY * len(points) > len(samples)  # to build, and quick to ask
+    count = min(FIT_SAMPLES, len(samples))
+    slow = TREE_SAMPLE_RATIO * len(points) > len(samples)  # to build, and quick to ask
     found = cKDTree(samples, compact_nodes=slow, balanced_tree=slow).query(points, count)[1]
     return np.asarray(found, np.int64).reshape(len(points), count)
 
@@ -78,7 +78,7 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     for k, term in enumerate((x, y, x * x, y * x, y * y), 1):
         np.multiply(term, confidence, out=terms[..., k, :])
     form = terms @ terms.swapaxes(-2, -1)
-    definite = form + _LITTLE * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
+    definite = form + _REGULARISATION * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
     one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))
     value = np.linalg.solve(definite, one)
     value += np.linalg.solve(definite, one - form @ value)  # as if nothing had been added

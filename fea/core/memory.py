@@ -13,63 +13,63 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from fea.core.linear_solver import SolveError, has_cholmod, has_metis
-from pinbase.platform import bare
+from pinbase.platform import portable
 
 # Measured, including all unit loads of a pin (docs/benchmarks.md, benchmarks.pins.linear_solvers):
 # 61,000 unknowns 0.37 GB, 115,000 0.79, 128,000 0.96, 415,000 5.05.
-PER_UNKNOWN = 8e-3  # MB, while factors are sparse
-DENSE = 130_000.0  # unknowns; from here on it grows with their number to the 4/3
+MB_PER_UNKNOWN = 8e-3  # MB, while factors are sparse
+MIN_DENSE_UNKNOWNS = 130_000.0  # unknowns; from here on it grows with their number to the 4/3
 # That is with CHOLMOD and METIS. Of 18,000 and 54,000 unknowns a factor takes with one of them 1.1
 # to 1.5 times as much; with neither 1.6 and 2.2 times, and more the larger it is.
-WITH_ONE, WITH_NEITHER, FILLS = 1.5, 1.6, 25_000.0
+FILL_WITH_ONE_LIBRARY, FILL_WITH_NO_LIBRARY, FILL_GROWTH_UNKNOWNS = 1.5, 1.6, 25_000.0
 # Of a section, in MB: 54,000 unknowns and 10 unit loads took 0.22 GB, 216,000 and 10 0.93, 25,000
 # and 294 1.14.
-SECTION, SECTION_LOAD = 2.8e-3, 1.5e-4  # per unknown; and per unit load
+SECTION_MB_PER_UNKNOWN, SECTION_MB_PER_LOAD = 2.8e-3, 1.5e-4  # per unknown; and per unit load
 # Of a local solid (fea.cut.two_level), in MB: under 6 unit loads 52,000 unknowns took 0.43 GB
 # and 256,000 1.4, with 0.13 of them for the program.
-LOCAL, LOCAL_LOAD = 5e-3, 1.5e-4  # per unknown; and per unit load
-SHARE = 0.8  # of the free memory
+LOCAL_MB_PER_UNKNOWN, LOCAL_MB_PER_LOAD = 5e-3, 1.5e-4  # per unknown; and per unit load
+MEMORY_SHARE = 0.8  # of the free memory
 MB = 2.0**20
-UNLIMITED = 2**62  # bytes: what groups without a limit say
-ASSUMED = 4096.0  # MB that are free where the system does not say
+UNLIMITED_BYTES = 2**62  # bytes: what groups without a limit say
+ASSUMED_FREE_MB = 4096.0  # MB that are free where the system does not say
 
 
 def solid_memory(unknowns: float) -> float:
     """Largest memory of a solid of so many unknowns, MB: mesh, factor and stresses."""
-    best = float(PER_UNKNOWN * unknowns * max(1.0, unknowns / DENSE) ** (1.0 / 3.0))
+    best = float(MB_PER_UNKNOWN * unknowns * max(1.0, unknowns / MIN_DENSE_UNKNOWNS) ** (1.0 / 3.0))
     if has_cholmod() and has_metis():
         return best
     if has_cholmod() or has_metis():
-        return WITH_ONE * best
-    return WITH_NEITHER * best * math.sqrt(max(1.0, unknowns / FILLS))
+        return FILL_WITH_ONE_LIBRARY * best
+    return FILL_WITH_NO_LIBRARY * best * math.sqrt(max(1.0, unknowns / FILL_GROWTH_UNKNOWNS))
 
 
 def section_memory(unknowns: float, loads: int) -> float:
     """Memory of a section of so many unknowns and unit loads, MB."""
-    return unknowns * (SECTION + SECTION_LOAD * loads)
+    return unknowns * (SECTION_MB_PER_UNKNOWN + SECTION_MB_PER_LOAD * loads)
 
 
 def local_memory(unknowns: float, loads: int) -> float:
     """Memory of a local solid of so many unknowns and unit loads, MB."""
-    return unknowns * (LOCAL + LOCAL_LOAD * loads)
+    return unknowns * (LOCAL_MB_PER_UNKNOWN + LOCAL_MB_PER_LOAD * loads)
 
 
 def free_memory(root: Path = Path("/")) -> float:
-    """Memory available to new processes, MB, within the limits of control groups; ASSUMED where the
-    system does not report it. root: of the file system, for tests.
+    """Memory available to new processes, MB, within the limits of control groups; ASSUMED_FREE_MB
+    where the system does not report it. root: of the file system, for tests.
     """
-    if bare():
-        return ASSUMED
+    if portable():
+        return ASSUMED_FREE_MB
     try:
         found = re.search(r"MemAvailable:\s+(\d+)", (root / "proc" / "meminfo").read_text())
     except OSError:
         found = None
-    return min(float(found[1]) / 1024.0 if found else ASSUMED, free_in_groups(root))
+    return min(float(found[1]) / 1024.0 if found else ASSUMED_FREE_MB, free_in_groups(root))
 
 
 def allowed_memory(limit: float | None) -> float:
     """MB: the limit, or most of the free memory."""
-    return SHARE * free_memory() if limit is None else limit
+    return MEMORY_SHARE * free_memory() if limit is None else limit
 
 
 def too_much(
@@ -113,8 +113,8 @@ class _Version:
     reclaimable: str  # page cache that the kernel drops when memory gets short
 
 
-_SECOND = _Version("", ("memory.max", "memory.high"), "memory.current", "inactive_file")
-_FIRST = _Version(
+_CGROUP_V2 = _Version("", ("memory.max", "memory.high"), "memory.current", "inactive_file")
+_CGROUP_V1 = _Version(
     "memory", ("memory.limit_in_bytes",), "memory.usage_in_bytes", "total_inactive_file"
 )
 
@@ -136,9 +136,9 @@ def _groups(root: Path) -> Iterator[tuple[Path, _Version]]:
         number, _, rest = line.partition(":")
         controllers, _, path = rest.partition(":")
         if number == "0" and not controllers:
-            version = _SECOND
+            version = _CGROUP_V2
         elif "memory" in controllers.split(","):
-            version = _FIRST
+            version = _CGROUP_V1
         else:
             continue
         parts = [p for p in PurePosixPath(path).parts if p not in ("/", "..")]
@@ -167,5 +167,5 @@ def _read(path: Path) -> str:
 
 def _number(text: str) -> int | None:
     """Bytes; None for what is not there, for "max" and for what the first version says instead."""
-    value = int(text) if text.strip().isdecimal() else UNLIMITED
-    return value if value < UNLIMITED else None
+    value = int(text) if text.strip().isdecimal() else UNLIMITED_BYTES
+    return value if value < UNLIMITED_BYTES else None

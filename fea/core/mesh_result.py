@@ -9,11 +9,13 @@ from fea.core.strain_energy import StrainEnergy
 
 Point = tuple[float, float, float]
 
-FELT = 0.1  # of a feature: a singularity governs if the stress at this distance is the largest
+FEATURE_READING_DISTANCE = (
+    0.1  # of a feature: a singularity governs if the stress at this distance is the largest
+)
 
 
 @dataclass(frozen=True)
-class Strength:
+class SingularIntensity:
     """Of a singularity, by which notches are judged: von Mises stress along the free surface is
     `along` * distance^-exponent close to it, Pa m^exponent, with the exponent of theory. notch: the
     notch stress intensity factor, of a corner between free surfaces (fea.singular.williams).
@@ -30,12 +32,12 @@ class Strength:
 
 
 @dataclass(frozen=True)
-class AtSingularity:
+class ZoneMaximum:
     """Of a singularity: the largest von Mises stress in it (Pa), which only says how fine the
-    mesh is, where (x, y, z in m); felt: the largest farther away than FELT of its feature; and the
-    exponent with which stress was seen to grow, None where that could not be measured. acts: false
-    where only other cases of the pin load the singularity, so that stress has a bound there.
-    strength: of the singularity, where the exponent was measured.
+    mesh is, where (x, y, z in m); felt: the largest farther away than FEATURE_READING_DISTANCE of
+    its feature; and the exponent with which stress was seen to grow, None where that could not be
+    measured. acts: false where only other cases of the pin load the singularity, so that stress
+    has a bound there. strength: of the singularity, where the exponent was measured.
     """
 
     maximum: float
@@ -43,11 +45,11 @@ class AtSingularity:
     location: Point
     exponent: float | None = None
     acts: bool = True
-    strength: Strength | None = None
+    strength: SingularIntensity | None = None
 
 
 @dataclass(frozen=True)
-class MeshResult:
+class MeshMaximum:
     """maximum: largest von Mises stress (Pa) outside all singularities, at `location` (m) at the
     governing `instant`. singularities: what is inside of each.
 
@@ -66,7 +68,7 @@ class MeshResult:
     maximum: float
     instant: int
     location: Point
-    singularities: tuple[AtSingularity, ...] = ()
+    singularities: tuple[ZoneMaximum, ...] = ()
     scatter: float = 0.0
     left_out: float = 0.0
     high: tuple[tuple[float, float], ...] = ()
@@ -80,7 +82,7 @@ class MeshResult:
     energy: StrainEnergy | None = field(default=None, compare=False)
 
     @property
-    def governed(self) -> tuple[AtSingularity, ...]:
+    def governed(self) -> tuple[ZoneMaximum, ...]:
         """Those in which stress is felt to be larger than outside, so that the maximum depends on
         the distance that is left out.
         """

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.core.mesh_result import Strength
+from fea.core.mesh_result import SingularIntensity
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Places
 from pinbase.dimensions import Energy, Length, Point, Stress
@@ -15,17 +15,17 @@ Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
 
 @dataclass(frozen=True)
-class Note:
+class Reason:
     """Text for people, and the reasons that it states by their codes, for programs."""
 
     text: str = ""
     codes: tuple[str, ...] = ()
 
-    def __add__(self, other: Note) -> Note:
-        return Note(self.text + other.text, self.codes + other.codes)
+    def __add__(self, other: Reason) -> Reason:
+        return Reason(self.text + other.text, self.codes + other.codes)
 
 
-NOTHING = Note()
+NO_REASON = Reason()
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class SingularZone:
     governs: bool
     max_von_mises: Stress
     advice: str
-    strength: Strength | None = None
+    strength: SingularIntensity | None = None
     felt: Stress = 0.0
 
 
@@ -88,7 +88,7 @@ class ErrorParts:
 
 
 @dataclass(frozen=True)
-class Peak:
+class Maximum:
     """max_von_mises and error_estimate in Pa, None when the pin is `rigid` or its numerics
     `failed`.
 
@@ -166,7 +166,7 @@ class Peak:
         return yield_strength / self.max_von_mises
 
 
-def decides(peak: Peak, limit: float) -> bool | None:
+def meets_limit(peak: Maximum, limit: float) -> bool | None:
     """Whether the maximum stays below a limit (Pa); None if not decided.
 
     A maximum is compared with its error, whatever its verdict: one that straddles the limit decides
@@ -212,9 +212,9 @@ def discretisation_error(
     return 3.0 * change / math.expm1(least_order * math.log(ratio))
 
 
-def accuracy(relative: float, tolerance: float, known: bool) -> Note:
+def accuracy(relative: float, tolerance: float, known: bool) -> Reason:
     """The relative error, and whether it is within the tolerance."""
     if known:
-        return Note(f"estimated error {relative:.1%}", ("within-tolerance",))
+        return Reason(f"estimated error {relative:.1%}", ("within-tolerance",))
     text = f"estimated error {relative:.1%}, above the tolerance of {tolerance:.1%}"
-    return Note(text, ("above-tolerance",))
+    return Reason(text, ("above-tolerance",))

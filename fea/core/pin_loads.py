@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 Kind = Literal["force", "moment", "pressure", "body", "shift", "turn"]
 Distribution = Literal["uniform", "cosine"]
 
-BODY = ""  # the `surface` of a load on the whole pin
+BODY_SURFACE = ""  # the `surface` of a load on the whole pin
 
 
 class UnitLoad(NamedTuple):
@@ -146,8 +146,8 @@ class PinLoads:
             add(UnitLoad(name, "force", 0), z, zero)
             add(UnitLoad(name, "moment", 1), my, -mx)
             add(UnitLoad(name, "moment", 0), zero, mz)
-        add(UnitLoad(BODY, "body", 1), *self.body[:, :2].T)
-        add(UnitLoad(BODY, "body", 0), self.body[:, 2], zero)
+        add(UnitLoad(BODY_SURFACE, "body", 1), *self.body[:, :2].T)
+        add(UnitLoad(BODY_SURFACE, "body", 0), self.body[:, 2], zero)
         return out
 
     @property
@@ -186,7 +186,7 @@ class PinLoads:
 
 
 @dataclass(frozen=True)
-class Amounts:
+class LoadAmounts:
     """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces. pressed: where
     lugs press on the pin meanwhile.
     """
@@ -203,22 +203,22 @@ class Amounts:
         """How much of each unit load acts, (T, 2) by phase."""
         return self.acting
 
-    def at(self, instants: NDArray[np.int64]) -> Amounts:
+    def at(self, instants: NDArray[np.int64]) -> LoadAmounts:
         """Those of some instants, by their numbers."""
         acting = {load: both[instants] for load, both in self.acting.items()}
         pressed = self.pressed and self.pressed.at(instants)
-        return Amounts(self.case, acting, len(instants), pressed)
+        return LoadAmounts(self.case, acting, len(instants), pressed)
 
-    def turned(self, angle: float) -> Amounts:
+    def turned(self, angle: float) -> LoadAmounts:
         """The same, all turned about the pin's axis by `angle` (rad)."""
         acting = {}
         for load, both in self.acting.items():
             c, s = np.cos(load.n * angle), np.sin(load.n * angle)
             acting[load] = both @ np.array([[c, s], [-s, c]])
-        return Amounts(self.case, acting, self.count)
+        return LoadAmounts(self.case, acting, self.count)
 
 
-AnyLoads = PinLoads | Amounts
+Loads = PinLoads | LoadAmounts
 
 
 def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitLoad]) -> None:
@@ -229,7 +229,7 @@ def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitL
         )
 
 
-def off_chord(loads: PinLoads, middle: PinLoads) -> Amounts:
+def chord_deviation(loads: PinLoads, middle: PinLoads) -> LoadAmounts:
     """By how much loads (T - 1) amid each two instants differ from the mean of both."""
     ends, amid = loads.coefficients(), middle.coefficients()
     none = np.zeros((len(loads), 2))
@@ -237,4 +237,4 @@ def off_chord(loads: PinLoads, middle: PinLoads) -> Amounts:
     for load in dict.fromkeys([*ends, *amid]):
         c = ends.get(load, none)
         acting[load] = amid.get(load, none[1:]) - 0.5 * (c[1:] + c[:-1])
-    return Amounts(loads.case, acting, len(loads) - 1, loads.pressed and loads.pressed.amid())
+    return LoadAmounts(loads.case, acting, len(loads) - 1, loads.pressed and loads.pressed.amid())

@@ -7,7 +7,7 @@ section    sqrt(s^2 + 3 t^2) by axial force, bending, shear and torsion, the lar
 contact    What only contact has: the field of a lug's edge, and what lies beneath the pressure.
 
 A row's number is the larger of surface and section. It is safe only if what lies beneath the
-contact, farther than BENEATH from it, meets the required factor too.
+contact, farther than BENEATH_DISTANCE from it, meets the required factor too.
 
 Source: ASME BPVC VIII-2, part 5, for judging kinds of stress apart (membrane, bending, peak;
 bearing by itself).
@@ -22,13 +22,15 @@ from pinbase.dimensions import Force, Length, Moment, Point, Stress
 
 Place = Literal["surface", "section"]
 
-BENEATH = 0.1  # of the diameter: farther from every pressed cell a point lies beneath the contact
+BENEATH_DISTANCE = (
+    0.1  # of the diameter: farther from every pressed cell a point lies beneath the contact
+)
 
 
 @dataclass(frozen=True)
 class SurfacePlace:
     """The largest stress of the surface, with its error; location (x, y, z); time: s. verdict: as
-    that of fea.core.peak.Peak.
+    that of fea.core.peak.Maximum.
     """
 
     max_von_mises: Stress
@@ -97,12 +99,12 @@ class BandPressure:
 
 @dataclass(frozen=True)
 class ContactPlace:
-    """beneath: the largest von Mises stress farther than BENEATH diameters from every pressed cell,
-    with its error, where and when. reach: how far from pressed cells stress exceeds yield, at the
-    governing instants; reach_required: the same of yield over the required factor; None without
-    one. edges, bands: at the row's instant. depths: pairs of a stress and how far from pressed
-    cells it is, falling stresses and growing distances, down to the least stress for which an
-    outcome may ask.
+    """beneath: the largest von Mises stress farther than BENEATH_DISTANCE diameters from every
+    pressed cell, with its error, where and when. reach: how far from pressed cells stress exceeds
+    yield, at the governing instants; reach_required: the same of yield over the required factor;
+    None without one. edges, bands: at the row's instant. depths: pairs of a stress and how far
+    from pressed cells it is, falling stresses and growing distances, down to the least stress for
+    which an outcome may ask.
     """
 
     beneath: Stress

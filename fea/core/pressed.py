@@ -19,12 +19,14 @@ from numpy.typing import NDArray
 
 from pinbase.arrays import Floats, Ints, Mask
 
-BINS = 360  # equal arcs about the axis, the first about x
-ANGLES = 2.0 * np.pi * np.arange(BINS) / BINS  # of their middles
-ON = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
-SAME = 1e-9  # of the radius: ends of rings this near are one
-MIDDLE = 0.3, 0.7  # of a ring, where the surface under pressure is read
-EDGE = 1  # pressed ring beyond the rounding of a lug's edge, whose pressed surface is not read
+ARC_COUNT = 360  # equal arcs about the axis, the first about x
+ARC_ANGLES = 2.0 * np.pi * np.arange(ARC_COUNT) / ARC_COUNT  # of their middles
+ON_RING_TOLERANCE = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
+RING_END_TOLERANCE = 1e-9  # of the radius: ends of rings this near are one
+READ_RING_RANGE = 0.3, 0.7  # of a ring, where the surface under pressure is read
+UNREAD_EDGE_RINGS = (
+    1  # pressed ring beyond the rounding of a lug's edge, whose pressed surface is not read
+)
 
 
 @dataclass(frozen=True)
@@ -56,15 +58,17 @@ class Rings:
 
     def at(self, r: Floats, z: Floats) -> Ints:
         """The ring (P,) on which points are, m; -1 on none. z: (P,) of none of their ends."""
-        off = np.abs(r[:, None] - self.radius) <= ON * self.length
+        off = np.abs(r[:, None] - self.radius) <= ON_RING_TOLERANCE * self.length
         on = off & (z[:, None] > self.start) & (z[:, None] < self.end)
         return np.where(on.any(axis=1), on.argmax(axis=1), -1)
 
     def amid(self, r: Floats, z: Floats, middle: Floats) -> Ints:
-        """The ring (P,) in whose MIDDLE points are, m; -1 in none. middle: as of `near`."""
+        """The ring (P,) in whose READ_RING_RANGE points are, m; -1 in none. middle: as of
+        `near`.
+        """
         ring = self.at(r, middle)
         part = np.where(ring >= 0, (z - self.start[ring]) / self.length[ring], 0.0)
-        return np.where((part >= MIDDLE[0]) & (part <= MIDDLE[1]), ring, -1)
+        return np.where((part >= READ_RING_RANGE[0]) & (part <= READ_RING_RANGE[1]), ring, -1)
 
     def near(self, r: Floats, z: Floats, middle: Floats) -> Mask:
         """Which points (P,), m, are under each ring, before it, and after it, within its own length
@@ -73,7 +77,9 @@ class Rings:
         """
         middle, (before, after) = middle[:, None], self._beside
         off = np.abs(r[:, None] - self.radius)
-        under = (off <= ON * self.length) & (middle > self.start) & (middle < self.end)
+        under = (
+            (off <= ON_RING_TOLERANCE * self.length) & (middle > self.start) & (middle < self.end)
+        )
         first = (off <= before) & (middle > self.start - before) & (middle < self.start)
         last = (off <= after) & (middle > self.end) & (middle < self.end + after)
         return np.concatenate([under, first, last], axis=1)
@@ -90,7 +96,7 @@ class Rings:
     @cached_property
     def follows(self) -> Mask:
         """(R - 1,) whether the next ring begins where a ring ends, on the same cylinder."""
-        near = SAME * self.radius[1:]
+        near = RING_END_TOLERANCE * self.radius[1:]
         return (np.abs(self.start[1:] - self.end[:-1]) <= near) & (
             np.abs(np.diff(self.radius)) <= near
         )
@@ -98,8 +104,8 @@ class Rings:
 
 @dataclass(frozen=True)
 class PressedArcs:
-    """Which of BINS arcs of each ring are pressed at each instant, (T, R, BINS). sector: of the
-    cells of contact, in arcs, rounded up.
+    """Which of ARC_COUNT arcs of each ring are pressed at each instant, (T, R, ARC_COUNT). sector:
+    of the cells of contact, in arcs, rounded up.
     """
 
     rings: Rings
@@ -116,10 +122,10 @@ class PressedArcs:
         on = []
         for cells, angle in zip(pressed, angles, strict=True):
             sectors = cells.shape[1]
-            turns = (ANGLES - angle) / (2.0 * np.pi) * sectors
+            turns = (ARC_ANGLES - angle) / (2.0 * np.pi) * sectors
             on.append(cells[:, np.rint(turns).astype(np.int64) % sectors])
         sectors = pressed[0].shape[1]
-        return cls(rings, np.stack(on), -(-BINS // sectors))
+        return cls(rings, np.stack(on), -(-ARC_COUNT // sectors))
 
     def at(self, instants: Ints) -> PressedArcs:
         """Those of some instants, by their numbers."""
@@ -134,8 +140,8 @@ class PressedArcs:
         return replace(self, on=self.on[1:] & self.on[:-1])
 
     def last(self, instant: int) -> tuple[Mask, Mask]:
-        """Which arcs (R, BINS) are the first pressed ones from the start of the pin on, and the
-        last ones, of what is pressed without a gap.
+        """Which arcs (R, ARC_COUNT) are the first pressed ones from the start of the pin on, and
+        the last ones, of what is pressed without a gap.
         """
         on, follows = self.on[instant], self.rings.follows[:, None]
         before, after = np.zeros_like(on), np.zeros_like(on)
@@ -143,14 +149,16 @@ class PressedArcs:
         return on & ~before, on & ~after
 
     def shut(self, instant: int) -> Mask:
-        """What each ring shuts of itself, of what is before and what is after it, (3 R, BINS)."""
+        """What each ring shuts of itself, of what is before and what is after it, (3 R,
+        ARC_COUNT).
+        """
         first, last = self.last(instant)
         return self.widened(np.concatenate([self.on[instant], first, last]))
 
     def at_edges(self, instant: int) -> Mask:
-        """Which arcs (R, BINS) of rings are at the edge of a lug: all under its rounding, whose
-        rings are as short as steps of the pressure are high, and the outermost EDGE pressed ones
-        beside them, unless contact has receded from there.
+        """Which arcs (R, ARC_COUNT) of rings are at the edge of a lug: all under its rounding,
+        whose rings are as short as steps of the pressure are high, and the outermost
+        UNREAD_EDGE_RINGS pressed ones beside them, unless contact has receded from there.
         """
         on, rings = self.on[instant], self.rings
         out = np.tile(rings.edge[:, None], on.shape[1])
@@ -158,12 +166,12 @@ class PressedArcs:
             own = np.flatnonzero(rings.band == b)
             for side in (own, own[::-1]):
                 rounded = int(np.cumprod(rings.edge[side]).sum())
-                near = side[: rounded + EDGE]
+                near = side[: rounded + UNREAD_EDGE_RINGS]
                 out[near] |= on[near] & on[side[: rounded + 1]].any(axis=0)
         return out
 
     def widened(self, arcs: Mask) -> Mask:
-        """Arcs (.., BINS) with a sector more on both sides."""
+        """Arcs (.., ARC_COUNT) with a sector more on both sides."""
         k = self.sector
         round_ = np.concatenate([arcs[..., -k - 1 :], arcs, arcs[..., :k]], axis=-1)
         count = np.cumsum(round_, axis=-1, dtype=np.int32)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from fea.core.pin_loads import AnyLoads, PinLoads
+from fea.core.pin_loads import Loads, PinLoads
 from pinbase.arrays import Floats, Ints, Mask
 
 
@@ -27,16 +27,16 @@ class Picture:
     pressed: Mask | None = None
 
 
-class Answer(Protocol):
+class StressField(Protocol):
     """What a model found for a pin, for any loads made of the same unit loads."""
 
-    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside all singularities; where it
         does not exceed `least`, Pa, any value up to that.
         """
         ...
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
         ...
 

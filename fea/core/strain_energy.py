@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.pin_loads import AnyLoads, UnitLoad, require_solved
+from fea.core.pin_loads import Loads, UnitLoad, require_solved
 from pinbase.arrays import Floats
 
 
@@ -23,7 +23,7 @@ class StrainEnergy:
     units: tuple[tuple[UnitLoad, int], ...]
     work: Floats
 
-    def of(self, loads: AnyLoads, instant: int = 0) -> float:
+    def of(self, loads: Loads, instant: int = 0) -> float:
         """Under the loads of an instant, by its number, J.
 
         Raises: ArgumentError where a part of the loads is not among the unit loads.

@@ -37,25 +37,25 @@ class Traction:
 
 
 ALONG_X = np.array([1.0, -1.0, 0.0])  # amplitudes of a traction of constant direction, n = 1
-PUSHING = np.array([2.0, 0.0, 0.0])  # amplitudes of a pressure with the same resultant
+PRESSURE_ALONG_X = np.array([2.0, 0.0, 0.0])  # amplitudes of a pressure with the same resultant
 ALONG_Z = np.array([0.0, 0.0, 1.0])
 ABOUT_Z = np.array([0.0, -1.0, 0.0])  # at phase 1
 INWARDS = np.array([-1.0, 0.0, 0.0])
-_NONE = np.zeros(3)
+_NO_TRACTION = np.zeros(3)
 
 
 def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
     """The tractions of a unit load on bands; none of one on the whole pin, or of a clamp."""
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
-        return tuple(Traction(b.name, b.middle, x * INWARDS, _NONE) for b, x in bands)
+        return tuple(Traction(b.name, b.middle, x * INWARDS, _NO_TRACTION) for b, x in bands)
     return () if load.kind in ("body", "shift", "turn") else (traction(pin, load),)
 
 
 def traction(pin: PinLike, load: UnitLoad) -> Traction:
     """The traction of a unit load on one band."""
     band = pin.band(load.surface)
-    mean, slope = _NONE, _NONE
+    mean, slope = _NO_TRACTION, _NO_TRACTION
     if load.kind == "force":
         mean = (ALONG_X if load.n else ALONG_Z) / band.area
     elif load.kind == "moment" and load.n:
@@ -97,8 +97,8 @@ def closing_tractions(
         return tuple(Traction(b.name, b.middle, mean, slope) for b in bands)
 
     if n == 1:
-        across = PUSHING if pressure else ALONG_X
-        return everywhere(across, _NONE), everywhere(_NONE, across / pin.length)
+        across = PRESSURE_ALONG_X if pressure else ALONG_X
+        return everywhere(across, _NO_TRACTION), everywhere(_NO_TRACTION, across / pin.length)
     if phase == 0:
-        return (everywhere(ALONG_Z, _NONE),)
-    return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)
+        return (everywhere(ALONG_Z, _NO_TRACTION),)
+    return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NO_TRACTION) for b in bands),)

@@ -14,8 +14,8 @@ VON_MISES = np.zeros((6, 6))
 VON_MISES[:3, :3] = -0.5
 VON_MISES[range(6), range(6)] = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0]
 
-TENSOR = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the tensor's entry ab
-ENTRIES = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
+TENSOR_TO_VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the tensor's entry ab
+VOIGT_TO_TENSOR = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
 
 
 def von_mises(stress: Floats) -> Floats:

@@ -8,12 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from fea.core.mesh_result import MeshResult
-from fea.core.pin_loads import AnyLoads, PinLoads
+from fea.core.mesh_result import MeshMaximum
+from fea.core.pin_loads import Loads, PinLoads
 from fea.core.solution import Picture
 from fea.cut.local_fields import (
-    RATIO,
-    RISE,
+    LOCAL_MESH_RATIO,
+    MAX_REFINED_RISE,
     LocalFields,
     LocalFineness,
     local_fields,
@@ -23,18 +23,18 @@ from fea.cut.local_fields import (
 from fea.cut.region import surface_ends, zone
 from fea.cut.shown import ShownCut, shown
 from fea.cut.shown_free import free_picture
-from fea.cut.supports import ClampMotions, Support, motions, reactions
+from fea.cut.supports import ClampMotions, ClampReaction, motions, reactions
 from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.evaluate import (
-    HarmonicAnswer,
+    HarmonicField,
     HarmonicSolution,
     SectionProblem,
     harmonic_result,
     harmonic_solution,
 )
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.stress_recovery import NOWHERE
-from fea.singular.singularities import VARIED, Singularity
+from fea.harmonic.stress_recovery import NO_POINTS
+from fea.singular.singularities import DISTANCE_VARIATIONS, Zone
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry import CutPin
@@ -42,9 +42,9 @@ from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
 from pinbase.arrays import Floats
 
-FINE = 0.25  # element of the first section about a cut, of its radius
-GROWTH = 0.5  # of that with the distance
-LEAST = 1e-3  # of the stress: what brings less is solved as if it brought so much
+CUT_SECTION_ELEMENT = 0.25  # element of the first section about a cut, of its radius
+CUT_SECTION_GROWTH = 0.5  # of that with the distance
+MIN_UNIT_WEIGHT = 1e-3  # of the stress: what brings less is solved as if it brought so much
 
 
 @dataclass(frozen=True)
@@ -58,24 +58,27 @@ class CutSolution:
     pieces: tuple[LocalFields, ...]
     uncut: MeridianFields
     reactions: ClampMotions
-    held: Support | None = None
+    held: ClampReaction | None = None
 
     @property
-    def corners(self) -> tuple[Singularity, ...]:
+    def corners(self) -> tuple[Zone, ...]:
         """Sharp inner corners of the cuts."""
         return tuple(c.singularity for piece in self.pieces for c in piece.corners)
 
-    def idle(self, results: Sequence[tuple[PinLoads, MeshResult]]) -> tuple[LocalFields, ...]:
+    def idle(self, results: Sequence[tuple[PinLoads, MeshMaximum]]) -> tuple[LocalFields, ...]:
         """Pieces that need no finer mesh: in no case may their stress reach the largest one, nor
         swing as much as in another piece.
         """
         out = set(range(len(self.pieces)))
         for loads, result in results:
             held = self.reactions.held(loads)
-            swings = [piece.swing(held) * (1.0 + RISE / piece.finer**2) for piece in self.pieces]
+            swings = [
+                piece.swing(held) * (1.0 + MAX_REFINED_RISE / piece.finer**2)
+                for piece in self.pieces
+            ]
             for k, piece in enumerate(self.pieces):
                 most = piece.may_reach(held, result.maximum)
-                if most or (len(loads) > 1 and swings[k] >= max(swings) / (1.0 + RISE)):
+                if most or (len(loads) > 1 and swings[k] >= max(swings) / (1.0 + MAX_REFINED_RISE)):
                     out.discard(k)
         return tuple(self.pieces[k] for k in sorted(out))
 
@@ -84,7 +87,7 @@ def cut_solution(
     problem: SectionProblem,
     pieces: Sequence[Piece],
     level: int,
-    before: Collection[MeshResult] = (),
+    before: Collection[MeshMaximum] = (),
     bands: Sequence[tuple[float, float]] = (),
     distance: float = 0.1,
     finer: LocalFineness | None = None,
@@ -111,8 +114,8 @@ def cut_solution(
     moved = motions(supports)
     section = harmonic_solution(
         replace(problem, besides=tuple(dict.fromkeys(load for load, _ in moved))),
-        level, RATIO, before,
-        np.concatenate([NOWHERE, *points]), [_fine(piece, level) for piece in pieces],
+        level, LOCAL_MESH_RATIO, before,
+        np.concatenate([NO_POINTS, *points]), [_fine(piece, level) for piece in pieces],
     )  # fmt: skip
     at = np.split(section.elsewhere, np.cumsum([len(p) for p in points]))
     units = _units(cases) or tuple((load, load.phases[0]) for load in section.fields.loads[:1])
@@ -125,15 +128,15 @@ def cut_solution(
     found = tuple(there or next(new) for there in known)
     uncut = section.fields
     fields = _without(uncut, [zone(piece) for piece in pieces])
-    section = replace(section, fields=fields, elsewhere=NOWHERE)
+    section = replace(section, fields=fields, elsewhere=NO_POINTS)
     held = next(iter(supports), None)
     return CutSolution(section, found, uncut, reactions(supports, found), held)
 
 
-def _supports(problem: SectionProblem) -> list[Support]:
+def _supports(problem: SectionProblem) -> list[ClampReaction]:
     """The clamps of a section in the order of z."""
     cut = CutPin(problem.pin)
-    found = [Support(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
+    found = [ClampReaction(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
     return sorted(found, key=lambda support: support.z)
 
 
@@ -143,7 +146,12 @@ def _fine(piece: Piece, level: int) -> Grade:
     low, high = zone(piece)
     places = np.linspace(low, high, max(2, round((high - low) / radius)))
     at = tuple((x * radius, float(z)) for z in places for x in (0.2, 0.8))
-    return Grade(at, radius * FINE / RATIO ** (level / 2.0), radius, GROWTH)
+    return Grade(
+        at,
+        radius * CUT_SECTION_ELEMENT / LOCAL_MESH_RATIO ** (level / 2.0),
+        radius,
+        CUT_SECTION_GROWTH,
+    )
 
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
@@ -171,7 +179,7 @@ def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: Meridi
         each = most * stress
         out = np.maximum(out, each / (each.max() or 1.0))
     known = {load for case in cases for load in case.coefficients()}
-    return np.where([u in known for u, _ in units], np.maximum(out, LEAST), 1.0)
+    return np.where([u in known for u, _ in units], np.maximum(out, MIN_UNIT_WEIGHT), 1.0)
 
 
 def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> MeridianFields:
@@ -180,21 +188,21 @@ def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> Me
     return replace(fields, unread=np.unique(np.concatenate([fields.unread, *cut])))
 
 
-class CutAnswer:
+class CutField:
     """What a solution says of any loads made of its unit loads (fea.core.solution)."""
 
-    def __init__(self, solution: CutSolution, singularities: tuple[Singularity, ...]) -> None:
+    def __init__(self, solution: CutSolution, singularities: tuple[Zone, ...]) -> None:
         self.solution, self.singularities = solution, singularities
-        self.section = HarmonicAnswer(solution.section, singularities)
+        self.section = HarmonicField(solution.section, singularities)
 
-    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
         loads = self.solution.reactions.held(loads)
         local = np.max([piece.largest(loads)[0] for piece in self.solution.pieces], axis=0)
         uncut = self.section.maxima(loads, max(least, float(local.min())))
         return np.asarray(np.maximum(local, uncut))
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
         loads = self.solution.reactions.held(loads)
         value, instant = self.section.largest(loads)
@@ -249,7 +257,7 @@ class CutAnswer:
             envelope=np.sqrt(largest),
         )
 
-    def coefficients(self, loads: AnyLoads) -> Floats:
+    def coefficients(self, loads: Loads) -> Floats:
         """How much of each unit load of the surface acts at each instant, (T, L)."""
         return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
 
@@ -261,10 +269,10 @@ class CutAnswer:
 
 def cut_result(
     solution: CutSolution,
-    singularities: tuple[Singularity, ...],
+    singularities: tuple[Zone, ...],
     loads: PinLoads,
-    own: Collection[Singularity] | None = None,
-) -> MeshResult:
+    own: Collection[Zone] | None = None,
+) -> MeshMaximum:
     """Maximum outside the singularities, of the uncut pin away from its cuts and about these."""
     held = solution.reactions.held(loads)
     assert isinstance(held, PinLoads)
@@ -305,6 +313,6 @@ def cut_result(
         )
     if not result.governed:
         return replace(result, interval=None)
-    varied = [max(p.varied(loads, times) for p in solution.pieces) for times in VARIED]
+    varied = [max(p.varied(loads, times) for p in solution.pieces) for times in DISTANCE_VARIATIONS]
     low, top = max(interval[0], min(varied)), max(interval[1], max(varied))
     return replace(result, interval=(low, top))

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.voigt import ENTRIES, TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
 from geometry.mesh.cut_piece import Piece
@@ -61,6 +61,6 @@ def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit
     turn[..., 1, 0] = np.sin(angle)
     turn[..., 0, 1] = -np.sin(angle)
     turn[..., 2, 2] = 1.0
-    tensor = polar[..., TENSOR, :]
+    tensor = polar[..., TENSOR_TO_VOIGT, :]
     found = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
-    return np.stack([found[..., a, b, :] for a, b in ENTRIES], axis=-2)
+    return np.stack([found[..., a, b, :] for a, b in VOIGT_TO_TENSOR], axis=-2)

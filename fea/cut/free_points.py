@@ -12,15 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.places import BENEATH
-from fea.core.pressed import BINS, PressedArcs, Rings
-from fea.core.voigt import ENTRIES, TENSOR
+from fea.core.places import BENEATH_DISTANCE
+from fea.core.pressed import ARC_COUNT, PressedArcs, Rings
+from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.harmonic.beneath import arcs_apart, arcs_within
 from pinbase.arrays import Floats, Ints, Mask
 
-ON = 1e-4  # of a radius: a point of the outline this near to a ring's cylinder is on it
-AT_ONCE = 64  # instants
-BESIDE = 1e-6  # of a ring's length: both sides of where two rings meet
+ON_CYLINDER_TOLERANCE = (
+    1e-4  # of a radius: a point of the outline this near to a ring's cylinder is on it
+)
+INSTANT_BATCH = 64  # instants
+RING_SIDE_OFFSET = 1e-6  # of a ring's length: both sides of where two rings meet
 
 
 @dataclass(frozen=True)
@@ -39,10 +41,10 @@ class FreePoints:
         r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
         off = np.abs(r[:, None] - rings.radius)
         ring = off.argmin(axis=1)
-        on = outline & (off[np.arange(len(r)), ring] <= ON * rings.radius[ring])
+        on = outline & (off[np.arange(len(r)), ring] <= ON_CYLINDER_TOLERANCE * rings.radius[ring])
         r = np.where(on, rings.radius[ring], r)
         near = np.zeros((len(r), 3 * len(rings)), dtype=bool)
-        little = BESIDE * float(rings.length.min())
+        little = RING_SIDE_OFFSET * float(rings.length.min())
         for middle in (z - little, z + little):
             near[outline] |= rings.near(r[outline], z[outline], middle[outline])
         amid = np.where(on, rings.amid(r, z, z), -1)
@@ -67,7 +69,7 @@ class FreePoints:
 def arc_of(points: Floats) -> Ints:
     """On which arc points (P, 3) are."""
     turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * np.pi)
-    return np.asarray(np.rint(turns * BINS).astype(np.int64) % BINS)
+    return np.asarray(np.rint(turns * ARC_COUNT).astype(np.int64) % ARC_COUNT)
 
 
 def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
@@ -76,10 +78,10 @@ def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
     """
     out = np.zeros((len(points), 3))
     out[:, :2] = points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None]
-    across = np.einsum("pi,pijl,pj->pl", out, stress[:, TENSOR], out)
+    across = np.einsum("pi,pijl,pj->pl", out, stress[:, TENSOR_TO_VOIGT], out)
     both = np.einsum("pi,pj->pij", out, out) + np.diag([0.0, 0.0, 1.0])
     local = both + 2.0 * nu * (np.eye(3) - both)
-    each = np.stack([local[:, a, b] for a, b in ENTRIES], axis=1)
+    each = np.stack([local[:, a, b] for a, b in VOIGT_TO_TENSOR], axis=1)
     return np.asarray(stress - each[:, :, None] * across[:, None])
 
 
@@ -96,7 +98,9 @@ class AwayFromPressed:
     def of(cls, points: Floats, rings: Rings) -> AwayFromPressed:
         """Of points (P, 3), m."""
         section = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)
-        return cls(arc_of(points), arcs_within(section, rings, 2.0 * BENEATH * rings.radius))
+        return cls(
+            arc_of(points), arcs_within(section, rings, 2.0 * BENEATH_DISTANCE * rings.radius)
+        )
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
         """Which points (P,) are so at an instant."""
@@ -125,10 +129,10 @@ class CutReading:
     def largest(self, c: Floats, pressed: PressedArcs | None = None) -> tuple[Floats, Ints]:
         """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
         value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
-        for k in range(0, len(c) if len(self.rows) else 0, AT_ONCE):
-            here = self.stress(c[k : k + AT_ONCE], pressed, k)
-            point[k : k + AT_ONCE] = self.rows[here.argmax(axis=0)]
-            value[k : k + AT_ONCE] = here.max(axis=0)
+        for k in range(0, len(c) if len(self.rows) else 0, INSTANT_BATCH):
+            here = self.stress(c[k : k + INSTANT_BATCH], pressed, k)
+            point[k : k + INSTANT_BATCH] = self.rows[here.argmax(axis=0)]
+            value[k : k + INSTANT_BATCH] = here.max(axis=0)
         return value, point
 
 
@@ -136,7 +140,7 @@ def distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
     """Of points (P, 3) from the nearest pressed cell, (P,) m."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = np.hypot(points[:, 0], points[:, 1])[:, None], points[:, 2:]
-    angle = 2.0 * np.pi / BINS * np.maximum(arcs_apart(on)[:, arc_of(points)].T - 0.5, 0.0)
+    angle = 2.0 * np.pi / ARC_COUNT * np.maximum(arcs_apart(on)[:, arc_of(points)].T - 0.5, 0.0)
     along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
     square = along**2 + r**2 + rings.radius**2 - 2.0 * r * rings.radius * np.cos(angle)
     square = np.where(on.any(axis=1), square, np.inf)

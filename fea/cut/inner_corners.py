@@ -9,15 +9,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fea.cut.local_model import LocalModel
-from fea.cut.parity import AXES
-from fea.singular.singularities import Singularity
+from fea.cut.parity import AXIS_NAMES
+from fea.singular.singularities import Zone
 from fea.singular.williams import antiplane_exponent, plane_exponent
-from fea.solid.boundary import SMOOTH
+from fea.solid.boundary import MIN_SMOOTH_COSINE
 from fea.solid.sharp_edges import turned_edges
 from pinbase.arrays import Floats, Ints
 
-TURN = math.radians(15.0)  # of an inner corner: less is the mesh of a curved wall
-ADVICE = {
+MIN_CORNER_TURN = math.radians(15.0)  # of an inner corner: less is the mesh of a curved wall
+RADIUS_ADVICE = {
     "flat": "a radius of the flat would make it finite",
     "slot": "a radius of the slot would make it finite",
     "hole": "a bottom_radius of the hole would make it finite",
@@ -29,7 +29,7 @@ ADVICE = {
 class InnerCorner:
     """A singularity, and how far points (P,) are from it, over its radius."""
 
-    singularity: Singularity
+    singularity: Zone
     distance: Floats
 
 
@@ -45,7 +45,7 @@ def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerC
         edge = math.isfinite(angle)
         nu = model.material.poisson_ratio
         at = points[0]
-        singularity = Singularity(
+        singularity = Zone(
             r=float(np.hypot(at[0], at[1])),
             z=float(at[2]) + model.piece.origin,
             kind="sharp corner",
@@ -53,7 +53,7 @@ def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerC
             theory=plane_exponent(angle, nu, "free", "free") if edge else None,
             torsion_theory=antiplane_exponent(angle, "free", "free") if edge else 0.0,
             radius=reach,
-            advice=ADVICE[cut.split()[0]],
+            advice=RADIUS_ADVICE[cut.split()[0]],
             angle=angle,
         )
         out.append(InnerCorner(singularity, np.asarray(cKDTree(points).query(x)[0]) / reach))
@@ -74,7 +74,7 @@ def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
     one, two = names[edges.facets]
     on_mirror = mirror[one] | mirror[two]
     angle = np.where(on_mirror, 2.0 * (np.pi + edges.turn), np.pi + edges.turn)
-    sharp = (cut[one] | cut[two]) & (angle > np.pi + TURN) & ~(mirror[one] & mirror[two])
+    sharp = (cut[one] | cut[two]) & (angle > np.pi + MIN_CORNER_TURN) & ~(mirror[one] & mirror[two])
     found: dict[tuple[str, str], list[int]] = {}
     for k in np.flatnonzero(sharp).tolist():
         pair = [boundaries[i] for i in (one[k], two[k]) if not mirror[i]]
@@ -98,13 +98,13 @@ def _tips(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
         corners = model.surface.corners[reading.face.rows]
         normals = model.surface.normals[reading.face.rows].copy()
         for plane in model.piece.mirrors:
-            axis = AXES.index(plane)
+            axis = AXIS_NAMES.index(plane)
             normals[np.abs(model.space.nodes[corners][..., axis]) < 1e-12, axis] = 0.0
         where = np.searchsorted(reading.nodes, corners)
         total = np.zeros((len(reading.nodes), 3))
         np.add.at(total, where, normals)
         mean = np.linalg.norm(total, axis=1) / np.bincount(where.ravel())
-        tip = reading.nodes[mean < SMOOTH]
+        tip = reading.nodes[mean < MIN_SMOOTH_COSINE]
         if len(tip):
             out[reading.face.name, "itself"] = (tip, math.nan)
     return out

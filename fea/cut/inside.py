@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from geometry import Cut, Pin
 
-MARGIN = 0.1  # of a cut's size, at most the pin's: least distance to the ends of a band about it
+MIN_END_DISTANCE = (
+    0.1  # of a cut's size, at most the pin's: least distance to the ends of a band about it
+)
 
 
 def is_inside(cut: Cut, pin: Pin, z0: float, z1: float) -> bool:
     """Whether what it takes from the surface lies well inside a band between two z, m."""
-    (low, high), margin = cut.opens, MARGIN * min(cut.size, pin.smallest_diameter)
+    (low, high), margin = cut.opens, MIN_END_DISTANCE * min(cut.size, pin.smallest_diameter)
     return z0 + margin < low < high < z1 - margin
 
 

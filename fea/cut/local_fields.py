@@ -9,35 +9,43 @@ from functools import cached_property
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.mesh_result import FELT, AtSingularity, Point
-from fea.core.pin_loads import AnyLoads, require_solved
+from fea.core.mesh_result import FEATURE_READING_DISTANCE, Point, ZoneMaximum
+from fea.core.pin_loads import Loads, require_solved
 from fea.core.pressed import PressedArcs, Rings
 from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
 from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
 from fea.cut.inner_corners import InnerCorner, inner_corners
-from fea.cut.local_model import LocalModel, turned
+from fea.cut.local_model import LocalModel, rotated
 from fea.cut.lost_loads import bearings
 from fea.cut.movement import displacement, rigid
 from fea.cut.region import zone
 from fea.harmonic.beneath import Steps, stairs
 from fea.harmonic.fields import MeridianFields
-from fea.singular.singularities import Singularity, outside
+from fea.singular.singularities import Zone, outside
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 from pinbase.arrays import Floats, Ints, Mask
 
-RATIO = 2.0**0.75  # from one mesh to the next, where stress is high
-ELSEWHERE = 0.4  # power of that elsewhere
-HIGH, APART, MOST_HIGH = 0.95, 0.35, 4  # such places: of the maximum, of the hole apart, so many
-ROUND_OFF = 1e-9  # of a load's amounts
-ON_END = 1e-6  # of a piece's length: nodes on its end
-ENDED = (
+LOCAL_MESH_RATIO = 2.0**0.75  # from one mesh to the next, where stress is high
+CUT_LOW_STRESS_POWER = 0.4  # power of that elsewhere
+CUT_REFINE_ABOVE, CUT_MIN_SPACING, CUT_MAX_PLACES = (
+    0.95,
+    0.35,
+    4,
+)  # such places: of the maximum, of the hole apart, so many
+LOAD_ROUND_OFF = 1e-9  # of a load's amounts
+END_NODE_TOLERANCE = 1e-6  # of a piece's length: nodes on its end
+END_EFFECT_FACTOR = (
     1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
 )
-BESIDE = 5.0  # stress at a cut over what another one changes beside it, at most (4.4 seen)
-ABOUT = 16  # of its nodes on the outline, the nearest ones to there
-RISE = 0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
+NEIGHBOUR_EFFECT_FACTOR = (
+    5.0  # stress at a cut over what another one changes beside it, at most (4.4 seen)
+)
+OUTLINE_NEIGHBOURS = 16  # of its nodes on the outline, the nearest ones to there
+MAX_REFINED_RISE = (
+    0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
+)
 
 
 @dataclass(frozen=True)
@@ -52,7 +60,9 @@ class LocalFineness:
     @staticmethod
     def of(level: int) -> LocalFineness:
         """Of mesh number `level`."""
-        return LocalFineness(RATIO ** (level * ELSEWHERE), RATIO**level)
+        return LocalFineness(
+            LOCAL_MESH_RATIO ** (level * CUT_LOW_STRESS_POWER), LOCAL_MESH_RATIO**level
+        )
 
 
 @dataclass(frozen=True)
@@ -86,7 +96,7 @@ class LocalFields:
     finer: float
     nu: float
 
-    def coefficients(self, loads: AnyLoads) -> Floats:
+    def coefficients(self, loads: Loads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
 
         Raises: ArgumentError when there is no field for a part of the loads.
@@ -106,7 +116,7 @@ class LocalFields:
     def _readings(self) -> dict[object, CutReading]:
         return {}
 
-    def _reading(self, loads: AnyLoads, times: float = 1.0) -> CutReading:
+    def _reading(self, loads: Loads, times: float = 1.0) -> CutReading:
         """What is read under loads, if so many times the distance from inner corners is left out;
         found once.
         """
@@ -128,103 +138,103 @@ class LocalFields:
         both = np.concatenate([rows, amid])
         return CutReading(both, found, free.some(both, len(rows)))
 
-    def largest(self, loads: AnyLoads) -> tuple[Floats, Ints]:
+    def largest(self, loads: Loads) -> tuple[Floats, Ints]:
         """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
         return self._reading(loads).largest(self.coefficients(loads), loads.pressed)
 
-    def varied(self, loads: AnyLoads, times: float) -> float:
+    def varied(self, loads: Loads, times: float) -> float:
         """The largest if so many times the distance from inner corners is left out, Pa."""
         of = self._reading(loads, times)
         return float(of.largest(self.coefficients(loads), loads.pressed)[0].max())
 
-    def beneath(self, loads: AnyLoads, pressed: PressedArcs) -> tuple[Floats, Ints]:
+    def beneath(self, loads: Loads, pressed: PressedArcs) -> tuple[Floats, Ints]:
         """As `largest`, of what lies beneath the contact (fea.core.places)."""
         rows = np.flatnonzero(self.outside())
         of = replace(self._plain(rows), free=AwayFromPressed.of(self.points[rows], pressed.rings))
         return of.largest(self.coefficients(loads), pressed)
 
-    def depths(self, loads: AnyLoads, pressed: PressedArcs, instant: int, least: float) -> Steps:
+    def depths(self, loads: Loads, pressed: PressedArcs, instant: int, least: float) -> Steps:
         """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
         rows = np.flatnonzero(self.outside())
         square = squares(self.stress[rows])(self.coefficients(loads)[[instant]])[:, 0]
         far = distance(self.points[rows], pressed, instant)
         return stairs(np.sqrt(np.maximum(square, 0.0)), far, least)
 
-    def inside(self, loads: AnyLoads) -> tuple[AtSingularity, ...]:
+    def inside(self, loads: Loads) -> tuple[ZoneMaximum, ...]:
         """What is at the inner corners."""
         out = []
         for corner in self.corners:
             (value, point), (felt, _) = (
                 self._within(loads, (corner.distance < 1.0) & (corner.distance >= least))
-                for least in (0.0, FELT)
+                for least in (0.0, FEATURE_READING_DISTANCE)
             )
-            out.append(AtSingularity(value, felt, _point(self.points[point])))
+            out.append(ZoneMaximum(value, felt, _point(self.points[point])))
         return tuple(out)
 
-    def _within(self, loads: AnyLoads, where: Mask) -> tuple[float, int]:
+    def _within(self, loads: Loads, where: Mask) -> tuple[float, int]:
         of = self._plain(np.flatnonzero(where))
         value, point = of.largest(self.coefficients(loads))
         return float(value.max()), int(point[value.argmax()])
 
-    def left_at_ends(self, loads: AnyLoads, instant: int) -> float:
+    def left_at_ends(self, loads: Loads, instant: int) -> float:
         """Of the error at an instant, Pa: what the ends of the piece do."""
-        return ENDED * self._changed(loads, instant, self.ended)
+        return END_EFFECT_FACTOR * self._changed(loads, instant, self.ended)
 
-    def felt_at(self, point: Point, loads: AnyLoads, instant: int) -> float:
+    def felt_at(self, point: Point, loads: Loads, instant: int) -> float:
         """Of the error of another piece at a point (m) at an instant, Pa: it does not know these
         cuts.
         """
         if not self.piece.z0 < point[2] < self.piece.z1:
             return 0.0
         distance = np.linalg.norm(self.points[self.outer] - point, axis=1)
-        about = distance <= np.sort(distance)[min(ABOUT, len(distance)) - 1]
-        return BESIDE * self._changed(loads, instant, about)
+        about = distance <= np.sort(distance)[min(OUTLINE_NEIGHBOURS, len(distance)) - 1]
+        return NEIGHBOUR_EFFECT_FACTOR * self._changed(loads, instant, about)
 
-    def _changed(self, loads: AnyLoads, instant: int, where: Mask) -> float:
+    def _changed(self, loads: Loads, instant: int, where: Mask) -> float:
         square = squares(self.changed[where])(self.coefficients(loads)[instant][None])
         return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
 
-    def may_reach(self, loads: AnyLoads, stress: float) -> bool:
+    def may_reach(self, loads: Loads, stress: float) -> bool:
         """Whether finer meshes may find so much, Pa, here."""
         top = max(float(self.largest(loads)[0].max()), *(s.felt for s in self.inside(loads)), 0.0)
-        return top * (1.0 + RISE / self.finer**2) >= stress
+        return top * (1.0 + MAX_REFINED_RISE / self.finer**2) >= stress
 
-    def swing(self, loads: AnyLoads) -> float:
+    def swing(self, loads: Loads) -> float:
         """The largest von Mises stress of what is not the mean of all instants, Pa."""
         found, c = self._reading(loads).squares, self.coefficients(loads)
         c = c - c.mean(axis=0)
         parts = [found(c[k : k + 64]).max(initial=0.0) for k in range(0, len(c), 64)]
         return float(np.sqrt(max(0.0, *parts)))
 
-    def high(self, loads: AnyLoads, instant: int) -> tuple[Point, ...]:
+    def high(self, loads: Loads, instant: int) -> tuple[Point, ...]:
         """Points near the cuts where stress is nearly the maximum at an instant, well apart; none
         where it is lower there than elsewhere in the piece.
         """
         c, of = self.coefficients(loads)[instant], self._reading(loads)
         value = np.zeros(len(self.points))
         np.maximum.at(value, of.rows, of.stress(c[None], loads.pressed, instant)[:, 0])
-        least, hole = HIGH * value.max(), self.piece.smallest
+        least, hole = CUT_REFINE_ABOVE * value.max(), self.piece.smallest
         low, high = zone(self.piece)
         value *= (self.points[:, 2] > low - hole) & (self.points[:, 2] < high + hole)
         found: list[int] = []
-        apart = APART * hole
+        apart = CUT_MIN_SPACING * hole
         positive = _unmirrored(self.piece, self.points)
         for k in np.argsort(-value, kind="stable"):
-            if value[k] < least or len(found) == MOST_HIGH:
+            if value[k] < least or len(found) == CUT_MAX_PLACES:
                 break
             if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in found):
                 found.append(int(k))
         return tuple(_point(self.points[k]) for k in found)
 
 
-def coefficients_of(loads: AnyLoads, units: tuple[Unit, ...]) -> Floats:
+def coefficients_of(loads: Loads, units: tuple[Unit, ...]) -> Floats:
     """How much of each unit acts at each instant, (T, L).
 
     Raises: ArgumentError when a part of the loads is not among them.
     """
     acting, out = loads.coefficients(), np.zeros((len(loads), len(units)))
     for load, amounts in acting.items():
-        least = ROUND_OFF * np.abs(amounts).max()
+        least = LOAD_ROUND_OFF * np.abs(amounts).max()
         for phase in load.phases:
             if (load, phase) in units:
                 out[:, units.index((load, phase))] = amounts[:, phase]
@@ -295,7 +305,7 @@ def local_fields(
     fields: MeridianFields,
     at_points: Floats,
     units: tuple[Unit, ...],
-    singularities: Sequence[Singularity],
+    singularities: Sequence[Zone],
     distance: float,
     weight: Floats | float = 1.0,
 ) -> LocalFields:
@@ -325,7 +335,7 @@ def local_fields(
     length = model.piece.z1 - model.piece.z0
     at_end = np.zeros(len(points), dtype=bool)
     for end in ends:
-        at_end |= np.abs(points[:, 2] - end) < ON_END * length
+        at_end |= np.abs(points[:, 2] - end) < END_NODE_TOLERANCE * length
     outer = np.flatnonzero(~read.cut)
     uncut = displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
     moved = in_pin(read.moved, model.piece)
@@ -335,7 +345,7 @@ def local_fields(
         units,
         points,
         model.triangles,
-        turned(read.stress, np.broadcast_to(turn_of(model.piece.angle), (len(points), 3, 3))),
+        rotated(read.stress, np.broadcast_to(turn_of(model.piece.angle), (len(points), 3, 3))),
         uncut,
         displaced - rigid(moved[0], points),
         outside(singularities, flat_r, flat_z),

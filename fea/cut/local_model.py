@@ -24,23 +24,25 @@ import scipy.sparse as sp
 
 from fea.core.linear_solver import ConstrainedSystem, SolveError
 from fea.core.material import Material
-from fea.core.voigt import TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT
 from fea.cut.lost_loads import Bearing, trial_forces, trials
-from fea.cut.parity import AXES, Parities
+from fea.cut.parity import AXIS_NAMES, Parities
 from fea.cut.surface_reading import Face, FaceReading, read_face
-from fea.cut.two_level import FACTORED, TwoLevel
+from fea.cut.two_level import MAX_FACTORED_UNKNOWNS, TwoLevel
 from fea.solid.assembly import Discretisation
-from fea.solid.boundary import QUARTERS, area_vectors, quadrature, slopes_at, surface
+from fea.solid.boundary import QUARTER_TRIANGLES, area_vectors, quadrature, slopes_at, surface
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import SolidMesh
 from pinbase.arrays import Floats, Ints, Mask
 
-NO_CLASS = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
-LEAST = 1e-5  # of the tractions of a class: what less of them does is not solved
-UNBALANCED = 0.1  # of the tractions, by the section's mesh
-ROUNDED = 0.06  # scatter of stress on rounded corners on the first mesh, by flats and keyways
-FELT = 0.02  # of the pin's largest stress: less of it is not looked at
-ENDS = ("start", "end")
+MIN_CLASS_TRACTION = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
+TRACTION_RANK_TOLERANCE = 1e-5  # of the tractions of a class: what less of them does is not solved
+MAX_UNBALANCED_TRACTION = 0.1  # of the tractions, by the section's mesh
+ROUNDED_CORNER_SCATTER = (
+    0.06  # scatter of stress on rounded corners on the first mesh, by flats and keyways
+)
+MIN_READ_STRESS = 0.02  # of the pin's largest stress: less of it is not looked at
+END_SURFACES = ("start", "end")
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ class LocalModel:
     def _readings(self) -> list[FaceReading]:
         out = []
         for name in self.space.mesh.boundaries:
-            if name in ENDS or self.mirrored(name) or name in self.clamps:
+            if name in END_SURFACES or self.mirrored(name) or name in self.clamps:
                 continue
             rows = np.flatnonzero(self.surface.on(self.space, (name,)))
             face = Face(name, rows, self.piece.cut_at(name) is not None)
@@ -113,7 +115,9 @@ class LocalModel:
         all pieces.
         """
         parts = [
-            np.full(len(r.nodes), ROUNDED * r.face.name.endswith(("fillet", "mouth")))
+            np.full(
+                len(r.nodes), ROUNDED_CORNER_SCATTER * r.face.name.endswith(("fillet", "mouth"))
+            )
             for r in self.readings
         ]
         return np.asarray(np.concatenate(parts) / self.finer**2)
@@ -149,7 +153,9 @@ class LocalModel:
         by_kind = np.ones(uncut.shape[3], dtype=bool)
         by_kind[: len(shears)] = shears
         by_class = self.parities.split(uncut)
-        largest = np.maximum(np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), FELT * most)
+        largest = np.maximum(
+            np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), MIN_READ_STRESS * most
+        )
         scale = np.where(largest > 0.0, largest, 1.0) / weight
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
@@ -159,7 +165,7 @@ class LocalModel:
         most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
         whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
         for c, parity in enumerate(self.parities.classes):
-            if np.linalg.norm(forces[c]) > NO_CLASS * most:
+            if np.linalg.norm(forces[c]) > MIN_CLASS_TRACTION * most:
                 more, spread = self._spread(by_class[c] / scale, parity, by_kind)
                 u = self._displace(forces[c] + more, parity, whole)
                 moved += self._moved(u, parity) * scale
@@ -180,7 +186,7 @@ class LocalModel:
         across = dict(zip(self.parities.mirrors, parity, strict=True))
         around = Parities(tuple(m for m in across if m != "z"))
         own = around.rigid(tuple(s for m, s in across.items() if m != "z"))
-        for e, name in enumerate(ENDS):
+        for e, name in enumerate(END_SURFACES):
             if name not in boundaries or (name == "start" and "z" in across):
                 continue
             nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
@@ -199,7 +205,7 @@ class LocalModel:
         """
         back = np.concatenate([r.directions for r in self.readings]).swapaxes(1, 2)
         summed = np.tensordot(self.parities.characters.T, by_class, axes=1)
-        found = np.stack([turned(part, back) for part in summed])
+        found = np.stack([rotated(part, back) for part in summed])
         found *= self.parities.stress_signs[:, None, :, None]
         return np.asarray(found.reshape(-1, *found.shape[2:]))
 
@@ -209,7 +215,7 @@ class LocalModel:
         first, out = 0, []
         for r in self.readings:
             corners = np.searchsorted(r.nodes, self.surface.corners[r.face.rows])
-            out.append(first + corners[:, QUARTERS].reshape(-1, 3))
+            out.append(first + corners[:, QUARTER_TRIANGLES].reshape(-1, 3))
             first += len(r.nodes)
         one = np.concatenate(out)
         shift = first * np.arange(len(self.parities.images))
@@ -259,7 +265,9 @@ class LocalModel:
             area = area_vectors(self.space.nodes[corners], x, y)
             normals = self.surface.normals[r.face.rows].mean(axis=1)
             area *= np.sign(np.sum(area * normals[:, None], axis=2))[..., None]
-            local = here[np.searchsorted(r.nodes, corners)][:, :, TENSOR]  # (F, 6, 3, 3, L)
+            local = here[np.searchsorted(r.nodes, corners)][
+                :, :, TENSOR_TO_VOIGT
+            ]  # (F, 6, 3, 3, L)
             at = np.einsum("qi,fiabl->fqabl", shapes, local)
             t = np.einsum("q,fqabl,fqb->fqal", weight, at, area)
             np.add.at(out, corners, -np.einsum("qi,fqal->fial", shapes, t))
@@ -280,9 +288,13 @@ class LocalModel:
                 _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
                 held = at[pivot[:count]]
         left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
-        rank = int(np.sum(size > LEAST * size[0]))
+        rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
         some = left[:, :rank] * size[:rank]
-        found = self._two_level.solve(free, held, some) if self.unknowns > FACTORED else None
+        found = (
+            self._two_level.solve(free, held, some)
+            if self.unknowns > MAX_FACTORED_UNKNOWNS
+            else None
+        )
         if found is None:
             free[held] = 0.0
             found = self._system.solve(self.stiffness.copy(), free, some)
@@ -331,7 +343,7 @@ class LocalModel:
         if not modes.shape[1]:
             return forces
         lost = np.abs(modes.T @ forces) / (np.abs(modes).T @ whole + 1e-300)
-        if not lost.max() < UNBALANCED:
+        if not lost.max() < MAX_UNBALANCED_TRACTION:
             raise SolveError(
                 f"pin {self.piece.profile.name}: the stress of the uncut pin on the cuts is not in "
                 f"equilibrium (by {lost.max():.1e}), so a load acts on what is cut away",
@@ -355,7 +367,7 @@ class LocalModel:
             out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])
             normal = out[here, 2]
             if r.face.cut:
-                normal = -turned(uncut[here], r.directions)[:, 2]
+                normal = -rotated(uncut[here], r.directions)[:, 2]
             plane = E / (1.0 - nu**2)
             out[here, 0] = plane * (e[:, 0] + nu * e[:, 1]) + nu / (1.0 - nu) * normal
             out[here, 1] = plane * (e[:, 1] + nu * e[:, 0]) + nu / (1.0 - nu) * normal
@@ -365,12 +377,12 @@ class LocalModel:
     def _in_faces(self, stress: Floats) -> Floats:
         """Stress (C, P, 6, L) along x, y, z along the faces' directions."""
         directions = np.concatenate([r.directions for r in self.readings])
-        return np.stack([turned(part, directions) for part in stress])
+        return np.stack([rotated(part, directions) for part in stress])
 
 
-def turned(stress: Floats, directions: Floats) -> Floats:
+def rotated(stress: Floats, directions: Floats) -> Floats:
     """Components of stress (P, 6, L) along directions (P, 3, 3)."""
-    s = stress[:, TENSOR]  # (P, 3, 3, L)
+    s = stress[:, TENSOR_TO_VOIGT]  # (P, 3, 3, L)
     t = np.einsum("pia,pabl,pjb->pijl", directions, s, directions, optimize=True)
     return np.stack([t[:, 0, 0], t[:, 1, 1], t[:, 2, 2], t[:, 1, 2], t[:, 0, 2], t[:, 0, 1]], 1)
 
@@ -390,7 +402,7 @@ def _rigid(nodes: Floats) -> Floats:
     """Shifts along the axes and turns about them (3 N, 6), lengths scaled."""
     x = nodes / np.abs(nodes).max()
     modes = np.zeros((len(x), 3, 6))
-    for a in range(len(AXES)):
+    for a in range(len(AXIS_NAMES)):
         b, c = (a + 1) % 3, (a + 2) % 3
         modes[:, a, a] = 1.0
         modes[:, b, 3 + a], modes[:, c, 3 + a] = -x[:, c], x[:, b]

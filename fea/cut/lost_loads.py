@@ -19,8 +19,8 @@ from fea.solid.boundary import SurfaceMesh, area_vectors, quadrature, slopes_at
 from geometry.mesh.cut_piece import Piece
 from pinbase.arrays import Floats, Mask
 
-RADIAL = 0.5  # least cosine between a band's normal and the radius
-ON_BAND = 1e-9  # of a band's length
+MIN_RADIAL_COSINE = 0.5  # least cosine between a band's normal and the radius
+ON_BAND_TOLERANCE = 1e-9  # of a band's length
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,10 @@ class Bearing:
 
     def on(self, x: Floats, normal: Floats) -> Mask:
         """Which points (..., 3) with outward normals are on it."""
-        near = ON_BAND * (self.z1 - self.z0)
+        near = ON_BAND_TOLERANCE * (self.z1 - self.z0)
         between = (x[..., 2] >= self.z0 - near) & (x[..., 2] <= self.z1 + near)
         radial = np.sum(x[..., :2] * normal[..., :2], axis=-1)
-        return np.asarray(between & (radial > RADIAL * np.hypot(x[..., 0], x[..., 1])))
+        return np.asarray(between & (radial > MIN_RADIAL_COSINE * np.hypot(x[..., 0], x[..., 1])))
 
 
 def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearing, ...]:

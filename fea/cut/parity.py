@@ -13,10 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
-from fea.core.voigt import ENTRIES
+from fea.core.voigt import VOIGT_TO_TENSOR
 from pinbase.arrays import Floats, Mask
 
-AXES = "xyz"
+AXIS_NAMES = "xyz"
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Parities:
         out = np.ones((len(self.classes), 3))
         for g, crossed in enumerate(self.classes):
             for mirror, sign in zip(self.mirrors, crossed, strict=True):
-                out[g, AXES.index(mirror)] = sign
+                out[g, AXIS_NAMES.index(mirror)] = sign
         return out
 
     @cached_property
@@ -56,7 +56,7 @@ class Parities:
     @cached_property
     def stress_signs(self) -> Floats:
         """(G, 6) by which the mirrors of an image change the components of a stress."""
-        return np.stack([self.images[:, a] * self.images[:, b] for a, b in ENTRIES], axis=1)
+        return np.stack([self.images[:, a] * self.images[:, b] for a, b in VOIGT_TO_TENSOR], axis=1)
 
     def split(self, stress: Floats) -> Floats:
         """Of stress at all images (G, P, 6, L) the part of each class at the points themselves, (C,
@@ -78,7 +78,7 @@ class Parities:
         """Components that vanish on each mirror."""
         out = {}
         for mirror, sign in zip(self.mirrors, parity, strict=True):
-            across = AXES.index(mirror)
+            across = AXIS_NAMES.index(mirror)
             along = tuple(a for a in range(3) if a != across)
             out[mirror] = (across,) if sign > 0 else along
         return out
@@ -87,7 +87,7 @@ class Parities:
         """(6,) which of the shifts along and the turns about the axes belong to a class."""
         out = np.ones(6, dtype=bool)
         for mirror, sign in zip(self.mirrors, parity, strict=True):
-            across = np.arange(3) == AXES.index(mirror)
+            across = np.arange(3) == AXIS_NAMES.index(mirror)
             shift = np.where(across, -1, 1)
             out &= np.concatenate([shift, -shift]) == sign
         return out

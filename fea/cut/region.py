@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
-from fea.core.peak import Note
+from fea.core.peak import Reason
 from fea.cut.inside import crosses_end, is_inside
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import Zone
 from geometry import Cut, CutPin, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 
-BEYOND = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
-LONGER = 1.6  # times that, where it is seen not to be enough, as in tubes
-NEXT = 0.5  # of the diameter: cuts closer to each other are in one piece
-LEFT = 0.25  # of the diameter: less than that beyond a piece is part of it
-CLEAR = 0.1  # of the diameter, at least between the end of a piece and a step
-SAME = 1e-9  # of the diameter: two lengths
+PIECE_REACH = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
+REACH_FACTOR = 1.6  # times that, where it is seen not to be enough, as in tubes
+MERGE_DISTANCE = 0.5  # of the diameter: cuts closer to each other are in one piece
+MIN_REMAINDER = 0.25  # of the diameter: less than that beyond a piece is part of it
+STEP_CLEARANCE = 0.1  # of the diameter, at least between the end of a piece and a step
+PIECE_LENGTH_TOLERANCE = 1e-9  # of the diameter: two lengths
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def unringed(pin: CutPin) -> CutPin:
     return (pin.whole or pin) if isinstance(pin, RingedCutPin) else pin
 
 
-def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note | None:
+def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reason | None:
     """Why a local solid does not do for this pin, clamped and loaded at surfaces (by name); None
     where it does.
     """
@@ -67,7 +67,7 @@ def refused(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Note
     return _joined(pin, loaded)
 
 
-def _joined(pin: CutPin, loaded: Sequence[str]) -> Note | None:
+def _joined(pin: CutPin, loaded: Sequence[str]) -> Reason | None:
     """The same, where a passage may join cuts in several loaded bands, so that what each loses is
     not known.
     """
@@ -88,7 +88,7 @@ def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float
     )
 
 
-def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
+def corner_refusal(pin: CutPin, singularities: Sequence[Zone]) -> Reason | None:
     """The same, where a cut lies at one of the singularities of the pin without cuts."""
     for cut, feature in pin.cuts.items():
         low, high = feature.opens
@@ -97,8 +97,8 @@ def at_corner(pin: CutPin, singularities: Sequence[Singularity]) -> Note | None:
     return None
 
 
-def _solid(why: str, code: str) -> Note:
-    return Note(
+def _solid(why: str, code: str) -> Reason:
+    return Reason(
         f"solid: the pin is not a body of revolution, and {why}", ("not-axisymmetric", code)
     )
 
@@ -130,7 +130,7 @@ def _ends(cuts: Iterable[Cut]) -> tuple[float, float]:
 def pieces(
     pin: CutPin,
     clamps: tuple[str, ...],
-    beyond: float = BEYOND,
+    beyond: float = PIECE_REACH,
     bands: Sequence[tuple[float, float]] = (),
     apart: float = 1.0,
 ) -> tuple[Piece, ...]:
@@ -142,7 +142,13 @@ def pieces(
     groups = [dict(cuts[:1])]
     for name, cut in cuts[1:]:
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
-        near = NEXT * apart * beyond / BEYOND * _diameter(pin.profile, min(end, low), high)
+        near = (
+            MERGE_DISTANCE
+            * apart
+            * beyond
+            / PIECE_REACH
+            * _diameter(pin.profile, min(end, low), high)
+        )
         if low - end < near:
             groups[-1][name] = cut
         else:
@@ -201,13 +207,13 @@ def _about(pin: Pin, cuts: list[Cut]) -> tuple[float, tuple[str, ...]]:
 
 def _symmetric(pin: Pin, cuts: list[Cut], plane: str) -> bool:
     """Whether a plane through the origin mirrors cuts to cuts."""
-    near = SAME * pin.smallest_diameter
+    near = PIECE_LENGTH_TOLERANCE * pin.smallest_diameter
     return all(any(cut.mirrored(plane).like(o, near) for o in cuts) for cut in cuts)
 
 
 def _end(pin: Pin, z: float, way: float) -> float:
     """Where a piece ends: past steps and fillets that are close, or with the pin."""
-    margin = CLEAR * pin.smallest_diameter
+    margin = STEP_CLEARANCE * pin.smallest_diameter
     order = range(len(pin.segments) - 1)
     for i in order if way > 0.0 else reversed(order):
         a, b = pin.segments[i], pin.segments[i + 1]
@@ -216,7 +222,7 @@ def _end(pin: Pin, z: float, way: float) -> float:
         reach = pin.fillet_at(i) + margin
         if abs(z - pin.stations[i + 1]) < reach:
             z = pin.stations[i + 1] + way * reach
-    least = LEFT * pin.smallest_diameter
+    least = MIN_REMAINDER * pin.smallest_diameter
     return 0.0 if z < least else pin.length if z > pin.length - least else z
 
 

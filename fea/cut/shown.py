@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.voigt import ENTRIES, TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import axis_kept, rigid
-from fea.cut.supports import Support, reached
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.cut.supports import ClampReaction, reached
+from fea.harmonic.evaluate import HarmonicField
 from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats, Ints, Mask
 
-SECTORS = 72  # of the surface, away from the pieces
-NEAR = 40  # points of another piece to which its displacements are fitted
-ACROSS = 0.1  # of their distance from there across the pin counts
-ON_END = 1e-9  # of a piece's length
+CUT_VIEW_SECTORS = 72  # of the surface, away from the pieces
+DISPLACEMENT_FIT_POINTS = 40  # points of another piece to which its displacements are fitted
+TRANSVERSE_DISTANCE_WEIGHT = 0.1  # of their distance from there across the pin counts
+PIECE_END_TOLERANCE = 1e-9  # of a piece's length
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,9 @@ class ShownCut:
     outline: Mask
 
 
-def shown(section: HarmonicAnswer, pieces: Sequence[LocalFields], held: Support | None) -> ShownCut:
+def shown(
+    section: HarmonicField, pieces: Sequence[LocalFields], held: ClampReaction | None
+) -> ShownCut:
     """held: the first clamp, which stays where it is; of a pin without one both ends of its axis
     stay on it.
     """
@@ -72,7 +74,7 @@ def _moved_by(piece: LocalFields, points: Floats, own: int) -> Floats:
     L) m; its own points begin at number `own`. Beside it they do so by its outline.
     """
     z0, z1 = piece.piece.z0, piece.piece.z1
-    near = ON_END * (z1 - z0)
+    near = PIECE_END_TOLERANCE * (z1 - z0)
     out = np.zeros((len(points), 3, len(piece.units)))
     above = np.flatnonzero(points[:, 2] >= z1 - near)
     out[above] = rigid(piece.moved[1] - piece.moved[0], points[above])
@@ -88,8 +90,11 @@ def _beside(piece: LocalFields, points: Floats) -> Floats:
     """The same at points (P, 3) of another piece, inside of its outline too: linear functions that
     fit best what is on the outline all about the axis near there.
     """
-    outline, squeezed = piece.points[piece.outer], np.array([ACROSS, ACROSS, 1.0])
-    count = min(NEAR, len(outline))
+    outline, squeezed = (
+        piece.points[piece.outer],
+        np.array([TRANSVERSE_DISTANCE_WEIGHT, TRANSVERSE_DISTANCE_WEIGHT, 1.0]),
+    )
+    count = min(DISPLACEMENT_FIT_POINTS, len(outline))
     found = cKDTree(outline * squeezed).query(points * squeezed, count)
     distance, near = (np.asarray(x) for x in found)
     confidence = 1.0 - (distance / (1.001 * distance[:, -1:])) ** 2
@@ -100,7 +105,7 @@ def _beside(piece: LocalFields, points: Floats) -> Floats:
 
 
 def _revolved(
-    section: HarmonicAnswer, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
+    section: HarmonicField, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
 ) -> ShownCut:
     """The outline turned about the axis, without what lies in the pieces."""
     fields = section.fields
@@ -120,7 +125,7 @@ def _revolved(
     stress, moved = (
         along(x[: fields.skin])[..., own] for x in (fields.stress, fields.displacement)
     )
-    angle = np.arange(SECTORS) * 2.0 * np.pi / SECTORS
+    angle = np.arange(CUT_VIEW_SECTORS) * 2.0 * np.pi / CUT_VIEW_SECTORS
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * angle[:, None] - phase * np.pi / 2.0
     even, odd = np.cos(psi), np.sin(psi)
@@ -128,26 +133,31 @@ def _revolved(
                       stress[:, None] * even[:, None], stress[:, None] * odd[:, None])  # fmt: skip
     moved = np.where([[True], [False], [True]], moved[:, None] * even[:, None],
                      moved[:, None] * odd[:, None])  # fmt: skip
-    turn = np.zeros((SECTORS, 3, 3))
+    turn = np.zeros((CUT_VIEW_SECTORS, 3, 3))
     turn[:, 0, 0] = turn[:, 1, 1] = np.cos(angle)
     turn[:, 1, 0] = np.sin(angle)
     turn[:, 0, 1] = -np.sin(angle)
     turn[:, 2, 2] = 1.0
-    tensor = np.einsum("sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR], turn, optimize=True)
-    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle),
-                       np.broadcast_to(z[:, None], (len(z), SECTORS))], axis=2)  # fmt: skip
-    i = SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(SECTORS)
-    j = SECTORS * 2 * np.arange(len(keep_rows))[:, None] + (np.arange(SECTORS) + 1) % SECTORS
-    quads = np.stack([i, j, j + SECTORS, i + SECTORS], axis=2).reshape(-1, 4)
+    tensor = np.einsum(
+        "sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR_TO_VOIGT], turn, optimize=True
+    )
+    along = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
+    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), along], axis=2)
+    i = CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(CUT_VIEW_SECTORS)
+    j = (
+        CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None]
+        + (np.arange(CUT_VIEW_SECTORS) + 1) % CUT_VIEW_SECTORS
+    )
+    quads = np.stack([i, j, j + CUT_VIEW_SECTORS, i + CUT_VIEW_SECTORS], axis=2).reshape(-1, 4)
     read = fields.outside(section.singularities)[: fields.skin]
     count = len(units)
     return ShownCut(
         points.reshape(-1, 3),
         quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
-        np.stack([tensor[:, :, a, b] for a, b in ENTRIES], axis=2).reshape(-1, 6, count),
+        np.stack([tensor[:, :, a, b] for a, b in VOIGT_TO_TENSOR], axis=2).reshape(-1, 6, count),
         np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
-        (read[a] & read[b]).repeat(SECTORS),
-        np.ones(len(a) * SECTORS, dtype=bool),
+        (read[a] & read[b]).repeat(CUT_VIEW_SECTORS),
+        np.ones(len(a) * CUT_VIEW_SECTORS, dtype=bool),
     )
 
 

@@ -9,12 +9,12 @@ from scipy.spatial import cKDTree
 
 from fea.core.pressed import PressedArcs
 from fea.core.voigt import von_mises
-from fea.cut.free_points import BESIDE, ON, FreePoints
+from fea.cut.free_points import ON_CYLINDER_TOLERANCE, RING_SIDE_OFFSET, FreePoints
 from fea.cut.shown import ShownCut
 from fea.solid.superposition import squares
 from pinbase.arrays import Floats, Ints, Mask
 
-AT_ONCE = 64  # instants
+INSTANT_BATCH = 64  # instants
 
 
 def free_picture(
@@ -26,8 +26,8 @@ def free_picture(
     free = FreePoints.of(surface.points, surface.outline, pressed.rings)
     most = np.full(len(surface.points), -1.0)
     found = squares(surface.stress)
-    for k in range(0, len(c), AT_ONCE):
-        here = np.sqrt(found(c[k : k + AT_ONCE]))
+    for k in range(0, len(c), INSTANT_BATCH):
+        here = np.sqrt(found(c[k : k + INSTANT_BATCH]))
         for t in range(here.shape[1]):
             here[~free.read(pressed, k + t), t] = -1.0
         np.maximum(most, here.max(axis=1), out=most)
@@ -44,10 +44,10 @@ def free_picture(
 def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mask:
     """On which points (P,) a lug presses, at the end of a ring on both sides of it."""
     rings, (x, y, z) = pressed.rings, surface.points.T
-    off = np.abs(np.hypot(x, y)[:, None] - rings.radius) <= ON * rings.radius
+    off = np.abs(np.hypot(x, y)[:, None] - rings.radius) <= ON_CYLINDER_TOLERANCE * rings.radius
     on = surface.outline.copy()
     for side in (-1.0, 1.0):
-        at = (z + side * BESIDE * float(rings.length.min()))[:, None]
+        at = (z + side * RING_SIDE_OFFSET * float(rings.length.min()))[:, None]
         here = off & (at > rings.start) & (at < rings.end)
         ring = here.argmax(axis=1)
         on &= here.any(axis=1) & pressed.on[instant][ring, arc]

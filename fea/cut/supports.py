@@ -15,16 +15,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fea.core.linear_solver import SolveError
-from fea.core.pin_loads import Amounts, AnyLoads, PinLoads, UnitLoad
+from fea.core.pin_loads import LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.cut.local_fields import LocalFields, coefficients_of
 from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats
 
-LARGEST = 1e8  # condition of the gaps' equations
+MAX_GAP_CONDITION = 1e8  # condition of the gaps' equations
 
 
 @dataclass(frozen=True)
-class Support:
+class ClampReaction:
     """A clamped surface by its name, and z (m) of its middle."""
 
     name: str
@@ -32,7 +32,7 @@ class Support:
 
 
 @dataclass(frozen=True)
-class HeldLoads(PinLoads):
+class LoadsWithReactions(PinLoads):
     """Loads with the motions of clamps that go with them, among `acting` (T, 2) by unit load."""
 
     acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
@@ -42,7 +42,7 @@ class HeldLoads(PinLoads):
         return self.acting
 
 
-def motions(supports: Sequence[Support]) -> tuple[Unit, ...]:
+def motions(supports: Sequence[ClampReaction]) -> tuple[Unit, ...]:
     """Rigid motions of all clamps but the first: along x, y, z, about x (backwards), y, z."""
     out: list[Unit] = []
     for s in supports[1:]:
@@ -52,7 +52,7 @@ def motions(supports: Sequence[Support]) -> tuple[Unit, ...]:
     return tuple(out)
 
 
-BACKWARDS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of these motions, the sign
+MOTION_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of these motions, the sign
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class ClampMotions:
     motions: tuple[Unit, ...]
     amounts: Floats
 
-    def held(self, loads: AnyLoads) -> AnyLoads:
+    def held(self, loads: Loads) -> Loads:
         """Loads with the motions that go with them."""
         if not self.motions:
             return loads
@@ -74,15 +74,15 @@ class ClampMotions:
         for (unit, phase), amount in zip(self.motions, q.T, strict=True):
             both = acting.setdefault(unit, np.zeros((len(loads), 2)))
             both[:, phase] += amount
-        if isinstance(loads, Amounts):
-            return Amounts(loads.case, acting, len(loads), loads.pressed)
-        return HeldLoads(
+        if isinstance(loads, LoadAmounts):
+            return LoadAmounts(loads.case, acting, len(loads), loads.pressed)
+        return LoadsWithReactions(
             loads.case, loads.surfaces, loads.forces, loads.moments, loads.distribution,
             loads.body, loads.terms, loads.times, loads.pressed, acting,
         )  # fmt: skip
 
 
-def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> ClampMotions:
+def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) -> ClampMotions:
     """Of pieces under all units, the motions of clamps among them last.
 
     Raises: SolveError where the gaps cannot be closed.
@@ -92,12 +92,12 @@ def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Cla
     if not moved:
         return ClampMotions(units, (), np.zeros((0, first)))
     there = [reached(s, pieces) for s in supports]
-    gap = np.concatenate([BACKWARDS[:, None] * (x - there[0]) for x in there[1:]])
+    gap = np.concatenate([MOTION_SIGNS[:, None] * (x - there[0]) for x in there[1:]])
     system = np.eye(len(moved)) + gap[:, first:]
     scale = np.tile(
         np.repeat([1.0, pieces[0].piece.profile.largest_diameter], 3), len(supports) - 1
     )
-    if not np.linalg.cond(system * scale[:, None] / scale) < LARGEST:
+    if not np.linalg.cond(system * scale[:, None] / scale) < MAX_GAP_CONDITION:
         raise SolveError(
             f"pin {pieces[0].piece.profile.name}: the reactions of its clamps cannot be found from "
             "local solids",
@@ -106,7 +106,7 @@ def reactions(supports: Sequence[Support], pieces: Sequence[LocalFields]) -> Cla
     return ClampMotions(units[:first], moved, -np.linalg.solve(system, gap[:, :first]))
 
 
-def reached(support: Support, pieces: Sequence[LocalFields]) -> Floats:
+def reached(support: ClampReaction, pieces: Sequence[LocalFields]) -> Floats:
     """The rigid motion of the place of a clamp against the pin's start by all cuts before it,
     (6, L): a shift and a turn about the pin's origin.
     """

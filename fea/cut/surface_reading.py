@@ -23,9 +23,9 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints
 
-NEIGHBOURS = 36  # nodes that a polynomial is fitted to; it has ten terms
-SAME_SIDE = 0.3  # least cosine between the normals of a node and such a neighbour
-_LITTLE = 1e-10  # added where neighbours leave a term open, of their number
+FIT_NODES = 36  # nodes that a polynomial is fitted to; it has ten terms
+MIN_NORMAL_COSINE = 0.3  # least cosine between the normals of a node and such a neighbour
+_REGULARISATION = 1e-10  # added where neighbours leave a term open, of their number
 _POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1))]
 
 
@@ -96,16 +96,16 @@ def _slopes(
     x: Floats, directions: Floats, images: Floats, facing: Floats
 ) -> tuple[sp.csr_matrix, sp.csr_matrix]:
     """At nodes x (P, 3) with directions (P, 3, 3), from values at images (G P, 3) with normals."""
-    count = min(NEIGHBOURS, len(images))
+    count = min(FIT_NODES, len(images))
     distance, near = (np.asarray(found) for found in cKDTree(images).query(x, count))
-    same = np.einsum("psa,pa->ps", facing[near], directions[:, 2]) > SAME_SIDE
+    same = np.einsum("psa,pa->ps", facing[near], directions[:, 2]) > MIN_NORMAL_COSINE
     confidence = (1.0 - (distance / (1.001 * distance[:, -1:])) ** 2) * same
     offsets = np.einsum("psa,pca->psc", images[near] - x[:, None], directions[:, :2])
     reach = distance[:, -1]
     a, b = np.moveaxis(offsets / reach[:, None, None], -1, 0)
     terms = np.stack([a**i * b**j for i, j in _POWERS], axis=1) * confidence[:, None]
     form = terms @ terms.swapaxes(1, 2)
-    definite = form + _LITTLE * form[:, :1, :1] * np.eye(len(_POWERS))
+    definite = form + _REGULARISATION * form[:, :1, :1] * np.eye(len(_POWERS))
     wanted = np.broadcast_to(np.eye(len(_POWERS))[:, 1:3], (*form.shape[:2], 2))
     value = np.linalg.solve(definite, wanted)
     value = value + np.linalg.solve(definite, wanted - form @ value)  # as if nothing were added

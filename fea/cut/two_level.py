@@ -19,12 +19,15 @@ from fea.core.linear_solver import ConstrainedSystem
 from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints
 
-FACTORED = 8_000  # unknowns: as many or fewer are factored in less time
-CONVERGED = 1e-5  # energy of the residual over that of the largest forces, square root
-MOST_STEPS = 60  # 10 to 15 are usual
-DEGREE = 2  # of the polynomial
-SPREAD = 8.0  # largest eigenvalue over the least that it damps
-POWERS, ABOVE = 12, 1.1  # iterations to find the largest one, which is so much above what they find
+MAX_FACTORED_UNKNOWNS = 8_000  # unknowns: as many or fewer are factored in less time
+ENERGY_TOLERANCE = 1e-5  # energy of the residual over that of the largest forces, square root
+MAX_CONJUGATE_GRADIENT_STEPS = 60  # 10 to 15 are usual
+SMOOTHER_DEGREE = 2  # of the polynomial
+SMOOTHER_EIGENVALUE_RATIO = 8.0  # largest eigenvalue over the least that it damps
+POWER_ITERATIONS, EIGENVALUE_MARGIN = (
+    12,
+    1.1,
+)  # iterations to find the largest one, which is so much above what they find
 
 
 class TwoLevel:
@@ -66,8 +69,13 @@ class TwoLevel:
         found, r = np.zeros_like(forces), free * forces
         z = precondition(r)
         energy = np.sum(r * z, axis=0)
-        least, active, x, p = CONVERGED**2 * energy.max(), np.arange(r.shape[1]), found.copy(), z
-        for _ in range(MOST_STEPS):
+        least, active, x, p = (
+            ENERGY_TOLERANCE**2 * energy.max(),
+            np.arange(r.shape[1]),
+            found.copy(),
+            z,
+        )
+        for _ in range(MAX_CONJUGATE_GRADIENT_STEPS):
             done = energy <= least
             if done.any():
                 found[:, active[done]] = x[:, done]
@@ -94,19 +102,22 @@ class TwoLevel:
         jacobi = sp.bsr_matrix((inverse, at, np.arange(self._count + 1)), K.shape).tocsr()
         v = free * np.random.default_rng(0).normal(size=free.shape)
         largest = 0.0
-        for _ in range(POWERS):
+        for _ in range(POWER_ITERATIONS):
             v = jacobi @ (K @ v)
             largest = float(np.linalg.norm(v))
             v /= largest
-        largest *= ABOVE
-        middle, half = 0.5 * largest * (1.0 + 1.0 / SPREAD), 0.5 * largest * (1.0 - 1.0 / SPREAD)
+        largest *= EIGENVALUE_MARGIN
+        middle, half = (
+            0.5 * largest * (1.0 + 1.0 / SMOOTHER_EIGENVALUE_RATIO),
+            0.5 * largest * (1.0 - 1.0 / SMOOTHER_EIGENVALUE_RATIO),
+        )
 
         def smooth(b: Floats, x: Floats | None) -> Floats:
             r = b if x is None else b - free * (K @ x)
             step = (jacobi @ r) / middle
             x = step if x is None else x + step
             ratio = half / middle
-            for _ in range(DEGREE - 1):
+            for _ in range(SMOOTHER_DEGREE - 1):
                 r = r - free * (K @ step)
                 after = 1.0 / (2.0 * middle / half - ratio)
                 step = after * ratio * step + (2.0 * after / half) * (jacobi @ r)

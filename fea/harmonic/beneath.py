@@ -11,19 +11,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.pin_loads import AnyLoads, PinLoads
-from fea.core.places import BENEATH
-from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
+from fea.core.pin_loads import Loads, PinLoads
+from fea.core.places import BENEATH_DISTANCE
+from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
 from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
-from fea.singular.singularities import Singularity, outside
+from fea.singular.singularities import Zone, outside
 from geometry import Pin
 from pinbase.arrays import Floats, Ints, Mask
 
-EVERY = 8  # arcs, of which one is looked at for the reach
-ROUND = 9  # points of a quarter circle about the edge of a lug
-LITTLE = 1e-6  # of the distance: so much farther are points that are meant to be just outside
+ARC_STRIDE = 8  # arcs, of which one is looked at for the reach
+EDGE_CIRCLE_POINTS = 9  # points of a quarter circle about the edge of a lug
+OUTSIDE_MARGIN = (
+    1e-6  # of the distance: so much farther are points that are meant to be just outside
+)
 
 
 Steps = tuple[tuple[float, float], ...]  # of a stress, Pa, and the distance, m, that it reaches
@@ -45,7 +47,7 @@ class Away:
 
     def __init__(self, points: Floats, pressed: PressedArcs) -> None:
         self.pressed, self._known = pressed, dict[int, Ints]()
-        near = arcs_within(points, pressed.rings, 2.0 * BENEATH * pressed.rings.radius)
+        near = arcs_within(points, pressed.rings, 2.0 * BENEATH_DISTANCE * pressed.rings.radius)
         some = (near >= 0).any(axis=1)
         self._near = near[some]
         self._row = np.full(len(points), -1)
@@ -57,7 +59,7 @@ class Away:
 
     def read(self, points: Ints, instants: Ints) -> Mask:
         """On which arcs (J, BINS) pairs of points and instants are read."""
-        out, rows = np.ones((len(points), BINS), dtype=bool), self._row[points]
+        out, rows = np.ones((len(points), ARC_COUNT), dtype=bool), self._row[points]
         for t in np.unique(instants).tolist():
             if t not in self._known:
                 self._known[t] = arcs_apart(self.pressed.on[t])
@@ -77,20 +79,22 @@ def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
     rest = along**2 + (r - rings.radius) ** 2 - distance**2  # 2 r R (cos a - 1) more with the angle
     arm = np.maximum(2.0 * r * rings.radius, np.finfo(float).tiny)
     angle = np.arccos(np.clip(1.0 + rest / arm, -1.0, 1.0))
-    return np.where(rest < 0.0, np.floor(angle / (2.0 * np.pi) * BINS + 0.5), -1).astype(np.int64)
+    return np.where(rest < 0.0, np.floor(angle / (2.0 * np.pi) * ARC_COUNT + 0.5), -1).astype(
+        np.int64
+    )
 
 
 def arcs_apart(on: Mask) -> Ints:
     """How many arcs each (R, BINS) is from the nearest one of a mask; BINS of an empty one."""
     turns = np.tile(on, 3)
-    number = np.arange(3 * BINS)
-    before = np.maximum.accumulate(np.where(turns, number, -BINS), axis=1)
-    after = np.minimum.accumulate(np.where(turns, number, 4 * BINS)[:, ::-1], axis=1)[:, ::-1]
-    apart = np.minimum(number - before, after - number)[:, BINS : 2 * BINS]
-    return np.asarray(np.minimum(apart, BINS))
+    number = np.arange(3 * ARC_COUNT)
+    before = np.maximum.accumulate(np.where(turns, number, -ARC_COUNT), axis=1)
+    after = np.minimum.accumulate(np.where(turns, number, 4 * ARC_COUNT)[:, ::-1], axis=1)[:, ::-1]
+    apart = np.minimum(number - before, after - number)[:, ARC_COUNT : 2 * ARC_COUNT]
+    return np.asarray(np.minimum(apart, ARC_COUNT))
 
 
-def beneath(fields: MeridianFields, loads: AnyLoads, zones: tuple[Singularity, ...]) -> Beneath:
+def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Beneath:
     """Of a pin on which lugs press, outside of singular zones."""
     assert loads.pressed is not None
     around = Circumference(fields, loads, Away(fields.points, loads.pressed))
@@ -104,7 +108,7 @@ def depths(
     fields: MeridianFields,
     loads: PinLoads,
     instant: int,
-    zones: tuple[Singularity, ...],
+    zones: tuple[Zone, ...],
     least: float,
 ) -> Steps:
     """Pairs of a stress, Pa, and the distance, m, from every pressed cell to which it reaches at an
@@ -116,7 +120,7 @@ def depths(
     rows = rows[around.reach(rows, np.array([instant]))[:, 0] > least]
     if not len(rows):
         return ()
-    stress = von_mises(around.stress(rows, instant, ANGLES[::EVERY])).ravel()
+    stress = von_mises(around.stress(rows, instant, ARC_ANGLES[::ARC_STRIDE])).ravel()
     return stairs(stress, _distance(fields.points[rows], loads.pressed, instant).ravel(), least)
 
 
@@ -132,7 +136,7 @@ def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
     return tuple(zip(stress[at].tolist(), away[at].tolist(), strict=True))
 
 
-def _away_from(zones: tuple[Singularity, ...], fields: MeridianFields) -> Mask:
+def _away_from(zones: tuple[Zone, ...], fields: MeridianFields) -> Mask:
     out = outside(zones, *fields.points.T)
     out[fields.unread] = False
     return out
@@ -142,12 +146,12 @@ def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
     """Of points (S, 2) at every EVERY-th arc from the nearest pressed cell, m."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = points[:, :1], points[:, 1:]
-    apart = arcs_apart(on)[:, ::EVERY]
+    apart = arcs_apart(on)[:, ::ARC_STRIDE]
     square = np.full((len(points), apart.shape[1]), np.inf)
     for k, arcs in enumerate(apart):
         if not on[k].any():
             continue
-        angle = np.minimum(np.maximum(arcs - 0.5, 0.0) * 2.0 * np.pi / BINS, np.pi)
+        angle = np.minimum(np.maximum(arcs - 0.5, 0.0) * 2.0 * np.pi / ARC_COUNT, np.pi)
         along = np.maximum(0.0, np.maximum(rings.start[k] - z, z - rings.end[k]))
         R = rings.radius[k]
         square = np.minimum(square, along**2 + r**2 + R**2 - 2.0 * r * R * np.cos(angle))
@@ -159,11 +163,11 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     under each, and about the ends of what they make up.
     """
     bands = [pin.band(name) for name in rings]
-    away = 2.0 * BENEATH * (1.0 + LITTLE)
+    away = 2.0 * BENEATH_DISTANCE * (1.0 + OUTSIDE_MARGIN)
     under = [(b.radius * (1.0 - away), z) for b in bands for z in (b.z0, b.middle, b.z1)]
-    turns = np.linspace(0.0, np.pi / 2.0, ROUND)[1:]
+    turns = np.linspace(0.0, np.pi / 2.0, EDGE_CIRCLE_POINTS)[1:]
     ends = [(z, sign, b.radius) for b in bands for z, sign in ((b.z0, -1.0), (b.z1, 1.0))]
-    near = SAME * pin.length
+    near = RING_END_TOLERANCE * pin.length
     alone = [x for x in ends if sum(abs(x[0] - z) <= near for z, *_ in ends) == 1]
     about = [
         (radius * (1.0 - away * float(np.cos(t))), z + sign * radius * away * float(np.sin(t)))
@@ -176,5 +180,7 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     inside = (points[:, 1] > 0.0) & (points[:, 1] < pin.length)
     points = points[inside]
     inner, outer = pin.radii_at(points[:, 1])
-    keep = (points[:, 0] > inner * (1.0 + LITTLE)) & (points[:, 0] < outer * (1.0 - LITTLE))
+    keep = (points[:, 0] > inner * (1.0 + OUTSIDE_MARGIN)) & (
+        points[:, 0] < outer * (1.0 - OUTSIDE_MARGIN)
+    )
     return np.asarray(points[keep])

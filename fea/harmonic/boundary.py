@@ -10,7 +10,7 @@ from fea.core.tractions import Traction
 from fea.harmonic.assembly import Section, around
 from pinbase.arrays import Floats, Ints
 
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_EDGE_GAUSS_POINTS, _EDGE_GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def shapes(x: Floats) -> Floats:
@@ -81,19 +81,19 @@ class Outline:
 
     def weights(self, rows: Ints) -> Floats:
         """Of the nodes' values in integrals over some edges, length times r, (E, 3) m^2."""
-        x, values = self._nodes[self.nodes[rows]], shapes(_POINTS)
-        along = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_POINTS), x), axis=2)
-        return np.asarray((_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
+        x, values = self._nodes[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
+        along = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
+        return np.asarray((_EDGE_GAUSS_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
 
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
         """On the edges of a surface: z (E, Q), m, and the weights (E, Q, 3) of its nodes' values in
         an integral over length times r, m^2.
         """
         if surface not in self._kept:
-            x, values = self._nodes[self.nodes[self.rows[surface]]], shapes(_POINTS)
+            x, values = self._nodes[self.nodes[self.rows[surface]]], shapes(_EDGE_GAUSS_POINTS)
             at = np.einsum("qi,eia->eqa", values, x)
-            length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_POINTS), x), axis=2)
-            weight = (_WEIGHTS * length * at[..., 0])[..., None] * values
+            length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
+            weight = (_EDGE_GAUSS_WEIGHTS * length * at[..., 0])[..., None] * values
             self._kept[surface] = at[..., 1], weight
         return self._kept[surface]
 

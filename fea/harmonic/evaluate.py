@@ -9,36 +9,42 @@ from functools import lru_cache, partial
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.mesh_result import FELT, MeshResult, Point
-from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
+from fea.core.mesh_result import FEATURE_READING_DISTANCE, MeshMaximum, Point
+from fea.core.pin_loads import Loads, PinLoads, UnitLoad
 from fea.core.solution import Picture
 from fea.harmonic.beneath import just_beneath
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import reader
 from fea.harmonic.kept_fields import FirstMesh
 from fea.harmonic.model import HarmonicModel
-from fea.harmonic.near_singularities import CLOSE, felt_beyond, inside, interval
-from fea.harmonic.quiet_corners import crowd, quiet_corners
+from fea.harmonic.near_singularities import CORNER_ELEMENT_SIZES, felt_beyond, inside, interval
+from fea.harmonic.quiet_corners import low_stress_fillets, numerous_fillets
 from fea.harmonic.revolve import revolve
-from fea.harmonic.stress_recovery import NOWHERE
-from fea.harmonic.superposition import Circumference, Top
+from fea.harmonic.stress_recovery import NO_POINTS
+from fea.harmonic.superposition import Circumference, Crest
 from fea.singular.probes import rim
-from fea.singular.singularities import VARIED, Singularity, smooth_edges
+from fea.singular.singularities import DISTANCE_VARIATIONS, Zone, smooth_edges
 from geometry import Pin
 from geometry.mesh.moved.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats, Mask
 
-SIZE = SectionSize()  # of the first mesh
-EDGE = 0.04  # element at the edge of any band, of the diameter
-LOGARITHM = 0.2  # element at a load's edge, of the excluded distance
-MATTERS = 0.5  # of the maximum elsewhere
-REST = 0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
-ELSEWHERE = 0.5  # power of the refinement where stresses are low
-HIGH, APART, MOST_HIGH = 0.95, 0.1, 3  # places where they are: of the maximum, of r apart, so many
-QUARTER = 0.25  # of a ring of contact pressure: the elements at its ends
-PATCH = 2.0  # elements of the first mesh about such a place, in which all are refined
+FIRST_MESH_SIZE = SectionSize()  # of the first mesh
+BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
+LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
+MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere
+SERIES_REMAINDER_RATIO = (
+    0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
+)
+LOW_STRESS_POWER = 0.5  # power of the refinement where stresses are low
+REFINE_ABOVE, MIN_SPACING, MAX_PLACES = (
+    0.95,
+    0.1,
+    3,
+)  # places where they are: of the maximum, of r apart, so many
+RING_END_ELEMENT = 0.25  # of a ring of contact pressure: the elements at its ends
+PATCH_ELEMENTS = 2.0  # elements of the first mesh about such a place, in which all are refined
 
 
 @dataclass(frozen=True)
@@ -75,7 +81,7 @@ class SectionProblem:
     material: Material
     clamps: tuple[str, ...]
     cases: tuple[PinLoads, ...]
-    singularities: tuple[Singularity, ...]
+    singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
     besides: tuple[UnitLoad, ...] = ()
     near: bool = False
@@ -85,8 +91,8 @@ def harmonic_solution(
     problem: SectionProblem,
     level: int,
     ratio: float,
-    before: Collection[MeshResult] = (),
-    elsewhere: Floats = NOWHERE,
+    before: Collection[MeshMaximum] = (),
+    elsewhere: Floats = NO_POINTS,
     grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
     """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
@@ -100,17 +106,19 @@ def harmonic_solution(
     pin, material, cases = problem.pin, problem.material, problem.cases
     singularities = problem.singularities
     close = tuple(
-        CLOSE[min(level, len(CLOSE) - 1) if _matters(k, before) else 0]
+        CORNER_ELEMENT_SIZES[
+            min(level, len(CORNER_ELEMENT_SIZES) - 1) if _matters(k, before) else 0
+        ]
         for k in range(len(singularities))
     )
     spots = partial(_spots, pin, cases, singularities, close)
     high = dict.fromkeys(singularity for result in before for singularity in result.high)
     finer = list(grades)
     for singularity in high:
-        coarse = size_at(pin, SIZE, spots(1.0), singularity)
-        now = size_at(pin, SIZE.finer(ratio**level), spots(ratio**level), singularity)
-        finer.append(Grade((singularity,), now, PATCH * coarse, SIZE.growth))
-    factor = ratio ** (level * ELSEWHERE if high else level)
+        coarse = size_at(pin, FIRST_MESH_SIZE, spots(1.0), singularity)
+        now = size_at(pin, FIRST_MESH_SIZE.finer(ratio**level), spots(ratio**level), singularity)
+        finer.append(Grade((singularity,), now, PATCH_ELEMENTS * coarse, FIRST_MESH_SIZE.growth))
+    factor = ratio ** (level * LOW_STRESS_POWER if high else level)
 
     loads = _unit_loads(cases) + problem.besides
     rings = tuple(dict.fromkeys(name for load in loads for name, _ in load.parts))
@@ -131,17 +139,21 @@ def harmonic_solution(
         key = pin, elastic, problem.clamps, *mesh
         return (problem.first or FirstMesh()).fields(level, model, key, (loads, read, ends))
 
-    quiet = crowd(pin)
+    quiet = numerous_fillets(pin)
     if quiet:
         known = [result.quiet for result in before]
         quiet = (
             known[0]
             if known
-            else quiet_corners(
-                pin, solved(SIZE, [], quiet), cases, singularities, material.poisson_ratio
+            else low_stress_fillets(
+                pin,
+                solved(FIRST_MESH_SIZE, [], quiet),
+                cases,
+                singularities,
+                material.poisson_ratio,
             )
         )
-    fields, more = _apart(solved(SIZE.finer(factor), finer, quiet), len(elsewhere))
+    fields, more = _apart(solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere))
     return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
 
 
@@ -162,7 +174,12 @@ def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
     """
     bands = (pin.band(name) for name in rings)
     return [
-        Grade(((b.radius, b.z0), (b.radius, b.z1)), QUARTER * b.length, 0.0, SIZE.growth)
+        Grade(
+            ((b.radius, b.z0), (b.radius, b.z1)),
+            RING_END_ELEMENT * b.length,
+            0.0,
+            FIRST_MESH_SIZE.growth,
+        )
         for b in bands
     ]
 
@@ -173,16 +190,16 @@ def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
 
 
 @lru_cache(64)
-def _rims(pin: Pin, singularities: tuple[Singularity, ...]) -> Floats:
+def _rims(pin: Pin, singularities: tuple[Zone, ...]) -> Floats:
     """Points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
     read = [rim(pin, p, d) for p in singularities for d in _distances(p)]
-    return np.concatenate([NOWHERE, *read])
+    return np.concatenate([NO_POINTS, *read])
 
 
-def _distances(singularity: Singularity) -> tuple[float, ...]:
+def _distances(singularity: Zone) -> tuple[float, ...]:
     """From a singularity, m, at which stress is read on a circle about it."""
-    radii = (singularity.varied(times).radius for times in (1.0, *VARIED))
-    return tuple(dict.fromkeys((*radii, FELT * singularity.feature)))
+    radii = (singularity.varied(times).radius for times in (1.0, *DISTANCE_VARIATIONS))
+    return tuple(dict.fromkeys((*radii, FEATURE_READING_DISTANCE * singularity.feature)))
 
 
 def _ends(
@@ -201,7 +218,7 @@ def _ends(
 def _spots(
     pin: Pin,
     cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
+    singularities: tuple[Zone, ...],
     close: tuple[float, ...],
     factor: float,
 ) -> list[Spot]:
@@ -209,7 +226,7 @@ def _spots(
     times finer than on the first mesh.
     """
     spots = [
-        _spot(p, near if p.measured else CLOSE[0] / factor, factor)
+        _spot(p, near if p.measured else CORNER_ELEMENT_SIZES[0] / factor, factor)
         for p, near in zip(singularities, close, strict=True)
     ]
     taken = {(s.r, s.z) for s in spots}
@@ -217,49 +234,50 @@ def _spots(
         band = pin.band(name)
         for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
             d = 2.0 * band.radius
-            spots.append(Spot(*at, EDGE * d / factor, 4.0 * EDGE * d))
+            spots.append(Spot(*at, BAND_EDGE_ELEMENT * d / factor, 4.0 * BAND_EDGE_ELEMENT * d))
     return sorted(spots)
 
 
-def _spot(singularity: Singularity, near: float, factor: float) -> Spot:
+def _spot(singularity: Zone, near: float, factor: float) -> Spot:
     """near: the element there, of the singularity's scale."""
     p = singularity
     size = near * p.scale
     if p.kind == "edge of a load":
-        size = LOGARITHM * p.radius / factor
+        size = LOAD_EDGE_ELEMENT * p.radius / factor
     return Spot(p.r, p.z, size, p.radius)
 
 
-def _matters(singularity: int, before: Collection[MeshResult]) -> bool:
+def _matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
     """Whether stress in a singularity is so large that it may govern, so that its growth is
     measured.
     """
     return any(
-        result.singularities[singularity].felt >= MATTERS * result.maximum for result in before
+        result.singularities[singularity].felt >= MIN_ZONE_STRESS * result.maximum
+        for result in before
     )
 
 
-class HarmonicAnswer:
+class HarmonicField:
     """What a solution says of any loads made of its unit loads (fea.core.solution)."""
 
-    def __init__(self, solution: HarmonicSolution, singularities: tuple[Singularity, ...]) -> None:
+    def __init__(self, solution: HarmonicSolution, singularities: tuple[Zone, ...]) -> None:
         self.solution, self.singularities = solution, singularities
         self.fields = solution.fields
 
-    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
         where it does not exceed that.
         """
         around = self.reader(loads)
         return around.maxima(around.fields.outside(self.singularities), least)
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
         around = self.reader(loads)
         top = around.top(around.fields.outside(self.singularities))
         return top.value, top.instant
 
-    def reader(self, loads: AnyLoads) -> Circumference:
+    def reader(self, loads: Loads) -> Circumference:
         """Where their largest stress is looked for (fea.harmonic.free_surface)."""
         return reader(self.fields, loads, self.solution.nu)
 
@@ -270,10 +288,10 @@ class HarmonicAnswer:
 
 def harmonic_result(
     solution: HarmonicSolution,
-    singularities: tuple[Singularity, ...],
+    singularities: tuple[Zone, ...],
     loads: PinLoads,
-    own: Collection[Singularity] | None = None,
-) -> MeshResult:
+    own: Collection[Zone] | None = None,
+) -> MeshMaximum:
     """Maximum outside the singularities, and what is inside them. own: those of this case, where
     others have more; all by default.
     """
@@ -282,7 +300,7 @@ def harmonic_result(
     mine = singularities if own is None else own
     among = fields.outside(mine)
     top = around.top(among)
-    result = MeshResult(
+    result = MeshMaximum(
         unknowns=fields.unknowns,
         maximum=top.value,
         instant=top.instant,
@@ -301,8 +319,8 @@ def harmonic_result(
 
 def around_governing(
     solution: HarmonicSolution,
-    singularities: tuple[Singularity, ...],
-    loads: AnyLoads,
+    singularities: tuple[Zone, ...],
+    loads: Loads,
     maximum: float,
 ) -> tuple[float, float] | None:
     """The interval of a mesh result without the rest of it, of which the maximum (Pa) is known."""
@@ -313,7 +331,7 @@ def around_governing(
 
 
 def high_places(
-    around: Circumference, points: Floats, among: Mask, top: Top, least: float = HIGH
+    around: Circumference, points: Floats, among: Mask, top: Crest, least: float = REFINE_ABOVE
 ) -> tuple[tuple[float, float], ...]:
     """Points (r, z) where stress is nearly the maximum, `least` of it at least, the highest first,
     well apart.
@@ -325,22 +343,22 @@ def high_places(
     value, _ = around.round(rows, np.full(len(rows), top.instant))
     found: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
-        if value[k] < least * top.value or len(found) == MOST_HIGH:
+        if value[k] < least * top.value or len(found) == MAX_PLACES:
             break
         at = points[rows[k]]
-        if all(np.hypot(*(at - other)) > APART * at[0] for other in found):
+        if all(np.hypot(*(at - other)) > MIN_SPACING * at[0] for other in found):
             found.append(at)
     return tuple((float(r), float(z)) for r, z in found)
 
 
-def _left_out(around: Circumference, loads: PinLoads, top: Top) -> float:
+def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
     """Of a bearing pressure's series, by its last harmonic at the maximum (a thin tube that becomes
     oval feels more of it than a solid pin).
     """
     n, largest = around.last(np.array([top.point]))
     if loads.distribution != "cosine" or n != loads.terms:
         return 0.0
-    return REST * float(largest[0, top.instant])
+    return SERIES_REMAINDER_RATIO * float(largest[0, top.instant])
 
 
 def _location(point: Floats, angle: float) -> Point:

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 
 from fea.core.pin_loads import UnitLoad
 from fea.core.strain_energy import StrainEnergy
-from fea.singular.singularities import Singularity, outside
+from fea.singular.singularities import Zone, outside
 from geometry.mesh.section_mesh import MeridianMesh
 from pinbase.arrays import Floats, Ints, Mask
 
@@ -73,7 +73,7 @@ class MeridianFields:
         """
         return {}
 
-    def outside(self, singularities: Iterable[Singularity]) -> Mask:
+    def outside(self, singularities: Iterable[Zone]) -> Mask:
         """Which of the points may have the maximum: read, and in none of the singularities."""
         out = outside(singularities, *self.points.T)
         out[self.unread] = False

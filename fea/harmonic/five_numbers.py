@@ -11,13 +11,13 @@ import numpy as np
 from fea.harmonic.fields import MeridianFields
 from pinbase.arrays import Floats
 
-EVEN = 3  # so many of the five numbers go as cos psi, the others as sin psi
-COS, SIN = slice(0, EVEN), slice(EVEN, None)
-METRIC = np.zeros((5, 6))  # METRIC^T METRIC is tensor.VON_MISES
-METRIC[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
-METRIC[1, :3] = [-0.5, -0.5, 1.0]
-METRIC[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
-BACK = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
+EVEN_COUNT = 3  # so many of the five numbers go as cos psi, the others as sin psi
+COS, SIN = slice(0, EVEN_COUNT), slice(EVEN_COUNT, None)
+VON_MISES_ROOT = np.zeros((5, 6))  # VON_MISES_ROOT^T VON_MISES_ROOT is tensor.VON_MISES
+VON_MISES_ROOT[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
+VON_MISES_ROOT[1, :3] = [-0.5, -0.5, 1.0]
+VON_MISES_ROOT[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
+COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def numbers(fields: MeridianFields, at: tuple[int, ...]) -> Numbers:
     """Of some of the unit loads, by their numbers; found once for all instants of a case."""
     found: Numbers | None = fields.found.get(at)
     if found is None:
-        five = METRIC @ fields.stress[:, :, at]
+        five = VON_MISES_ROOT @ fields.stress[:, :, at]
         even, odd = (np.square(five[:, part]).sum(axis=1) for part in (COS, SIN))
         found = fields.found[at] = Numbers(five, np.sqrt(np.maximum(even, odd)))
     return found

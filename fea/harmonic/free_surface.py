@@ -18,18 +18,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.pin_loads import AnyLoads
-from fea.core.pressed import ANGLES, BINS, SAME, PressedArcs, Rings
+from fea.core.pin_loads import Loads
+from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import EVERY, Circumference
-from fea.harmonic.surface_stress import AT
+from fea.harmonic.superposition import ALL_INSTANTS, Circumference
+from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
 Floats32 = NDArray[np.float32]
-FAR = 0.06  # of the diameter, to where a cusp is fitted
-FEWEST = 6  # points to which it is
-MOST = 256  # instants whose arcs are kept: some 50 MB
-SPAN = 2.0  # the farthest of them over the nearest
+CUSP_FIT_DISTANCE = 0.06  # of the diameter, to where a cusp is fitted
+MIN_CUSP_POINTS = 6  # points to which it is
+MAX_KEPT_INSTANTS = 256  # instants whose arcs are kept: some 50 MB
+MIN_CUSP_DISTANCE_RATIO = 2.0  # the farthest of them over the nearest
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePo
 
 def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
     skin, x = fields.stress[: fields.skin], fields.points[: fields.skin]
-    middle = x[len(AT) // 2 :: len(AT), 1].repeat(len(AT))
+    middle = x[len(EDGE_STATIONS) // 2 :: len(EDGE_STATIONS), 1].repeat(len(EDGE_STATIONS))
     ring = rings.amid(x[:, 0], x[:, 1], middle)
     rows = np.flatnonzero(ring >= 0)
     relieved = skin[rows] - relief(nu)[:, None] * skin[rows, :1]
@@ -138,11 +138,11 @@ def _beside(
     (x, middle), (ring, side) = skin, edge
     radius, z = float(rings.radius[ring]), float((rings.start if side < 0.0 else rings.end)[ring])
     d = side * (x[:, 1] - z)
-    on, beside = np.abs(x[:, 0] - radius) <= SAME * radius, side * (middle - z) > 0.0
+    on, beside = np.abs(x[:, 0] - radius) <= RING_END_TOLERANCE * radius, side * (middle - z) > 0.0
     ends = d[beside & ~on & (d > 0.0)]  # where the cylinder has ended
-    far = min(2.0 * FAR * radius, float(ends.min(initial=np.inf)))
+    far = min(2.0 * CUSP_FIT_DISTANCE * radius, float(ends.min(initial=np.inf)))
     near = np.flatnonzero(on & beside & (d >= closest) & (d <= far))
-    if len(near) < FEWEST or d[near].max() < SPAN * d[near].min():
+    if len(near) < MIN_CUSP_POINTS or d[near].max() < MIN_CUSP_DISTANCE_RATIO * d[near].min():
         return None
     between = np.flatnonzero(on & beside & (d < d[near].min()))
     return Cusp((radius, z), side, ring, float(rings.exponent[ring]), near, between)
@@ -172,9 +172,9 @@ class FreeSurface:
         """Which of some points are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
-    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = EVERY) -> Mask:
+    def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
         """On which arcs (J, BINS), or some of them, pairs of points and instants are read."""
-        out = np.ones((len(points), len(ANGLES[arcs])), dtype=bool)
+        out = np.ones((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
         some = self._row[points] >= 0
         for t in np.unique(instants).tolist():
             here = np.flatnonzero((instants == t) & some)
@@ -185,7 +185,7 @@ class FreeSurface:
         """Where masked points are read, (P, arcs)."""
         key = self.pressed.on[instant].tobytes(), self.pressed.sector
         if key not in self._known:
-            if len(self._known) == MOST:
+            if len(self._known) == MAX_KEPT_INSTANTS:
                 self._known.clear()
             self._known[key] = self._arcs(instant)
         shut, edges, inner = (x[:, arcs] for x in self._known[key])
@@ -204,7 +204,7 @@ class FreeSurface:
         (E, BINS), and the middles of rings, (R, BINS).
         """
         shut = self.pressed.shut(instant).astype(np.float32)
-        edges = np.ones((len(self.edges), BINS), dtype=bool)
+        edges = np.ones((len(self.edges), ARC_COUNT), dtype=bool)
         for k, near in enumerate(self.beside):
             rows = self._row[near]
             edges[k] = ((self._near[rows[rows >= 0]] @ shut) == 0.0).all(axis=0)
@@ -212,7 +212,7 @@ class FreeSurface:
         return shut, edges, inner
 
 
-def reader(fields: MeridianFields, loads: AnyLoads, nu: float) -> Circumference:
+def reader(fields: MeridianFields, loads: Loads, nu: float) -> Circumference:
     """Where the largest stress of a case is looked for: all of a section's points, or, where lugs
     press on the pin, its surface (what lies beneath: fea.harmonic.beneath).
     """

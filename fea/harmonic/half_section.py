@@ -9,20 +9,20 @@ import numpy as np
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay, cKDTree
 
-from fea.core.pin_loads import AnyLoads
+from fea.core.pin_loads import Loads
 from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
-from fea.singular.singularities import Singularity, outside
+from fea.singular.singularities import Zone, outside
 from pinbase.arrays import Floats, Mask
 
-LEVEL = 1e-9  # of the length: a smaller rise of the outline is round-off
+MIN_OUTLINE_RISE = 1e-9  # of the length: a smaller rise of the outline is round-off
 
 
 class MeridianPlane:
     """The section of one mesh, on which any point can be asked for; zones: excluded ones."""
 
-    def __init__(self, fields: MeridianFields, zones: Iterable[Singularity] = ()) -> None:
+    def __init__(self, fields: MeridianFields, zones: Iterable[Zone] = ()) -> None:
         self.fields, self.zones = fields, tuple(zones)
         self.skin = fields.points[: fields.skin]
 
@@ -42,7 +42,7 @@ class MeridianPlane:
             r = first[here, 0] + part * (second[here, 0] - first[here, 0])
             outer[k] = r.max()
             # Going up the outside, down the bore: without a bore nothing goes down.
-            down = (rise < -LEVEL * float(np.ptp(self.skin[:, 1]))) & (r > 0.0)
+            down = (rise < -MIN_OUTLINE_RISE * float(np.ptp(self.skin[:, 1]))) & (r > 0.0)
             inner[k] = r[down].max(initial=0.0)
         return inner, outer
 
@@ -51,7 +51,7 @@ class MeridianPlane:
         r, z = points.reshape(-1, 2).T
         return outside(self.zones, r, z).reshape(points.shape[:-1])
 
-    def von_mises(self, loads: AnyLoads, instant: int, angle: float, points: Floats) -> Floats:
+    def von_mises(self, loads: Loads, instant: int, angle: float, points: Floats) -> Floats:
         """Stress (2, ..) Pa at points (.., 2), r and z in m, of the half plane at an angle (rad),
         and of the one opposite to it.
         """

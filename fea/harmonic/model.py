@@ -20,7 +20,7 @@ from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.pressure_edge import unread
-from fea.harmonic.stress_recovery import NOWHERE, reading
+from fea.harmonic.stress_recovery import NO_POINTS, reading
 from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
 from pinbase.arrays import Floats, Ints
@@ -188,7 +188,7 @@ class HarmonicModel(HarmonicBody):
     def solve_more(
         self,
         loads: tuple[UnitLoad, ...],
-        extra: Floats = NOWHERE,
+        extra: Floats = NO_POINTS,
         ends: Iterable[tuple[float, float]] = (),
     ) -> MeridianFields:
         """The same as `solve`, of at least these loads: with those of former calls for the same
@@ -216,7 +216,7 @@ class HarmonicModel(HarmonicBody):
     def solve(
         self,
         loads: tuple[UnitLoad, ...],
-        extra: Floats = NOWHERE,
+        extra: Floats = NO_POINTS,
         ends: Iterable[tuple[float, float]] = (),
     ) -> MeridianFields:
         """Unit fields, at `extra` points (P, 2) inside the section too, and close to the `ends` of

@@ -28,10 +28,10 @@ from fea.harmonic.boundary import Outline
 from fea.harmonic.surface_stress import in_axes
 from pinbase.arrays import Floats, Ints
 
-DIRECTIONS = 25  # from the surface on one side of the edge to that on the other
-TOUCHED = 1.5  # elements next to the edge whose stress is of no use
-UNREAD = 3.0  # elements next to it where stress is not read
-SAMPLES = 45  # of the stress further on, from which it is continued
+EDGE_DIRECTIONS = 25  # from the surface on one side of the edge to that on the other
+UNUSABLE_ELEMENTS = 1.5  # elements next to the edge whose stress is of no use
+UNREAD_ELEMENTS = 3.0  # elements next to it where stress is not read
+CONTINUATION_SAMPLES = 45  # of the stress further on, from which it is continued
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def unread(found: tuple[Jump, ...], points: Floats, skin: int) -> Ints:
     first ones, `skin`, are on its outline, where a fillet may begin whose peak must not be missed;
     the last ones are the jumps' own.
     """
-    inside = slice(skin, len(points) - DIRECTIONS * len(found))
+    inside = slice(skin, len(points) - EDGE_DIRECTIONS * len(found))
     close = np.zeros(len(points), dtype=bool)
     for jump in found:
         close[inside] |= np.hypot(*(points[inside] - [jump.r, jump.z]).T) < jump.reach
@@ -92,13 +92,13 @@ def _jump(space: Section, outline: Outline, material: Material, before: int) -> 
     ]
     spacing = float(max(np.linalg.norm(singularity - first), np.linalg.norm(last - singularity)))
     distance = np.hypot(*(space.samples - singularity).T)
-    far = np.flatnonzero(distance > TOUCHED * spacing)
-    nearest = far[np.argsort(distance[far], kind="stable")[:SAMPLES]]
+    far = np.flatnonzero(distance > UNUSABLE_ELEMENTS * spacing)
+    nearest = far[np.argsort(distance[far], kind="stable")[:CONTINUATION_SAMPLES]]
     normal, weights, field = at_edge(
         (first, singularity, last), space.samples[nearest], material.poisson_ratio
     )
     r, z = (float(x) for x in singularity)
-    return Jump(r, z, before, after, normal, UNREAD * spacing, nearest, weights, field)
+    return Jump(r, z, before, after, normal, UNREAD_ELEMENTS * spacing, nearest, weights, field)
 
 
 def at_edge(
@@ -113,7 +113,7 @@ def at_edge(
     weights = at_one_place(samples - middle, np.ones(len(samples)))
     x, y = np.stack([along, -normal]) @ (samples - middle).T
     there = _field(np.arctan2(y, x), along, nu)
-    field = _field(np.linspace(0.0, np.pi, DIRECTIONS), along, nu)
+    field = _field(np.linspace(0.0, np.pi, EDGE_DIRECTIONS), along, nu)
     return normal, weights, field - weights @ there
 
 

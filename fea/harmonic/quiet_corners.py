@@ -11,21 +11,21 @@ import numpy as np
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import reader
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import Zone
 from geometry import Pin
 from geometry.shape.polygon import Rounding
 
-CROWD = 24  # fillets, from which on it is worth a mesh to look
+NUMEROUS_FILLETS_ABOVE = 24  # fillets, from which on it is worth a mesh to look
 # Of the maximum: on 199 fillets of a cantilever the coarse mesh finds 0.90 to 0.99 of what the
 # first mesh of a run does.
-QUIET = 0.8
-ABOUT = 1.5  # radii of a fillet from its corner within which its stress is looked at
+LOW_STRESS_RATIO = 0.8
+FILLET_REACH_RATIO = 1.5  # radii of a fillet from its corner within which its stress is looked at
 
 
-def crowd(pin: Pin) -> tuple[int, ...]:
+def numerous_fillets(pin: Pin) -> tuple[int, ...]:
     """All fillets of a pin, as numbers of corners from 0, if they are many; none otherwise."""
     fillets = _fillets(pin)
-    return tuple(fillets) if len(fillets) > CROWD else ()
+    return tuple(fillets) if len(fillets) > NUMEROUS_FILLETS_ABOVE else ()
 
 
 def _fillets(pin: Pin) -> dict[int, Rounding]:
@@ -35,15 +35,15 @@ def _fillets(pin: Pin) -> dict[int, Rounding]:
     return {i: every[name] for i, name in names if name in every}
 
 
-def quiet_corners(
+def low_stress_fillets(
     pin: Pin,
     fields: MeridianFields,
     cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
+    singularities: tuple[Zone, ...],
     nu: float,
 ) -> tuple[int, ...]:
     """Fillets where no case has nearly as much stress as elsewhere outside the singularities."""
-    quiet, fillets = set(crowd(pin)), _fillets(pin)
+    quiet, fillets = set(numerous_fillets(pin)), _fillets(pin)
     for case in cases:
         around = reader(fields, case, nu)
         among = around.fields.outside(singularities)
@@ -51,7 +51,7 @@ def quiet_corners(
         top = around.top(among).value
         for i in tuple(quiet):
             distance = np.hypot(r - fillets[i].at[0], z - fillets[i].at[1])
-            near = np.flatnonzero(among & (distance <= ABOUT * fillets[i].reach))
-            if around.bound(near).max(initial=0.0) >= QUIET * top:
+            near = np.flatnonzero(among & (distance <= FILLET_REACH_RATIO * fillets[i].reach))
+            if around.bound(near).max(initial=0.0) >= LOW_STRESS_RATIO * top:
                 quiet.remove(i)
     return tuple(sorted(quiet))

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.pressed import ANGLES
+from fea.core.pressed import ARC_ANGLES
 from fea.harmonic.trigonometric_maximum import crest_of_samples, highest_crest, one_wave
 from pinbase.arrays import Floats, Ints, Mask
 
 SAMPLES_PER_WAVE = 5  # of von Mises squared
-CLOSER = 0.1 * float(ANGLES[1])  # rad, of samples about a crest, where those of arcs are 1e-4 off
-ON_SAMPLE = 1e-9  # of an arc
+CREST_SAMPLE_STEP = 0.1 * float(
+    ARC_ANGLES[1]
+)  # rad, of samples about a crest, where those of arcs are 1e-4 off
+ON_SAMPLE_TOLERANCE = 1e-9  # of an arc
 
 
 def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple[Floats, Floats]:
@@ -29,14 +31,14 @@ def crest_all_round(n: Ints, back: Floats, forth: Floats, beat: Floats) -> tuple
 
 def crest_where_read(n: Ints, back: Floats, forth: Floats, read: Mask) -> tuple[Floats, Floats]:
     """The same over the arcs (J, A) that are read (fea.core.pressed)."""
-    square = at_angles(n, back, forth, ANGLES)
+    square = at_angles(n, back, forth, ARC_ANGLES)
     square[~read] = -1.0
     value, angle = crest_of_samples(square)
-    arcs = angle / ANGLES[1]
-    between = np.flatnonzero(np.abs(arcs - np.rint(arcs)) > ON_SAMPLE)
+    arcs = angle / ARC_ANGLES[1]
+    between = np.flatnonzero(np.abs(arcs - np.rint(arcs)) > ON_SAMPLE_TOLERANCE)
     if len(between):
         here = back[between], forth[between]
-        value[between], angle[between] = closer_crest(n, *here, angle[between], CLOSER)
+        value[between], angle[between] = closer_crest(n, *here, angle[between], CREST_SAMPLE_STEP)
     return value, angle
 
 

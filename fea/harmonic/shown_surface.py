@@ -16,17 +16,17 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fea.core.pin_loads import PinLoads
-from fea.core.pressed import BINS, PressedArcs
+from fea.core.pressed import ARC_COUNT, PressedArcs
 from fea.core.voigt import von_mises
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import FreeSurface, surface_points
 from fea.harmonic.superposition import Circumference
 from pinbase.arrays import Floats, Ints, Mask
 
-SECTORS = 60
-FINER = 72, 90, 120, 180, 360  # numbers of sectors that begin where arcs do
-PER_CELL = 2  # sectors at least
-CLOSE = 1e-9  # of the length: points that are one
+VIEW_SECTORS = 60
+FINER_VIEW_SECTORS = 72, 90, 120, 180, 360  # numbers of sectors that begin where arcs do
+MIN_SECTORS_PER_CELL = 2  # sectors at least
+POINT_TOLERANCE = 1e-9  # of the length: points that are one
 
 
 class ShownStress(Protocol):
@@ -58,21 +58,25 @@ def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> ShownSt
 def sectors_of(pressed: PressedArcs | None) -> int:
     """Into how many sectors a surface is divided, so that cells of contact are resolved."""
     if pressed is None:
-        return SECTORS
-    return next(n for n in FINER if n * pressed.sector >= PER_CELL * BINS or n == BINS)
+        return VIEW_SECTORS
+    return next(
+        n
+        for n in FINER_VIEW_SECTORS
+        if n * pressed.sector >= MIN_SECTORS_PER_CELL * ARC_COUNT or n == ARC_COUNT
+    )
 
 
 def _first(x: Floats) -> Mask:
     """Which points (S,) of the skin, in their order, are the first ones in their place."""
     step = np.linalg.norm(np.diff(x, axis=0), axis=1)
-    return np.concatenate([[True], step > CLOSE * np.ptp(x[:, 1])])
+    return np.concatenate([[True], step > POINT_TOLERANCE * np.ptp(x[:, 1])])
 
 
 class _Plain:
     """Under prescribed loads: all of it, and of two points in one place the first."""
 
     def __init__(self, fields: MeridianFields, loads: PinLoads) -> None:
-        self.angles = np.asarray(np.arange(SECTORS) * 2.0 * np.pi / SECTORS)
+        self.angles = np.asarray(np.arange(VIEW_SECTORS) * 2.0 * np.pi / VIEW_SECTORS)
         self.rows = np.flatnonzero(_first(fields.points[: fields.skin]))
         self.around = Circumference(fields, loads)
 
@@ -94,7 +98,7 @@ class _Free:
         self, fields: MeridianFields, loads: PinLoads, pressed: PressedArcs, nu: float
     ) -> None:
         count = sectors_of(pressed)
-        self.pressed, self.arcs = pressed, np.arange(count) * (BINS // count)
+        self.pressed, self.arcs = pressed, np.arange(count) * (ARC_COUNT // count)
         self.angles = np.asarray(np.arange(count) * 2.0 * np.pi / count)
         of = surface_points(fields, pressed.rings, nu)
         self.x, self.cusps = fields.points[: fields.skin], of.cusps
@@ -145,7 +149,9 @@ class _Free:
             off = np.abs(self.x[:, 1] - z)
             first = near[off[near].argmin()]
             away = np.hypot(self.x[:, 0] - self.x[near[0], 0], off)
-            rows = np.union1d(between, np.flatnonzero(away <= CLOSE * np.ptp(self.x[:, 1])))
+            rows = np.union1d(
+                between, np.flatnonzero(away <= POINT_TOLERANCE * np.ptp(self.x[:, 1]))
+            )
             ends = self.around.stress(np.array([edge, first]), instant, self.angles[here])
             part = (off[rows] / off[first])[:, None, None]
             places = np.ix_(self.place[rows], np.flatnonzero(here))

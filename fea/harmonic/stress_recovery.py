@@ -13,12 +13,12 @@ from fea.core.local_fit import continuation, nearest
 from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes
-from fea.harmonic.pressure_edge import DIRECTIONS, Jump, jumps
-from fea.harmonic.surface_stress import AT, skin
+from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, Jump, jumps
+from fea.harmonic.surface_stress import EDGE_STATIONS, skin
 from pinbase.arrays import Floats, Ints, Mask
 
-NOWHERE = np.zeros((0, 2))
-AXIS = 1e-9  # r on it at most, of the largest
+NO_POINTS = np.zeros((0, 2))
+ON_AXIS_TOLERANCE = 1e-9  # r on it at most, of the largest
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,9 @@ class Reading:
         inner, rough, inside = np.split(fitted, np.cumsum([len(self.inner), len(self.rough)]))
         at_nodes = np.zeros((len(self.space.nodes), 6, K))
         at_nodes[self.rough] = rough
-        from_inside = np.einsum("qi,eiak->eqak", shapes(AT), at_nodes[self.outline.nodes])
+        from_inside = np.einsum(
+            "qi,eiak->eqak", shapes(EDGE_STATIONS), at_nodes[self.outline.nodes]
+        )
         found = skin(self.space, self.outline, self.material, n, u, traction)
         on_skin = np.where(self.extrapolated[..., None, None], from_inside, found.stress)
         displacements = [found.displacement.reshape(-1, 3, K), u[self.inner]]
@@ -105,9 +107,9 @@ def points_of_nodes(outline: Outline, count: int) -> Ints:
     """(N,) which of a reading's points is at each of `count` nodes."""
     row = np.zeros(count, dtype=np.int64)
     inner = np.flatnonzero(~_mask(count, outline.nodes))
-    row[inner] = len(AT) * len(outline.nodes) + np.arange(len(inner))
-    first = len(AT) * np.arange(len(outline.nodes))
-    for node, at in ((2, len(AT) // 2), (1, len(AT) - 1), (0, 0)):
+    row[inner] = len(EDGE_STATIONS) * len(outline.nodes) + np.arange(len(inner))
+    first = len(EDGE_STATIONS) * np.arange(len(outline.nodes))
+    for node, at in ((2, len(EDGE_STATIONS) // 2), (1, len(EDGE_STATIONS) - 1), (0, 0)):
         row[outline.nodes[:, node]] = first + at
     return row
 
@@ -125,19 +127,19 @@ def reading(
     outline: Outline,
     material: Material,
     clamps: tuple[str, ...] = (),
-    inside: Floats = NOWHERE,
+    inside: Floats = NO_POINTS,
     ends: Iterable[tuple[float, float]] = (),
 ) -> Reading:
     """clamps: surfaces that are clamped. inside: points (I, 2), m. ends: places on the outline
     where a pressure ends.
     """
     found = jumps(space, outline, material, ends)
-    on_jumps = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(DIRECTIONS, axis=0)
-    skin_at = np.einsum("qi,eia->eqa", shapes(AT), space.nodes[outline.nodes])
+    on_jumps = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(EDGE_DIRECTIONS, axis=0)
+    skin_at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), space.nodes[outline.nodes])
     count = len(space.nodes)
     inner = np.flatnonzero(~_mask(count, outline.nodes))
     constrained = outline.constrained(clamps)
-    on_axis = AXIS * space.nodes[:, 0].max()
+    on_axis = ON_AXIS_TOLERANCE * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
     rough = np.flatnonzero(_mask(count, outline.nodes[constrained], axis))
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]

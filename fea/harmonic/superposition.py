@@ -25,26 +25,30 @@ from typing import Protocol
 
 import numpy as np
 
-from fea.core.pin_loads import AnyLoads, require_solved
+from fea.core.pin_loads import Loads, require_solved
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.five_numbers import BACK, COS, EVEN, SIN, numbers
+from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, EVEN_COUNT, SIN, numbers
 from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled
-from fea.harmonic.trigonometric_maximum import at_most, closed
+from fea.harmonic.trigonometric_maximum import closed, upper_bound
 from pinbase.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
 
-FIRST = 16  # pairs of points and instants that are sampled to begin with
-CHUNK = 4096  # pairs sampled at once
-POINTS = 64  # points looked at together
-FEWER = 16  # the same at all instants and angles, so that they stay in the processor's cache
-LOWEST = 4  # harmonics whose sum is sampled for a closer bound
-FEW = 4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
-EVERY = slice(None)
+FIRST_PAIRS = 16  # pairs of points and instants that are sampled to begin with
+PAIR_BATCH = 4096  # pairs sampled at once
+POINT_BATCH = 64  # points looked at together
+CACHED_POINT_BATCH = (
+    16  # the same at all instants and angles, so that they stay in the processor's cache
+)
+LOW_HARMONICS = 4  # harmonics whose sum is sampled for a closer bound
+MAX_QUADRATIC_FORM_LOADS = (
+    4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
+)
+ALL_INSTANTS = slice(None)
 
 
 @dataclass(frozen=True)
-class Top:
+class Crest:
     """The largest von Mises stress (Pa), at a point (its number), an instant and an angle (rad)."""
 
     value: float
@@ -68,9 +72,7 @@ class Region(Protocol):
 class Circumference:
     """A case on the section's points; region: where these are read, all round by default."""
 
-    def __init__(
-        self, fields: MeridianFields, loads: AnyLoads, region: Region | None = None
-    ) -> None:
+    def __init__(self, fields: MeridianFields, loads: Loads, region: Region | None = None) -> None:
         self.region = region
         acting = loads.coefficients()
         require_solved(loads.case, acting, fields.loads)
@@ -99,7 +101,7 @@ class Circumference:
         """Whether only odd harmonics act, so that half a turn changes the signs of stresses."""
         return bool((self._n % 2 == 1).all())
 
-    def bound(self, points: Ints, instants: Instants = EVERY) -> Floats:
+    def bound(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
         """At least the largest von Mises stress over the circumference, (J, T) Pa, at points (J,)
         and instants; exactly it where only one harmonic acts.
         """
@@ -118,9 +120,9 @@ class Circumference:
         wave = self._waves[-1]
         return int(self._n[wave.start]), self._alone(points, wave)
 
-    def _alone(self, points: Ints, wave: slice, instants: Instants = EVERY) -> Floats:
+    def _alone(self, points: Ints, wave: slice, instants: Instants = ALL_INSTANTS) -> Floats:
         five = self._five[points, :, wave]
-        if wave.stop - wave.start > FEW:
+        if wave.stop - wave.start > MAX_QUADRATIC_FORM_LOADS:
             return self._summed(five, wave, instants)
         first, second, mixed = (x[instants] for x in self._products(wave))
         even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, COS], five[:, SIN]))
@@ -166,14 +168,14 @@ class Circumference:
         """Whether any of the points of a mask (S,) does so at any instant; value: Pa."""
         return bool(self._search(among, together=True, least=value, soon=True)[0].max() > value)
 
-    def top(self, among: Mask, least: float = 0.0) -> Top:
+    def top(self, among: Mask, least: float = 0.0) -> Crest:
         """Over the points of a mask (S,) and all instants; of the value `least`, Pa, where none
         exceeds that.
         """
         value, point = self._search(among, together=True, least=least)
         instant = int(value.argmax())
         angle = self.round(point[[instant]], np.array([instant]))[1]
-        return Top(float(value[instant]), int(point[instant]), instant, float(angle[0]))
+        return Crest(float(value[instant]), int(point[instant]), instant, float(angle[0]))
 
     def _search(
         self, among: Mask, together: bool, least: float = 0.0, soon: bool = False
@@ -188,14 +190,14 @@ class Circumference:
         best = np.full(self.count, least)
         point = np.full(self.count, rows[0] if len(rows) else 0)
         if len(self._waves) > 1 and len(rows):
-            i, t = self._likely(rows[:POINTS], together)
+            i, t = self._likely(rows[:POINT_BATCH], together)
             _raise(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
-        for k in range(0, len(rows), POINTS):
+        for k in range(0, len(rows), POINT_BATCH):
             if reach[k] <= (best.max() if together else best.min()):
                 break
             if soon and best.max() > least:
                 break
-            here = rows[k : k + POINTS]
+            here = rows[k : k + POINT_BATCH]
             hopeful = self.reach(here).max(axis=0) > (best.max() if together else best)
             if not hopeful.any():
                 continue
@@ -221,7 +223,7 @@ class Circumference:
         reach = self.reach(points)
         if not together:
             return points[reach.argmax(axis=0)], np.arange(self.count)
-        most = np.argsort(-reach, axis=None, kind="stable")[:FIRST]
+        most = np.argsort(-reach, axis=None, kind="stable")[:FIRST_PAIRS]
         i, t = np.unravel_index(most, reach.shape)
         return points[i], t
 
@@ -230,17 +232,17 @@ class Circumference:
         harmonics act: of the lowest ones together, sampled, and of each of the others.
         """
         at = np.flatnonzero(instants)
-        low, high = self._waves[:LOWEST], self._waves[LOWEST:]
+        low, high = self._waves[:LOW_HARMONICS], self._waves[LOW_HARMONICS:]
         if not high:
             return self.bound(points, at)
         rest = self._sum(points, high, at)
         out = rest + self._sum(points, low, at)
         i, t = np.nonzero(out > (beat[at] if isinstance(beat, np.ndarray) else beat))
         degree = 2 * int(self._n[low[-1].start])
-        for k in range(0, len(i), CHUNK):
-            here, now = i[k : k + CHUNK], t[k : k + CHUNK]
+        for k in range(0, len(i), PAIR_BATCH):
+            here, now = i[k : k + PAIR_BATCH], t[k : k + PAIR_BATCH]
             samples = self._samples(points[here], at[now], low, degree)
-            together = np.sqrt(at_most(samples, degree)) + rest[here, now]
+            together = np.sqrt(upper_bound(samples, degree)) + rest[here, now]
             out[here, now] = np.minimum(out[here, now], together)
         return out
 
@@ -254,10 +256,10 @@ class Circumference:
     def _reach(self) -> Floats:
         """The largest of these at any instant, (S,) Pa."""
         rows = np.arange(self.points)
-        parts = [rows[k : k + CHUNK] for k in range(0, self.points, CHUNK)]
+        parts = [rows[k : k + PAIR_BATCH] for k in range(0, self.points, PAIR_BATCH)]
         return np.concatenate([self.reach(part).max(axis=1, initial=0.0) for part in parts])
 
-    def reach(self, points: Ints, instants: Instants = EVERY) -> Floats:
+    def reach(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
         """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
         return np.asarray((self._each[points] @ self._most[:, instants]) * (1.0 + 1e-12))
 
@@ -270,7 +272,7 @@ class Circumference:
         """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which
         change meanwhile: the highest ones first, then more and more.
         """
-        batch = FIRST if together else max(FIRST, self.count)
+        batch = FIRST_PAIRS if together else max(FIRST_PAIRS, self.count)
         while True:
             i, t = np.nonzero(bound > (best.max() if together else best))
             if not len(i):
@@ -291,8 +293,8 @@ class Circumference:
         """
         beat = np.zeros(len(points)) if beat is None else beat
         value, angle = np.zeros(len(points)), np.zeros(len(points))
-        for k in range(0, len(points), CHUNK):
-            here = np.arange(k, min(k + CHUNK, len(points)))
+        for k in range(0, len(points), PAIR_BATCH):
+            here = np.arange(k, min(k + PAIR_BATCH, len(points)))
             some = np.zeros(len(here), dtype=bool)
             if self.region is not None:
                 some = self.region.masked(points[here])
@@ -329,15 +331,20 @@ class Circumference:
         for w, wave in enumerate(waves):
             five = np.ascontiguousarray(self._five[one, :, wave])
             a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
-            back[:, :EVEN, w], back[:, EVEN:, w] = a[:, :EVEN], -b[:, EVEN:]
-            forth[:, :EVEN, w], forth[:, EVEN:, w] = b[:, :EVEN], a[:, EVEN:]
+            back[:, :EVEN_COUNT, w], back[:, EVEN_COUNT:, w] = a[:, :EVEN_COUNT], -b[:, EVEN_COUNT:]
+            forth[:, :EVEN_COUNT, w], forth[:, EVEN_COUNT:, w] = (
+                b[:, :EVEN_COUNT],
+                a[:, EVEN_COUNT:],
+            )
         return back, forth
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
         """Largest von Mises stress (J, A) Pa over all instants at points (J,) and angles (rad);
         read: (J, A, T) where it counts, all by default; -1 where it never does.
         """
-        parts = (slice(k, k + FEWER) for k in range(0, len(points), FEWER))
+        parts = (
+            slice(k, k + CACHED_POINT_BATCH) for k in range(0, len(points), CACHED_POINT_BATCH)
+        )
         out = [
             self._over_time(points[part], angles, None if read is None else read[part])
             for part in parts
@@ -374,7 +381,7 @@ class Circumference:
             c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
             back = first[:, None] * c[:, None] + second[:, None] * s[:, None]
             forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
-            out += np.where(BACK, back, forth)
+            out += np.where(COSINE_COMPONENTS, back, forth)
         return out
 
 

@@ -23,11 +23,11 @@ import numpy as np
 from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes, slopes
-from fea.solid.boundary import SMOOTH
+from fea.solid.boundary import MIN_SMOOTH_COSINE
 from pinbase.arrays import Floats, Ints
 
-AT = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # where on an edge
-_GAUSS = 1.0 / np.sqrt(3.0)
+EDGE_STATIONS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # where on an edge
+_GAUSS_POINT = 1.0 / np.sqrt(3.0)
 _TRACTION_JUMP = 1e-9
 
 
@@ -67,14 +67,14 @@ def on_edges(
     """The same of edges (E, 3, 2) whose nodes are `moved` (E, 3, 3, K), with those that go on
     smoothly before and after each (`smooth_neighbours`).
     """
-    at = np.einsum("qi,eia->eqa", shapes(AT), x)
-    tangent = np.einsum("qi,eia->eqa", slopes(AT), x)
+    at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), x)
+    tangent = np.einsum("qi,eia->eqa", slopes(EDGE_STATIONS), x)
     tangent /= np.linalg.norm(tangent, axis=2, keepdims=True)
-    U = np.einsum("qi,eiak->eqak", shapes(AT), moved)
+    U = np.einsum("qi,eiak->eqak", shapes(EDGE_STATIONS), moved)
     r = np.maximum(at[..., 0], 1e-6 * at[..., 0].max())[..., None]
     stretch, shear = _strains(neighbours, n, x, moved)
     e_tt = (U[..., 0, :] + n * U[..., 1, :]) / r
-    applied = np.einsum("qi,eiak->eqak", shapes(AT), traction)
+    applied = np.einsum("qi,eiak->eqak", shapes(EDGE_STATIONS), traction)
     return Skin(at, tangent, U, _stress(material, tangent, stretch, e_tt, shear, applied))
 
 
@@ -82,7 +82,7 @@ def _strains(
     neighbours: tuple[Ints, Ints], n: Ints | int, x: Floats, moved: Floats
 ) -> tuple[Floats, Floats]:
     """e_ss and 2 e_st at the points, (E, 5, K) each; both are zero in rigid motions."""
-    at = np.array([-_GAUSS, _GAUSS])
+    at = np.array([-_GAUSS_POINT, _GAUSS_POINT])
     along = slopes(at)
     path = np.einsum("qi,eia->eqa", along, x)
     step = np.linalg.norm(path, axis=2)
@@ -94,15 +94,18 @@ def _strains(
     r = np.einsum("qi,ei->eq", shapes(at), x[..., 0])[..., None]
     shear = change[:, :, 1] - (t_r * (n * u_r + u_t) + t_z * n * u_z) / r
     value = np.stack([stretch, shear], axis=2)  # (E, 2, 2, K)
-    weights = np.stack([(1.0 - AT / _GAUSS) / 2.0, (1.0 + AT / _GAUSS) / 2.0], axis=1)
+    weights = np.stack(
+        [(1.0 - EDGE_STATIONS / _GAUSS_POINT) / 2.0, (1.0 + EDGE_STATIONS / _GAUSS_POINT) / 2.0],
+        axis=1,
+    )
     out = np.einsum("pq,eqck->epck", weights, value)
     half = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(np.zeros(1)), x), axis=2)[:, 0]
     before, after = neighbours
-    a, c = half * _GAUSS, half * (1.0 - _GAUSS)
+    a, c = half * _GAUSS_POINT, half * (1.0 - _GAUSS_POINT)
     left, right = before >= 0, after >= 0
 
     def cubic(rows: Ints, p: int, samples: list[Floats], places: list[Floats]) -> None:
-        w = _lagrange(half[rows] * AT[p], np.stack(places, axis=1))
+        w = _lagrange(half[rows] * EDGE_STATIONS[p], np.stack(places, axis=1))
         out[rows, p] = np.einsum("eq,eqck->eck", w, np.stack(samples, axis=1))
 
     e, f = np.flatnonzero(right), after[right]
@@ -129,7 +132,7 @@ def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[In
     here = np.flatnonzero(after >= 0)
     there = after[here]
     jump = np.abs(traction[here, 1] - traction[there, 0]).max(axis=(1, 2))
-    broken = (np.sum(ends[here, 1] * ends[there, 0], axis=1) < SMOOTH) | (
+    broken = (np.sum(ends[here, 1] * ends[there, 0], axis=1) < MIN_SMOOTH_COSINE) | (
         jump > _TRACTION_JUMP * np.abs(traction).max(initial=0.0)
     )
     after[here[broken]] = -1

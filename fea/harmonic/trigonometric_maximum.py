@@ -15,9 +15,13 @@ import numpy as np
 
 from pinbase.arrays import Floats, Ints
 
-FINER = 4  # times as many angles as samples: D h = 0.3 where there are 5 samples for a degree
-STEPS = 40  # of Newton's method at most, or of bisection where that leaves the interval
-CLOSE = 1e-6  # the last step of Newton's method, of a wave; what is left is of its square
+ANGLES_PER_SAMPLE = (
+    4  # times as many angles as samples: D h = 0.3 where there are 5 samples for a degree
+)
+MAX_CREST_STEPS = 40  # of Newton's method at most, or of bisection where that leaves the interval
+CREST_STEP_TOLERANCE = (
+    1e-6  # the last step of Newton's method, of a wave; what is left is of its square
+)
 
 
 def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) -> Floats:
@@ -27,15 +31,15 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     """
     count = samples.shape[1]
     best = samples.argmax(axis=1) * (2.0 * np.pi / count)
-    hopeful = np.flatnonzero(at_most(samples, degree) > beat)
+    hopeful = np.flatnonzero(upper_bound(samples, degree) > beat)
     k = np.arange(degree + 1)
     c = np.fft.rfft(samples[hopeful], axis=1)[:, : degree + 1] / count
-    count *= FINER
+    count *= ANGLES_PER_SAMPLE
     step = 2.0 * np.pi / count
     samples, slope = (np.fft.irfft(x, count, axis=1) * count for x in (c, 1j * k * c))
     c[:, 1:] *= 2.0
     top = samples.max(axis=1)
-    near = samples >= (2.0 * top - at_most(samples, degree))[:, None]
+    near = samples >= (2.0 * top - upper_bound(samples, degree))[:, None]
     near |= np.roll(near, -1, axis=1)
     row, at = np.nonzero(near & (slope > 0.0) & (np.roll(slope, -1, axis=1) <= 0.0))
     before, after = slope[row, at], slope[row, (at + 1) % count]
@@ -47,7 +51,7 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     return np.asarray(best)
 
 
-def at_most(samples: Floats, degree: int) -> Floats:
+def upper_bound(samples: Floats, degree: int) -> Floats:
     """What polynomials that have these samples (J, A) reach at most, (J,)."""
     arch = degree * np.pi / samples.shape[1]
     top = samples.max(axis=1)
@@ -77,14 +81,14 @@ def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
     which it goes up and down, from a guess.
     """
     k = np.arange(c.shape[1])
-    for _ in range(STEPS):
+    for _ in range(MAX_CREST_STEPS):
         wave = c * np.exp(1j * k * angle[:, None])
         first, second = -(wave.imag @ k), -(wave.real @ k**2)
         low, high = np.where(first > 0.0, angle, low), np.where(first > 0.0, high, angle)
         there = angle - first / np.where(second < 0.0, second, -np.inf)
         inside = (second < 0.0) & (there >= low) & (there <= high)
         angle, last = np.where(inside, there, (low + high) / 2.0), angle
-        if np.all(np.abs(angle - last) * k[-1] <= CLOSE):
+        if np.all(np.abs(angle - last) * k[-1] <= CREST_STEP_TOLERANCE):
             break
     return angle
 

@@ -10,11 +10,11 @@ from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
 from fea.core.places import SectionPlace
-from fea.section.section_stress import AtSection, SectionAnswer
+from fea.section.section_stress import AtSection, SectionField
 
 # Of stress by the forces of a contact, by the meshes of the flexibilities of pin and lugs: elements
 # half as long change it by 0.0002 at most (benchmarks/joints/cells.py).
-FLEXIBILITIES = 0.001
+FLEXIBILITY_ERROR = 0.001
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class FoundSection:
 
 
 def found_section(
-    answer: SectionAnswer,
+    answer: SectionField,
     loads: PinLoads,
     between: Between | None,
     tolerance: float,
@@ -72,5 +72,5 @@ def found_section(
     at = answer.place(loads)
     parts = ErrorParts(mesh=0.0, time=rise, model=answer.held_twice(at) * at.value)
     if cells is not None:
-        parts = replace(parts, mesh=FLEXIBILITIES * at.value, cells=cells * at.value)
+        parts = replace(parts, mesh=FLEXIBILITY_ERROR * at.value, cells=cells * at.value)
     return FoundSection(at, parts, loads.at(np.array([at.instant])))

@@ -6,22 +6,22 @@ import math
 from dataclasses import replace
 
 from fea.core.material import Material
-from fea.core.peak import Note, Peak, accuracy
+from fea.core.peak import Maximum, Reason, accuracy
 from fea.core.pin_loads import PinLoads
 from fea.core.places import ContactPlace, Place, Places, SurfacePlace
 from fea.section.place import FoundSection
 
-IN_SECTION = ("in-section",)
-OF_THE_SURFACE = ("within-tolerance", "above-tolerance", "too-few-meshes", "no-notch-factor")
+SECTION_CODES = ("in-section",)
+SURFACE_CODES = ("within-tolerance", "above-tolerance", "too-few-meshes", "no-notch-factor")
 
 
 def row_of(
-    surface: Peak,
+    surface: Maximum,
     section: FoundSection | None,
     material: Material,
     tolerance: float,
     links: PinLoads | None = None,
-) -> Peak:
+) -> Maximum:
     """A surface's peak with its section's: what governs is the row. links: the loads of the links
     at the section's instant, if they are not the section's own.
     """
@@ -42,7 +42,7 @@ def row_of(
     return replace(_by_section(surface, section, tolerance, links), places=places)
 
 
-def _surface(peak: Peak) -> SurfacePlace:
+def _surface(peak: Maximum) -> SurfacePlace:
     assert peak.max_von_mises is not None
     assert peak.error_estimate is not None
     assert peak.location is not None
@@ -51,7 +51,7 @@ def _surface(peak: Peak) -> SurfacePlace:
     )
 
 
-def _looser(peak: Peak, error: float, tolerance: float) -> Peak:
+def _looser(peak: Maximum, error: float, tolerance: float) -> Maximum:
     """With an error (Pa) that the other place may add: a row is as uncertain as the larger of both
     may be.
     """
@@ -73,7 +73,7 @@ def _looser(peak: Peak, error: float, tolerance: float) -> Peak:
     )
 
 
-def _at_least(peak: Peak, low: float) -> Peak:
+def _at_least(peak: Maximum, low: float) -> Maximum:
     """With an interval that begins at a stress (Pa), if it has one: sections have that much."""
     if peak.interval is None:
         return peak
@@ -84,15 +84,15 @@ def _at_least(peak: Peak, low: float) -> Peak:
 
 
 def _by_section(
-    surface: Peak, section: FoundSection, tolerance: float, links: PinLoads | None
-) -> Peak:
+    surface: Maximum, section: FoundSection, tolerance: float, links: PinLoads | None
+) -> Maximum:
     at, relative = section.at, section.parts.total / section.at.value
     known = section.known(tolerance)
     own = accuracy(relative, tolerance, known)
     singular = surface.verdict == "singular"
     _, more, rest = surface.note.partition("; ")
-    others = tuple(code for code in surface.reasons if code not in OF_THE_SURFACE)
-    note = Note("", IN_SECTION) + own + Note(more + rest, others)
+    others = tuple(code for code in surface.reasons if code not in SURFACE_CODES)
+    note = Reason("", SECTION_CODES) + own + Reason(more + rest, others)
     row = replace(
         surface,
         max_von_mises=at.value,
@@ -116,7 +116,7 @@ def _by_section(
     return _looser(row, surface.upper_end - at.value, tolerance)
 
 
-def with_contact(peak: Peak, contact: ContactPlace) -> Peak:
+def with_contact(peak: Maximum, contact: ContactPlace) -> Maximum:
     """With what only contact has."""
     if peak.places is None:
         return peak

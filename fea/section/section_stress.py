@@ -24,18 +24,20 @@ from fea.beam.round_section import Circle, weakest
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import Amounts, AnyLoads, PinLoads
+from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
 from fea.core.solution import Picture
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.superposition import Circumference, Top
+from fea.harmonic.superposition import Circumference, Crest
 from geometry import Pin
 from pinbase.arrays import Floats, Mask
 
-ALONG = 9  # sections between two stations, both ends included
-ACROSS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
-CLOSER = 33  # points between two of these, about the angle, and along the pin, near the largest
-SAME = 1e-9  # relative: a section must have so much more than another
-NEAR = np.radians(2.0)  # of that angle
+SECTIONS_BETWEEN_STATIONS = 9  # sections between two stations, both ends included
+WALL_FRACTIONS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
+CLOSER_POINTS = (
+    33  # points between two of these, about the angle, and along the pin, near the largest
+)
+MIN_SECTION_GAIN = 1e-9  # relative: a section must have so much more than another
+CLOSER_ANGLE = np.radians(2.0)  # of that angle
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,7 @@ class AtSection:
         return plastic_use(self.section, *forces, strength)
 
 
-class SectionAnswer:
+class SectionField:
     """Of a pin clamped at surfaces (by its own names), or in balance, under any loads made of the
     unit loads of some cases (fea.core.solution: Answer).
 
@@ -71,15 +73,15 @@ class SectionAnswer:
     """
 
     def __init__(
-        self, pin: Pin, material: Material, clamps: tuple[str, ...], cases: Sequence[AnyLoads]
+        self, pin: Pin, material: Material, clamps: tuple[str, ...], cases: Sequence[Loads]
     ) -> None:
         units = tuple(dict.fromkeys(load for case in cases for load in acting(case)))
         self.forces, self.pin = stepped_beam(pin, material, units, clamps), pin
         self.nu = material.poisson_ratio
         stations = self.forces.stations
         free = np.array(self.forces.free, dtype=np.intp)
-        self._cells = np.repeat(free, ALONG)
-        part = np.tile(np.linspace(0.0, 1.0, ALONG), len(free))
+        self._cells = np.repeat(free, SECTIONS_BETWEEN_STATIONS)
+        part = np.tile(np.linspace(0.0, 1.0, SECTIONS_BETWEEN_STATIONS), len(free))
         self._z = stations[self._cells] + part * np.diff(stations)[self._cells]
 
     @cached_property
@@ -87,7 +89,7 @@ class SectionAnswer:
         """Stress of each unit load at points of the sections, section by section."""
         inside = self.forces.inside(self._cells, self._z)
         sections = sections_at(self.pin, self.forces, self._cells, self._z)
-        each = {s: _at_radii(s, ACROSS, self.nu) for s in set(sections)}
+        each = {s: _at_radii(s, WALL_FRACTIONS, self.nu) for s in set(sections)}
         radii = np.array([each[s][0] for s in sections])
         per_force = np.array([each[s][1] for s in sections])
         stress = np.einsum("srcq,sqk->srck", per_force, inside)
@@ -103,17 +105,17 @@ class SectionAnswer:
             0,
         )
 
-    def _felt(self, loads: AnyLoads) -> Amounts:
+    def _felt(self, loads: Loads) -> LoadAmounts:
         """Loads without what no section notices."""
         known = set(self.forces.loads)
         found = {load: x for load, x in loads.coefficients().items() if load in known}
-        return Amounts(loads.case, found, len(loads))
+        return LoadAmounts(loads.case, found, len(loads))
 
-    def maxima(self, loads: AnyLoads, least: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
         """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
         return self.around(loads).maxima(self.all, least)
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
         top = self._top(loads)
         return top.value, top.instant
@@ -127,17 +129,17 @@ class SectionAnswer:
         """All points of the sections."""
         return np.ones(len(self.fields.points), dtype=bool)
 
-    def around(self, loads: AnyLoads) -> Circumference:
+    def around(self, loads: Loads) -> Circumference:
         """A case on these points."""
         return Circumference(self.fields, self._felt(loads))
 
-    def _top(self, loads: AnyLoads) -> Top:
+    def _top(self, loads: Loads) -> Crest:
         return self.around(loads).top(self.all)
 
-    def place(self, loads: AnyLoads) -> AtSection:
+    def place(self, loads: Loads) -> AtSection:
         """Where and when the largest is, and what acts there."""
         top = self._top(loads)
-        row = top.point // len(ACROSS)
+        row = top.point // len(WALL_FRACTIONS)
         cell = self._cells[row]
         z = self._closer_z(row)
         cells = np.full(len(z), cell)
@@ -147,7 +149,7 @@ class SectionAnswer:
         both = zip(sections, forces, strict=True)
         found = [self._closer(section, tuple(x), top) for section, x in both]
         values = np.array([value for value, _, _ in found])
-        k = int(values.argmax()) if values.max() > (1.0 + SAME) * values[0] else 0
+        k = int(values.argmax()) if values.max() > (1.0 + MIN_SECTION_GAIN) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
         value, r, angle = found[k]
         return AtSection(
@@ -165,19 +167,22 @@ class SectionAnswer:
         """A section by its number, and others near it between the same stations, m."""
         z, cell = float(self._z[row]), self._cells[row]
         start, end = self.forces.stations[cell : cell + 2]
-        step = (end - start) / (ALONG - 1)
-        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER)
+        step = (end - start) / (SECTIONS_BETWEEN_STATIONS - 1)
+        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER_POINTS)
         return np.concatenate([[z], near])
 
     def _closer(
-        self, section: Circle, forces: tuple[Floats, ...], top: Top
+        self, section: Circle, forces: tuple[Floats, ...], top: Crest
     ) -> tuple[float, float, float]:
         """Value, radius and angle of the largest stress in a section, near a point of it."""
-        number = top.point % len(ACROSS)
-        ends = (ACROSS[max(number - 1, 0)], ACROSS[min(number + 1, len(ACROSS) - 1)])
-        radii, per_force = _at_radii(section, np.linspace(*ends, CLOSER), self.nu)
+        number = top.point % len(WALL_FRACTIONS)
+        ends = (
+            WALL_FRACTIONS[max(number - 1, 0)],
+            WALL_FRACTIONS[min(number + 1, len(WALL_FRACTIONS) - 1)],
+        )
+        radii, per_force = _at_radii(section, np.linspace(*ends, CLOSER_POINTS), self.nu)
         V, M, N, T = forces  # (2,) each: by phase, V and M of x and y
-        turns = top.angle + np.linspace(-NEAR, NEAR, CLOSER)
+        turns = top.angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
         c, s = np.cos(turns), np.sin(turns)
         square = np.zeros((len(radii), len(turns)))
         for row, factor in ((ZZ, 1.0), (RZ, 3.0), (TZ, 3.0)):

@@ -12,17 +12,17 @@ from scipy.optimize import minimize_scalar
 
 from pinbase.arrays import Floats
 
-FEWEST = 8  # points in the range
-SPAN = 5.0  # the range must cover this ratio of distances
-WORST = 0.05  # rms of relative differences: more is no power
-LIMITS = (0.01, 0.95)
+MIN_FIT_POINTS = 8  # points in the range
+MIN_DISTANCE_RATIO = 5.0  # the range must cover this ratio of distances
+MAX_FIT_ERROR = 0.05  # rms of relative differences: more is no power
+EXPONENT_LIMITS = (0.01, 0.95)
 
 
 def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:
     """s from stresses (J,) at distances (J,), q = `following`; None if they show no such growth."""
     if (
-        len(distance) < FEWEST
-        or np.ptp(np.log(distance)) < np.log(SPAN)
+        len(distance) < MIN_FIT_POINTS
+        or np.ptp(np.log(distance)) < np.log(MIN_DISTANCE_RATIO)
         or not np.all(stress > 0.0)
     ):
         return None
@@ -33,9 +33,9 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
         parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
         return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])
 
-    best = minimize_scalar(lambda s: fitted(s)[0], bounds=LIMITS, method="bounded")
+    best = minimize_scalar(lambda s: fitted(s)[0], bounds=EXPONENT_LIMITS, method="bounded")
     square, amplitude = fitted(float(best.x))
-    return float(best.x) if amplitude > 0.0 and square < WORST**2 else None
+    return float(best.x) if amplitude > 0.0 and square < MAX_FIT_ERROR**2 else None
 
 
 def strength(distance: Floats, stress: Floats, exponent: float, following: float = 0.0) -> float:

@@ -31,11 +31,11 @@ from scipy.optimize import brentq
 from fea.core.material import Material
 from geometry import ArgumentError
 
-RIGHT = math.pi / 2.0  # the angle of a lug's edge
-LEAST = 1e-9  # exponents below are those of no singularity
+RIGHT_ANGLE = math.pi / 2.0  # the angle of a lug's edge
+MIN_EXPONENT = 1e-9  # exponents below are those of no singularity
 
 
-def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT) -> float:
+def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) -> float:
     """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug, in plane strain; 0 where
     they stay finite.
 
@@ -46,7 +46,7 @@ def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT) -> flo
     return edge_exponent(pin.plane_compliance, lug.plane_compliance, angle)
 
 
-def edge_exponent(pin: float, lug: float, angle: float = RIGHT) -> float:
+def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
     """The same from (1 - nu^2) / E of both, in the same unit; 0 is rigid. Only their ratio counts.
 
     Raises: ArgumentError if both are rigid or one is negative; as `lug_edge_exponent`.
@@ -60,9 +60,9 @@ def edge_exponent(pin: float, lug: float, angle: float = RIGHT) -> float:
             f"compliances must not be negative, nor both zero: {pin:g} and {lug:g}", "not-positive"
         )
     share = lug / (pin + lug)
-    if _h(1.0 - LEAST, share, angle) >= 0.0:
+    if _h(1.0 - MIN_EXPONENT, share, angle) >= 0.0:
         return 0.0
-    return float(brentq(lambda s: _h(1.0 - s, share, angle), LEAST, 0.5, xtol=1e-15))
+    return float(brentq(lambda s: _h(1.0 - s, share, angle), MIN_EXPONENT, 0.5, xtol=1e-15))
 
 
 def next_power(pin: Material, lug: Material) -> float:
@@ -71,7 +71,7 @@ def next_power(pin: Material, lug: Material) -> float:
     """
     pin_part, lug_part = pin.plane_compliance, lug.plane_compliance
     share = lug_part / (pin_part + lug_part)
-    return float(brentq(lambda L: _h(L, share, RIGHT), 1.2, 2.0, xtol=1e-12)) - 1.0
+    return float(brentq(lambda L: _h(L, share, RIGHT_ANGLE), 1.2, 2.0, xtol=1e-12)) - 1.0
 
 
 def _h(L: float, share: float, angle: float) -> float:

@@ -10,20 +10,20 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 from skfem import Element, ElementTetP1, ElementTetP2
 
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import Zone
 from geometry import Pin
 from pinbase.arrays import Floats, Ints
 
-RIM = 32  # points round a singularity in the section
-ROUND = 36  # points about the axis
-NEAREST = 12  # elements by their middles, among which the one round a point is looked for
+RIM_POINTS = 32  # points round a singularity in the section
+CIRCUMFERENCE_POINTS = 36  # points about the axis
+NEAREST_ELEMENTS = 12  # elements by their middles, among which the one round a point is looked for
 
 _ELEMENTS: dict[int, Element] = {4: ElementTetP1(), 10: ElementTetP2()}
 
 
-def rim(pin: Pin, singularity: Singularity, distance: float) -> Floats:
+def rim(pin: Pin, singularity: Zone, distance: float) -> Floats:
     """Points (P, 2), r and z in m, inside the pin at a `distance` (m) from a singularity."""
-    angle = 2.0 * np.pi * (np.arange(RIM) + 0.5) / RIM
+    angle = 2.0 * np.pi * (np.arange(RIM_POINTS) + 0.5) / RIM_POINTS
     x = distance * np.stack([np.cos(angle), np.sin(angle)], axis=1) + [singularity.r, singularity.z]
     inner, outer = pin.radii_at(x[:, 1])
     little = min(1e-3 * singularity.radius, 1e-2 * distance)
@@ -33,8 +33,10 @@ def rim(pin: Pin, singularity: Singularity, distance: float) -> Floats:
 
 
 def all_round(points: Floats) -> Floats:
-    """Points (P, 2) of a section turned about the axis: (ROUND P, 3), x, y, z in m."""
-    angle = 2.0 * np.pi * np.arange(ROUND)[:, None] / ROUND
+    """Points (P, 2) of a section turned about the axis: (CIRCUMFERENCE_POINTS P, 3), x, y, z in
+    m.
+    """
+    angle = 2.0 * np.pi * np.arange(CIRCUMFERENCE_POINTS)[:, None] / CIRCUMFERENCE_POINTS
     r, z = points.T
     x = np.stack([r * np.cos(angle), r * np.sin(angle), z + 0.0 * angle], axis=2)
     return np.asarray(x.reshape(-1, 3))
@@ -49,7 +51,7 @@ def interpolation(nodes: Floats, elements: Ints, points: Floats) -> sp.csr_matri
     d = nodes.shape[1]
     kind = _ELEMENTS[elements.shape[1]]
     corners = nodes[elements[:, : d + 1]]
-    count = min(NEAREST, len(corners))
+    count = min(NEAREST_ELEMENTS, len(corners))
     near = np.asarray(cKDTree(corners.mean(axis=1)).query(points, count)[1])
     near = near.reshape(len(points), count)
     origin = corners[near, 0]

@@ -12,20 +12,24 @@ import numpy as np
 
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Arc, Pin, Vertex, meridian, vertices
-from geometry.shape.polygon import SMOOTH
+from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
 from pinbase.arrays import Floats, Mask
 
 Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 
-VARIED = (0.5, 2.0)  # times the excluded distance, which is a convention
-FILLET = 0.1  # of the smaller diameter: the radius to try
-LOGARITHM = 0.1  # of the distance of a power: a logarithm is felt that much closer only
-OWN_ARC = 0.25  # of the radius of an arc that begins at a singularity: so far it is nearly straight
-OVER_FIELD = 10.0  # what meshes are scaled by over the reach of a singular field
+DISTANCE_VARIATIONS = (0.5, 2.0)  # times the excluded distance, which is a convention
+MIN_ADVISED_FILLET = 0.1  # of the smaller diameter: the radius to try
+LOGARITHM_DISTANCE_RATIO = (
+    0.1  # of the distance of a power: a logarithm is felt that much closer only
+)
+STRAIGHT_ARC_SHARE = (
+    0.25  # of the radius of an arc that begins at a singularity: so far it is nearly straight
+)
+MESH_SCALE_RATIO = 10.0  # what meshes are scaled by over the reach of a singular field
 
 
 @dataclass(frozen=True)
-class Singularity:
+class Zone:
     """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
 
     between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
@@ -55,16 +59,16 @@ class Singularity:
         object.__setattr__(self, "feature", min(self.feature, self.radius))
         object.__setattr__(self, "scale", min(self.scale, 2.0 * self.r))
 
-    def varied(self, times: float) -> Singularity:
+    def varied(self, times: float) -> Zone:
         """With so many times the distance left out, but no farther than where the next feature
         begins.
         """
         return replace(self, radius=times * self.radius)
 
-    def up_to(self, *distances: float) -> Singularity:
+    def up_to(self, *distances: float) -> Zone:
         """With features whose stress counts from these distances, m, on."""
         limit = min(self.limit, *distances, math.inf)
-        return replace(self, limit=limit, scale=min(self.scale, OVER_FIELD * limit))
+        return replace(self, limit=limit, scale=min(self.scale, MESH_SCALE_RATIO * limit))
 
     @property
     def measured(self) -> bool:
@@ -99,7 +103,7 @@ def find_singularities(
     loaded: tuple[str, ...],
     nu: float,
     distance: float = 0.1,
-) -> tuple[Singularity, ...]:
+) -> tuple[Zone, ...]:
     """Every such singularity, in the order of `vertices`. The zone of each ends where a fillet or a
     groove begins: farther away, its term K d^-theory is not what governs stress. Those of other
     singularities may overlap it, since neither has stress that counts.
@@ -118,7 +122,7 @@ def find_singularities(
         singularity = _singularity(pin, v, constrained, pushed, nu, distance)
         if singularity is not None:
             feature = _feature(every, k, constrained)
-            here = replace(singularity, feature=feature, scale=OVER_FIELD * feature)
+            here = replace(singularity, feature=feature, scale=MESH_SCALE_RATIO * feature)
             found.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
     return tuple(found)
 
@@ -132,9 +136,10 @@ def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
 
 def begins(gap: float, radius: float) -> float:
     """How far (m) from a singularity stress is still its own beside a fillet, a groove or a hole of
-    some radius (m): up to it, or, where it begins there or nearly so, OWN_ARC of its radius.
+    some radius (m): up to it, or, where it begins there or nearly so, STRAIGHT_ARC_SHARE of its
+    radius.
     """
-    return max(gap, OWN_ARC * radius)
+    return max(gap, STRAIGHT_ARC_SHARE * radius)
 
 
 @lru_cache(64)
@@ -142,7 +147,7 @@ def _inner_arcs(pin: Pin) -> tuple[Arc, ...]:
     return tuple(edge for edge in meridian(pin) if isinstance(edge, Arc) and edge.turn < 0.0)
 
 
-def outside(singularities: Iterable[Singularity], r: Floats, z: Floats) -> Mask:
+def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
     """Which of the points at r, z (S,), m, are in none of the singularities."""
     out = np.ones(len(r), dtype=bool)
     for p in singularities:
@@ -163,7 +168,7 @@ def smooth_edges(
         if names & set(v.between)
         and not constrained & set(v.between)
         and not set(v.between) <= set(cells)
-        and abs(v.angle - math.pi) <= SMOOTH
+        and abs(v.angle - math.pi) <= SMOOTH_ANGLE_TOLERANCE
     )
 
 
@@ -175,9 +180,9 @@ def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], 
 
 def _singularity(
     pin: Pin, v: Vertex, constrained: set[str], pushed: set[str], nu: float, distance: float
-) -> Singularity | None:
+) -> Zone | None:
     first, second = (_side(name, constrained) for name in v.between)
-    smooth = abs(v.angle - math.pi) <= SMOOTH
+    smooth = abs(v.angle - math.pi) <= SMOOTH_ANGLE_TOLERANCE
     omega = math.pi if smooth else v.angle
     plane = plane_exponent(omega, nu, first, second)
     torsion = antiplane_exponent(omega, first, second)
@@ -186,12 +191,12 @@ def _singularity(
     if max(plane, torsion) > 0.0:
         clamped = "clamped" in (first, second)
         kind = "edge of a clamp" if clamped else "sharp corner"
-        advice = INSTEAD_OF_CLAMP if clamped else _fillet(pin, v)
+        advice = CLAMP_ADVICE if clamped else _fillet(pin, v)
     elif smooth and "clamped" not in (first, second) and pushed & set(v.between):
-        kind, advice, reach = "edge of a load", _INSTEAD_OF_TRACTION, reach * LOGARITHM
+        kind, advice, reach = "edge of a load", _TRACTION_ADVICE, reach * LOGARITHM_DISTANCE_RATIO
     else:
         return None
-    return Singularity(v.r, v.z, kind, v.between, plane, torsion, reach, advice, angle=v.angle)
+    return Zone(v.r, v.z, kind, v.between, plane, torsion, reach, advice, angle=v.angle)
 
 
 def _free_of(arc: Arc, at: tuple[float, float]) -> float:
@@ -215,7 +220,7 @@ def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
             here, i = every[i], (i + step) % len(every)
             total += math.dist((here.r, here.z), (every[i].r, every[i].z))
             clamped = {name in constrained for name in every[i].between}
-            if len(clamped) > 1 or abs(every[i].angle - math.pi) > SMOOTH:
+            if len(clamped) > 1 or abs(every[i].angle - math.pi) > SMOOTH_ANGLE_TOLERANCE:
                 break
         return total
 
@@ -226,13 +231,11 @@ def _side(name: str, constrained: set[str]) -> Side:
     return "clamped" if name in constrained else "free"
 
 
-INSTEAD_OF_CLAMP = (
-    "model the hub that supports the pin, or replace the clamp by loads in equilibrium"
-)
-_INSTEAD_OF_TRACTION = (
+CLAMP_ADVICE = "model the hub that supports the pin, or replace the clamp by loads in equilibrium"
+_TRACTION_ADVICE = (
     'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
 )
-_BORE = "a radius here would make it finite: the bore_radius of the wider segment"
+_BORE_ADVICE = "a radius here would make it finite: the bore_radius of the wider segment"
 
 
 def _fillet(pin: Pin, v: Vertex) -> str:
@@ -242,14 +245,15 @@ def _fillet(pin: Pin, v: Vertex) -> str:
     here, there = left.diameters[1], right.diameter
     thin, d = (i, here) if here < there else (i + 1, there)
     if abs(2.0 * v.r - d) > abs(2.0 * v.r - max(left.bores[1], right.bore)):
-        return _BORE
+        return _BORE_ADVICE
     step = abs(here - there) / 2.0 or math.inf
     band = pin.bands[thin]
     limit, what = min(
         (step, "the height of the step"), (band.length / 2.0, f"half the length of {band.name}")
     )
-    if limit >= FILLET * d:
-        return f"a fillet of at least {FILLET:g} x the smaller diameter here would make it finite"
+    if limit >= MIN_ADVISED_FILLET * d:
+        least = f"{MIN_ADVISED_FILLET:g} x the smaller diameter"
+        return f"a fillet of at least {least} here would make it finite"
     return (
         f"a fillet here would make it finite, as large as fits: {what}, {limit / d:.2g} x the "
         f"smaller diameter"

@@ -38,9 +38,9 @@ from geometry import ArgumentError
 
 Side = Literal["free", "clamped"]
 
-STEEPEST = 4.493409457909064  # tan a = a: sin a / a is least
-FAR = 5.0  # of b: 0.217 cosh b > A + B b^2 there for all -1 < nu < 0.5
-ROUNDING = 1e-12  # exponents below are those of no singularity
+STEEPEST_ANGLE = 4.493409457909064  # tan a = a: sin a / a is least
+MAX_IMAGINARY_PART = 5.0  # of b: 0.217 cosh b > A + B b^2 there for all -1 < nu < 0.5
+EXPONENT_ROUND_OFF = 1e-12  # exponents below are those of no singularity
 
 
 def plane_exponent(omega: float, nu: float, first: Side, second: Side) -> float:
@@ -124,7 +124,7 @@ def _different_sides(omega: float, kappa: float) -> complex:
     def on_curve(b: float) -> float:
         """a for b, from Im F = 0."""
         slope = 2.0 * B * (b / math.sinh(b) if b else 1.0)
-        return _root(lambda a: math.sin(a) + slope * a, math.pi, STEEPEST)
+        return _root(lambda a: math.sin(a) + slope * a, math.pi, STEEPEST_ANGLE)
 
     if F(math.pi) <= 0.0:
         return complex(_root(F, 0.0, math.pi))
@@ -133,7 +133,7 @@ def _different_sides(omega: float, kappa: float) -> complex:
     a0 = on_curve(0.0)
     if F(a0) <= 0.0:
         return complex(_root(F, math.pi, a0))
-    b = _root(lambda b: F(on_curve(b), b), 0.0, FAR)
+    b = _root(lambda b: F(on_curve(b), b), 0.0, MAX_IMAGINARY_PART)
     return complex(on_curve(b), b)
 
 
@@ -142,7 +142,7 @@ def _root(function: Callable[[float], float], low: float, high: float) -> float:
 
 
 def _positive(exponent: float) -> float:
-    return exponent if exponent > ROUNDING else 0.0
+    return exponent if exponent > EXPONENT_ROUND_OFF else 0.0
 
 
 def _require(omega: float) -> None:

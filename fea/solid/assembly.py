@@ -15,7 +15,7 @@ from skfem import Basis, ElementTetP1, ElementTetP2, MeshTet1, MeshTet2
 
 from fea.core.material import Material
 from fea.core.sparsity import Pattern
-from fea.core.voigt import ENTRIES
+from fea.core.voigt import VOIGT_TO_TENSOR
 from pinbase.arrays import Floats, Ints
 
 
@@ -80,4 +80,4 @@ class Discretisation:
         u = displacement[self.elements]
         h = np.einsum("mqia,mib->mqab", self.gradients, u, optimize=True)
         h = 0.5 * (h + h.swapaxes(2, 3))
-        return np.stack([h[..., a, b] for a, b in ENTRIES], -1)
+        return np.stack([h[..., a, b] for a, b in VOIGT_TO_TENSOR], -1)

@@ -12,11 +12,15 @@ from skfem.refdom import RefTri
 from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints, Mask
 
-_PLANE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
-SMOOTH = 0.97  # cosine between a node's normals below which it sits on an edge of the body
+_PLANE_TOLERANCE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
+MIN_SMOOTH_COSINE = (
+    0.97  # cosine between a node's normals below which it sits on an edge of the body
+)
 
-QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])  # of a quadratic triangle
-_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+QUARTER_TRIANGLES = np.array(
+    [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
+)  # of a quadratic triangle
+_TRIANGLE_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 
 
 def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
@@ -69,7 +73,7 @@ class SurfaceMesh:
     @property
     def curved(self) -> bool:
         """Whether any facet is."""
-        return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE)
+        return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE_TOLERANCE)
 
     def on(self, space: Discretisation, surfaces: Iterable[str]) -> Mask:
         """Which facets are on one of the named surfaces, (F,)."""
@@ -85,7 +89,7 @@ def surface(space: Discretisation) -> SurfaceMesh:
     if space.quadratic:
         corners = np.concatenate([vertices, mesh.nvertices + mesh.f2e[:, facets].T], axis=1)
     x = space.nodes[corners]
-    normals = area_vectors(x, *_NODES[: corners.shape[1]].T)
+    normals = area_vectors(x, *_TRIANGLE_NODES[: corners.shape[1]].T)
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     middle = space.nodes[space.elements[mesh.f2t[0, facets]][:, :4]].mean(axis=1)
     # by the plane between the corners: a curved facet may bulge past the middle of its element

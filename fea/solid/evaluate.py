@@ -10,11 +10,11 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.memory import require_memory
-from fea.core.mesh_result import AtSingularity, MeshResult
-from fea.core.pin_loads import AnyLoads, PinLoads, UnitLoad
+from fea.core.mesh_result import MeshMaximum, ZoneMaximum
+from fea.core.pin_loads import Loads, PinLoads, UnitLoad
 from fea.core.solution import Picture
 from fea.singular.probes import all_round, rim
-from fea.singular.singularities import VARIED, Singularity, clamp_rims, free_of_arcs, outside
+from fea.singular.singularities import DISTANCE_VARIATIONS, Zone, clamp_rims, free_of_arcs, outside
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
@@ -22,12 +22,12 @@ from geometry import CutPin, Pin, PinLike
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
-from geometry.shape.pin import FACES
+from geometry.shape.pin import END_FACES
 from pinbase.arrays import Floats, Mask
 
 # Tetrahedra are larger than a small step. What the harmonic model feels at its corner, a tenth of
 # the step away from it, is 1.6 to 2.1 times the stress of the shaft there.
-SHALLOW = 1.5
+SHALLOW_STEP_FACTOR = 1.5
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class SolidSolution:
     """
 
     fields: UnitFields
-    singularities: tuple[Singularity, ...]
+    singularities: tuple[Zone, ...]
     within: tuple[Mask, ...]
     varied: tuple[Mask, ...]
 
@@ -59,7 +59,7 @@ def solid_solution(
     material: Material,
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
+    singularities: tuple[Zone, ...],
     size: MeshSize,
     distance: float,
     element: Element = "curved",
@@ -74,14 +74,14 @@ def solid_solution(
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin):
-        turned = tuple(name for name in clamps if name in (*FACES, *profile.labels))
+        turned = tuple(name for name in clamps if name in (*END_FACES, *profile.labels))
         edges += tuple(z for _, z in clamp_rims(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # whose coefficient is zero
     model = SolidModel(pin, mesh, material, clamps)
     require_memory(pin.name, model.unknowns, memory)
     if isinstance(pin, Pin):
-        near = [[p.varied(x) for p in singularities] for x in (1.0, *VARIED)]
+        near = [[p.varied(x) for p in singularities] for x in (1.0, *DISTANCE_VARIATIONS)]
         rims = [all_round(rim(pin, p, p.radius)) for here in near for p in here]
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
         r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
@@ -91,7 +91,10 @@ def solid_solution(
         fields = model.solve(units)
         limit = partial(free_of_arcs, profile) if isinstance(profile, Pin) else None
         edge = sharp_edges(fields.space, fields.surface, clamps, limit)
-        at = [edge.singularities(fields.points, times * distance) for times in (1.0, *VARIED)]
+        at = [
+            edge.singularities(fields.points, times * distance)
+            for times in (1.0, *DISTANCE_VARIATIONS)
+        ]
         within, *varied = ([mask for _, mask in here] for here in at)
         found = [singularity for singularity, _ in at[0]]
     count = len(fields.points)
@@ -100,17 +103,17 @@ def solid_solution(
     )
 
 
-class SolidAnswer:
+class SolidField:
     """What a solution says of any loads made of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: SolidSolution) -> None:
         self.solution = solution
 
-    def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
         return envelope(self.solution.fields, loads, self.solution.outside).maxima
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the number of its instant."""
         top = envelope(self.solution.fields, loads, self.solution.outside)
         return top.maximum, top.instant
@@ -133,8 +136,8 @@ class SolidAnswer:
 
 
 def solid_result(
-    solution: SolidSolution, earlier: Mapping[str, MeshResult], ratio: float, loads: PinLoads
-) -> MeshResult:
+    solution: SolidSolution, earlier: Mapping[str, MeshMaximum], ratio: float, loads: PinLoads
+) -> MeshMaximum:
     """Maximum outside the singularities and what is inside; exponents from the growth since the
     `earlier` mesh result at the same case, on a mesh `ratio` times coarser.
     """
@@ -146,13 +149,15 @@ def solid_result(
             float(np.log(now / then.maximum) / np.log(ratio)) if now > then.maximum > 0.0 else None
             for (now, _), then in zip(top.inside, before.singularities, strict=True)
         ]
-    result = MeshResult(
+    result = MeshMaximum(
         unknowns=fields.space.unknowns,
         maximum=top.maximum,
         instant=top.instant,
         location=top.location,
         singularities=tuple(
-            AtSingularity(value, value * (SHALLOW if p.feature < p.radius else 1.0), at, s)
+            ZoneMaximum(
+                value, value * (SHALLOW_STEP_FACTOR if p.feature < p.radius else 1.0), at, s
+            )
             for p, (value, at), s in zip(solution.singularities, top.inside, exponents, strict=True)
         ),
         scatter=top.scatter,

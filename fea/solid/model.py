@@ -16,7 +16,7 @@ import scipy.sparse as sp
 
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
-from fea.core.pin_loads import AnyLoads, PinLoads, require_solved
+from fea.core.pin_loads import Loads, PinLoads, require_solved
 from fea.core.strain_energy import StrainEnergy
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
@@ -27,7 +27,7 @@ from geometry import PinLike
 from geometry.mesh.solid_mesh import SolidMesh
 from pinbase.arrays import Floats, Ints
 
-_NOWHERE = np.zeros((0, 3))
+_NO_POINTS = np.zeros((0, 3))
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class UnitFields:
         forces, moved = (x.reshape(-1, len(self.loads)) for x in (self.forces, self.displacement))
         return StrainEnergy(self.loads, forces.T @ moved)
 
-    def coefficients(self, loads: AnyLoads) -> Floats:
+    def coefficients(self, loads: Loads) -> Floats:
         """How much of each unit load acts at each instant, (T, L).
 
         Raises: ValueError when there is no field for a part of the loads.
@@ -125,7 +125,7 @@ class SolidModel:
             return (3 * nodes[:, None] + np.arange(3)).ravel()
         return _isostatic(self.space.nodes)
 
-    def solve(self, units: tuple[Unit, ...], extra: Floats = _NOWHERE) -> UnitFields:
+    def solve(self, units: tuple[Unit, ...], extra: Floats = _NO_POINTS) -> UnitFields:
         """Unit fields of loads in their phases, at `extra` points (P, 3) inside the body too; on
         surfaces that are no bands, forces only.
 

@@ -18,7 +18,10 @@ from pinbase.arrays import Floats, Mask
 Unit = tuple[UnitLoad, int]  # a unit load and its phase
 
 RESULTANT_TOLERANCE = 1e-10
-CURVED_AREA, STRAIGHT_AREA = 0.01, 0.1  # of a band that a mesh's sides may cut off
+MAX_CURVED_AREA_LOSS, MAX_STRAIGHT_AREA_LOSS = (
+    0.01,
+    0.1,
+)  # of a band that a mesh's sides may cut off
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ def nodal_loads(
 
     Raises: SolveError when the mesh cannot carry one, or a body load lacks the density.
     """
-    lost = CURVED_AREA if boundary.curved else STRAIGHT_AREA
+    lost = MAX_CURVED_AREA_LOSS if boundary.curved else MAX_STRAIGHT_AREA_LOSS
     t = np.zeros((*boundary.normals.shape, len(units)))
     F = np.zeros((*space.nodes.shape, len(units)))
     for name in dict.fromkeys(load.surface for load, _ in units):

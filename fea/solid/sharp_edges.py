@@ -8,13 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.singular.singularities import INSTEAD_OF_CLAMP, Kind, Singularity
+from fea.singular.singularities import CLAMP_ADVICE, Kind, Zone
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints, Mask
 
-TURN = np.radians(40.0)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
-SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
+MIN_EDGE_TURN = np.radians(
+    40.0
+)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
+FACET_SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class SharpEdges:
     radius: Floats
     limit: Floats
 
-    def singularities(self, x: Floats, part: float) -> list[tuple[Singularity, Mask]]:
+    def singularities(self, x: Floats, part: float) -> list[tuple[Zone, Mask]]:
         """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of
         any clamp's edge, as a singularity each; none where there is nothing of the kind. Of several
         corners, the nearest is what counts.
@@ -36,15 +38,15 @@ class SharpEdges:
         first = len(self.corner)
         every = np.minimum(part * 2.0 * self.radius, self.limit)
         kinds: tuple[tuple[Kind, Floats, Floats, str], ...] = (
-            ("sharp corner", self.corner, every[:first], _RADIUS),
-            ("edge of a clamp", self.rim, every[first:], INSTEAD_OF_CLAMP),
+            ("sharp corner", self.corner, every[:first], _RADIUS_ADVICE),
+            ("edge of a clamp", self.rim, every[first:], CLAMP_ADVICE),
         )
         found = []
         for kind, points, reach, advice in kinds:
             if len(points):
                 distance, nearest = cKDTree(points).query(x)
                 at = points[0]
-                singularity = Singularity(
+                singularity = Zone(
                     r=float(np.hypot(at[0], at[1])),
                     z=float(at[2]),
                     kind=kind,
@@ -58,7 +60,7 @@ class SharpEdges:
         return found
 
 
-_RADIUS = "a radius there would make it finite"
+_RADIUS_ADVICE = "a radius there would make it finite"
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ def turned_edges(
     side_of = space.mesh.f2e[:, surface.facets]  # each is shared by two facets
     order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
-    nodes = np.array(SIDES)[side[1]]  # of the second facet: ends, across
+    nodes = np.array(FACET_SIDES)[side[1]]  # of the second facet: ends, across
     two = surface.corners[facet[1]]
     a, b, across = (np.take_along_axis(two, nodes[:, [k]], axis=1)[:, 0] for k in range(3))
     x = space.nodes
@@ -103,14 +105,14 @@ def sharp_edges(
     clamps: tuple[str, ...],
     limit: Callable[[Floats, Floats], Floats] | None = None,
 ) -> SharpEdges:
-    """Inner corners that turn by more than TURN, and the rims of the clamped surfaces. limit: of
-    their zones (S,), m, at r, z (S,), m; none by default.
+    """Inner corners that turn by more than MIN_EDGE_TURN, and the rims of the clamped surfaces.
+    limit: of their zones (S,), m, at r, z (S,), m; none by default.
     """
     clamped = surface.on(space, clamps)
     # of facets made plane: sides that were straightened for the elements' sake kink curved ones
     edges = turned_edges(space, surface, _plane_normals(space.nodes, surface))
     first, second = clamped[edges.facets]
-    corner = (edges.turn > TURN) & ~(first & second)
+    corner = (edges.turn > MIN_EDGE_TURN) & ~(first & second)
     rim = first != second
     x = space.nodes
     corners, rims = (x[np.unique(edges.nodes[on])] for on in (corner, rim))

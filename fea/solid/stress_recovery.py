@@ -10,9 +10,9 @@ import numpy as np
 
 from fea.core.local_fit import extension
 from fea.core.material import Material
-from fea.core.voigt import ENTRIES, TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.solid.assembly import Discretisation
-from fea.solid.boundary import SMOOTH, SurfaceMesh
+from fea.solid.boundary import MIN_SMOOTH_COSINE, SurfaceMesh
 from pinbase.arrays import Floats, Mask
 
 
@@ -44,7 +44,7 @@ def with_known_traction(
     )
     length = np.linalg.norm(normal, axis=1)
     normal /= np.where(length > 0.0, length, 1.0)[:, None]
-    sharp = np.sum(surface.normals * normal[surface.corners], axis=2) < SMOOTH
+    sharp = np.sum(surface.normals * normal[surface.corners], axis=2) < MIN_SMOOTH_COSINE
     fixed = np.repeat(clamped[:, None], surface.corners.shape[1], axis=1)
     known = (count > 0) & (np.bincount(node, (sharp | fixed).ravel(), minlength=n_nodes) == 0)
     out = stress.copy()
@@ -57,10 +57,10 @@ def with_known_traction(
             ],
             axis=1,
         )[known]
-        s = stress[known, :, k][:, TENSOR]
+        s = stress[known, :, k][:, TENSOR_TO_VOIGT]
         r = t - np.einsum("nab,nb->na", s, n)
         normal_part = np.sum(r * n, axis=1)[:, None, None]
         rn = r[:, :, None] * n[:, None, :]
         s = s + rn + rn.swapaxes(1, 2) - normal_part * n[:, :, None] * n[:, None, :]
-        out[known, :, k] = np.stack([s[:, a, b] for a, b in ENTRIES], axis=1)
+        out[known, :, k] = np.stack([s[:, a, b] for a, b in VOIGT_TO_TENSOR], axis=1)
     return out

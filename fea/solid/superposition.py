@@ -18,15 +18,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.core.mesh_result import Point
-from fea.core.pin_loads import AnyLoads
+from fea.core.pin_loads import Loads
 from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
 from pinbase.arrays import Floats, Mask
 
-FEW = 12  # unit loads up to which their products in pairs are fewer than the stresses
-CHUNK = 16  # instants at once
-BLOCK = 256  # instants whose squares at all points are kept at once
-DIRECTIONS = 9  # an odd number: opposite loads give the same von Mises stress
+MAX_PAIRED_LOADS = 12  # unit loads up to which their products in pairs are fewer than the stresses
+PRODUCT_BATCH = 16  # instants at once
+KEPT_INSTANTS = 256  # instants whose squares at all points are kept at once
+DIRECTION_COUNT = 9  # an odd number: opposite loads give the same von Mises stress
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ class Envelope:
 
 def envelope(
     fields: UnitFields,
-    loads: AnyLoads,
+    loads: Loads,
     outside: Mask | None = None,
     within: Sequence[Mask] = (),
-    directions: int = DIRECTIONS,
+    directions: int = DIRECTION_COUNT,
 ) -> Envelope:
     """Largest von Mises stress over the points of the fields and all instants of a case.
 
@@ -70,8 +70,8 @@ def envelope(
     ]
     peaks = np.zeros((directions, len(loads)))
     largest = np.zeros(len(points))  # at each point, over all instants
-    for first in range(0, len(loads), BLOCK):
-        here = slice(first, first + BLOCK)
+    for first in range(0, len(loads), KEPT_INSTANTS):
+        here = slice(first, first + KEPT_INSTANTS)
         for k, c in enumerate(turned):
             found = found_by(c[here])
             peaks[k, here] = found[among].max(axis=0)
@@ -99,10 +99,10 @@ def envelope(
 
 def squares(stress: Floats) -> Callable[[Floats], Floats]:
     """Von Mises squared (S, T) from loads (T, L), of unit stresses (S, 6, L)."""
-    if stress.shape[2] > FEW:
+    if stress.shape[2] > MAX_PAIRED_LOADS:
 
         def direct(c: Floats) -> Floats:
-            parts = (stress @ c[k : k + CHUNK].T for k in range(0, len(c), CHUNK))
+            parts = (stress @ c[k : k + PRODUCT_BATCH].T for k in range(0, len(c), PRODUCT_BATCH))
             return np.concatenate(
                 [np.einsum("sit,ij,sjt->st", s, VON_MISES, s, optimize=True) for s in parts], axis=1
             )

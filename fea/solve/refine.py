@@ -13,25 +13,25 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.memory import too_much
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.over_time import Between, rise_between, through_time, with_crest
-from fea.core.peak import NOTHING, Note, Peak
+from fea.core.peak import NO_REASON, Maximum, Reason
 from fea.core.pin_loads import PinLoads
-from fea.core.solution import Answer
-from fea.cut.evaluate import CutAnswer, CutSolution, cut_result, cut_solution
-from fea.cut.local_fields import RATIO, LocalFields
-from fea.cut.region import BEYOND, LONGER, pieces
+from fea.core.solution import StressField
+from fea.cut.evaluate import CutField, CutSolution, cut_result, cut_solution
+from fea.cut.local_fields import LOCAL_MESH_RATIO, LocalFields
+from fea.cut.region import PIECE_REACH, REACH_FACTOR, pieces
 from fea.harmonic.evaluate import (
-    HarmonicAnswer,
+    HarmonicField,
     SectionProblem,
     harmonic_result,
     harmonic_solution,
 )
 from fea.harmonic.kept_fields import FirstMesh
-from fea.singular.singularities import Singularity, begins, find_singularities
-from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
-from fea.solve.requirement import Asked, enough, reasons
-from fea.solve.verdict import FEWEST, Seen, judge
+from fea.singular.singularities import Zone, begins, find_singularities
+from fea.solid.evaluate import SolidField, solid_result, solid_solution
+from fea.solve.requirement import Requirement, accurate_enough, reasons
+from fea.solve.verdict import MIN_MESHES, MeshHistory, judge
 from geometry import CutPin, Pin, PinLike
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import MeshSize
@@ -39,16 +39,26 @@ from geometry.mesh.solid_mesh import MeshSize
 Progress = Callable[[str], None]
 MeshedModel = Literal["harmonic", "harmonic+local", "solid"]
 
-STEP = 2.0**0.5  # from one mesh to the next
-HALF = 2.0  # the same where the mesh is given, or as fine as the rings of contact pressure are
-FEWEST_PRESSED = 2  # meshes of a pin in contact: its first one resolves all that is on its surface
-LOCAL: Literal["harmonic+local"] = "harmonic+local"
-MESHES = {"harmonic": 7, LOCAL: 5, "solid": 4}
-MOST_UNKNOWNS = {"harmonic": 400_000, LOCAL: 600_000, "solid": 300_000}
-GROWTH = {"harmonic": 2.0, LOCAL: 1.4, "solid": 3.0}  # power of the ratio with which unknowns grow
+MESH_RATIO = 2.0**0.5  # from one mesh to the next
+HALVING_RATIO = (
+    2.0  # the same where the mesh is given, or as fine as the rings of contact pressure are
+)
+MIN_CONTACT_MESHES = (
+    2  # meshes of a pin in contact: its first one resolves all that is on its surface
+)
+LOCAL_MODEL: Literal["harmonic+local"] = "harmonic+local"
+MAX_MESHES = {"harmonic": 7, LOCAL_MODEL: 5, "solid": 4}
+MAX_UNKNOWNS = {"harmonic": 400_000, LOCAL_MODEL: 600_000, "solid": 300_000}
+UNKNOWNS_EXPONENT = {
+    "harmonic": 2.0,
+    LOCAL_MODEL: 1.4,
+    "solid": 3.0,
+}  # power of the ratio with which unknowns grow
 NO_MOTION: Mapping[str, Between] = MappingProxyType({})
-TOGETHER = 2.0  # times as far from each other cuts are in one local solid, if they disturb others
-TRUNCATED = 0.2  # of the tolerance: more of it makes local solids longer
+PIECE_SPACING_FACTOR = (
+    2.0  # times as far from each other cuts are in one local solid, if they disturb others
+)
+TRUNCATION_SHARE = 0.2  # of the tolerance: more of it makes local solids longer
 
 
 @dataclass(frozen=True)
@@ -58,8 +68,8 @@ class Solution:
     one.
     """
 
-    peak: Peak
-    answer: Answer | None
+    peak: Maximum
+    answer: StressField | None
     loads: PinLoads
     instant: int = 0
 
@@ -75,12 +85,12 @@ class PinJob:
     pin: PinLike
     material: Material
     constrained: tuple[str, ...]
-    asked: Asked
+    asked: Requirement
     progress: Progress
     between: Mapping[str, Between]
     first: FirstMesh
     cut: CutPin | None = None
-    beyond: float = BEYOND
+    beyond: float = PIECE_REACH
     bands: tuple[tuple[float, float], ...] = ()
     apart: float = 1.0
 
@@ -94,14 +104,14 @@ class PinJob:
 
 def ratio_of(pin: PinLike, model: str) -> float:
     """From one mesh of a pin to the next."""
-    if model == LOCAL:
-        return RATIO
-    return HALF if pin.meshed else STEP
+    if model == LOCAL_MODEL:
+        return LOCAL_MESH_RATIO
+    return HALVING_RATIO if pin.meshed else MESH_RATIO
 
 
 def unknowns_after(pin: PinLike, model: str, unknowns: int) -> float:
     """Of the mesh that comes after one with so many, roughly."""
-    grown: float = ratio_of(pin, model) ** GROWTH[model]
+    grown: float = ratio_of(pin, model) ** UNKNOWNS_EXPONENT[model]
     return unknowns * grown
 
 
@@ -116,7 +126,7 @@ def singularities_of(
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
     distance: float = 0.1,
-) -> tuple[Singularity, ...]:
+) -> tuple[Zone, ...]:
     """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
     if not isinstance(pin, Pin):
         return ()
@@ -128,7 +138,7 @@ def singularities_of(
     return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
 
 
-def job_singularities(job: PinJob, cases: tuple[PinLoads, ...]) -> tuple[Singularity, ...]:
+def job_singularities(job: PinJob, cases: tuple[PinLoads, ...]) -> tuple[Zone, ...]:
     """Zones of unbounded stress in any of the cases of a job, which end where its cuts begin."""
     found = singularities_of(job.pin, job.material, job.constrained, cases, job.asked.distance)
     openings = () if job.cut is None else tuple(cut.opens for cut in job.cut.cuts.values())
@@ -141,28 +151,32 @@ def refined(
     job: PinJob,
     model: MeshedModel,
     cases: tuple[PinLoads, ...],
-    notes: dict[str, Note],
+    notes: dict[str, Reason],
 ) -> dict[str, Solution]:
     """Finer and finer meshes until every case is converged or decided, or a limit is reached."""
     pin, asked = job.pin, job.asked
     pressed = model == "harmonic" and any(case.pressed is not None for case in cases)
-    ratio, fewest = (HALF, FEWEST_PRESSED) if pressed else (ratio_of(pin, model), FEWEST)
+    ratio, fewest = (
+        (HALVING_RATIO, MIN_CONTACT_MESHES) if pressed else (ratio_of(pin, model), MIN_MESHES)
+    )
     singularities = job_singularities(job, cases)
     own = {case.case: job_singularities(job, (case,)) for case in cases}
-    seen = {c.case: Seen(pin.name, c.case, model, (), (), ratio, fewest=fewest) for c in cases}
+    seen = {
+        c.case: MeshHistory(pin.name, c.case, model, (), (), ratio, fewest=fewest) for c in cases
+    }
     kept: tuple[LocalFields, ...] = ()
-    for level in range(asked.meshes or MESHES[model]):
+    for level in range(asked.meshes or MAX_MESHES[model]):
         before = {case: s.results[-1] for case, s in seen.items() if s.results}
         largest = max((r.at_once or r.unknowns for r in before.values()), default=0)
-        finer = largest * ratio ** GROWTH[model]
-        if level and finer > MOST_UNKNOWNS[model]:
+        finer = largest * ratio ** UNKNOWNS_EXPONENT[model]
+        if level and finer > MAX_UNKNOWNS[model]:
             break
         unit_loads = count_loads(cases)
-        section, local = (unit_loads if model == m else 0 for m in ("harmonic", LOCAL))
+        section, local = (unit_loads if model == m else 0 for m in ("harmonic", LOCAL_MODEL))
         if level and (excess := too_much(finer, asked.memory, section, local)):
             text = f"; on the next mesh {excess}: allow more, or increase --tolerance"
-            limit = Note(text, ("memory-limit",))
-            notes = {case: notes.get(case, NOTHING) + limit for case in own}
+            limit = Reason(text, ("memory-limit",))
+            notes = {case: notes.get(case, NO_REASON) + limit for case in own}
             break
         job.progress(f"pin {pin.name}, {model} model, mesh {level + 1}")
         start = time.perf_counter()
@@ -173,37 +187,37 @@ def refined(
             now, end = mesh.result(case), time.perf_counter()
             seen[case.case] = seen[case.case].then(now, end - start)
             start = end
-        if all(enough(asked, job.material, s) for s in seen.values()):
+        if all(accurate_enough(asked, job.material, s) for s in seen.values()):
             break
         if mesh.cut is not None:
             kept = mesh.cut.idle([(case, seen[case.case].results[-1]) for case in cases])
         if any(_too_near(s.results[-1], asked.tolerance) for s in seen.values()):
-            job = replace(job, apart=TOGETHER * job.apart)
+            job = replace(job, apart=PIECE_SPACING_FACTOR * job.apart)
         elif level and any(_too_short(s.results[-1], asked.tolerance) for s in seen.values()):
-            job = replace(job, beyond=LONGER * job.beyond)
+            job = replace(job, beyond=REACH_FACTOR * job.beyond)
     why, out = reasons(asked, job.material, model), {}
     for case in cases:
         case, s = _at_crest(job, mesh, case, seen[case.case])
-        peak = judge(s, mesh.singularities, asked.tolerance, notes.get(case.case, NOTHING))
+        peak = judge(s, mesh.singularities, asked.tolerance, notes.get(case.case, NO_REASON))
         instant = s.results[-1].instant
         governing = case.at(np.array([instant]))
         peak = replace(peak, governing=governing, history=s.under(governing))
         answer = mesh.answers[case.case]
-        if isinstance(answer, CutAnswer):
+        if isinstance(answer, CutField):
             solids = tuple((p.piece.z0, p.piece.z1) for p in answer.solution.pieces)
             peak = replace(peak, solids=solids)
-        out[case.case] = Solution(because(peak, why(s)), answer, case, instant)
+        out[case.case] = Solution(with_reason(peak, why(s)), answer, case, instant)
     return out
 
 
-def _too_near(result: MeshResult, tolerance: float) -> bool:
+def _too_near(result: MeshMaximum, tolerance: float) -> bool:
     """Whether cuts in other local solids take much of it."""
-    return result.beside > TRUNCATED * tolerance * result.maximum
+    return result.beside > TRUNCATION_SHARE * tolerance * result.maximum
 
 
-def _too_short(result: MeshResult, tolerance: float) -> bool:
+def _too_short(result: MeshMaximum, tolerance: float) -> bool:
     """Whether the ends of local solids take much of the error that is allowed."""
-    return result.truncated > TRUNCATED * tolerance * result.maximum
+    return result.truncated > TRUNCATION_SHARE * tolerance * result.maximum
 
 
 @dataclass(frozen=True)
@@ -212,9 +226,9 @@ class _Mesh:
     with local solids.
     """
 
-    singularities: tuple[Singularity, ...]
-    result: Callable[[PinLoads], MeshResult]
-    answers: dict[str, Answer]
+    singularities: tuple[Zone, ...]
+    result: Callable[[PinLoads], MeshMaximum]
+    answers: dict[str, StressField]
     cut: CutSolution | None = None
 
 
@@ -222,10 +236,10 @@ def _mesh(
     job: PinJob,
     made: tuple[MeshedModel, float],
     cases: tuple[PinLoads, ...],
-    singularities: tuple[Singularity, ...],
-    own: dict[str, tuple[Singularity, ...]],
+    singularities: tuple[Zone, ...],
+    own: dict[str, tuple[Zone, ...]],
     level: int,
-    before: dict[str, MeshResult],
+    before: dict[str, MeshMaximum],
     kept: tuple[LocalFields, ...],
 ) -> _Mesh:
     model, ratio = made
@@ -235,13 +249,13 @@ def _mesh(
             job.pin, job.material, job.constrained, cases, singularities, job.first,
             near=job.asked.near,
         )  # fmt: skip
-        answers: dict[str, Answer]
-        if model == LOCAL:
+        answers: dict[str, StressField]
+        if model == LOCAL_MODEL:
             cut = cut_solution(
                 problem, job.pieces, level, before.values(), job.bands, job.asked.distance,
                 kept=kept,
             )  # fmt: skip
-            answers = {c: CutAnswer(cut, mine) for c, mine in own.items()}
+            answers = {c: CutField(cut, mine) for c, mine in own.items()}
             return _Mesh(
                 (*singularities, *cut.corners),
                 lambda c: cut_result(cut, singularities, c, own[c.case]),
@@ -249,7 +263,7 @@ def _mesh(
                 cut,
             )
         section = harmonic_solution(problem, level, ratio, before.values())
-        answers = {c: HarmonicAnswer(section, mine) for c, mine in own.items()}
+        answers = {c: HarmonicField(section, mine) for c, mine in own.items()}
         return _Mesh(
             singularities,
             lambda c: harmonic_result(section, singularities, c, own[c.case]),
@@ -266,7 +280,7 @@ def _mesh(
         asked.distance,
         memory=asked.memory,
     )
-    answers = dict.fromkeys(own, SolidAnswer(solid))
+    answers = dict.fromkeys(own, SolidField(solid))
     return _Mesh(solid.singularities, partial(solid_result, solid, before, ratio), answers)
 
 
@@ -278,7 +292,9 @@ def _through_time(job: PinJob, mesh: _Mesh, case: PinLoads) -> PinLoads:
     return through_time(mesh.answers[case.case], case, between, job.asked.tolerance)
 
 
-def _at_crest(job: PinJob, mesh: _Mesh, case: PinLoads, seen: Seen) -> tuple[PinLoads, Seen]:
+def _at_crest(
+    job: PinJob, mesh: _Mesh, case: PinLoads, seen: MeshHistory
+) -> tuple[PinLoads, MeshHistory]:
     """With the instant at which the last mesh has its maximum, and the rise between instants."""
     between, answer = job.between.get(case.case), mesh.answers[case.case]
     if between is None:
@@ -290,6 +306,6 @@ def _at_crest(job: PinJob, mesh: _Mesh, case: PinLoads, seen: Seen) -> tuple[Pin
     return more, replace(seen, results=(*seen.results[:-1], last))
 
 
-def because(peak: Peak, why: Note) -> Peak:
+def with_reason(peak: Maximum, why: Reason) -> Maximum:
     """With the reason for its model."""
     return replace(peak, why=why.text, reasons=peak.reasons + why.codes)

@@ -11,17 +11,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
-from fea.beam.model import BeamAnswer
+from fea.beam.model import BeamField
 from fea.core.material import Material
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.cut.evaluate import cut_result, cut_solution
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import Zone
 from fea.solid.evaluate import solid_solution
 from fea.solid.superposition import envelope
-from fea.solve.refine import LOCAL, STEP, singularities_of
+from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, singularities_of
 from geometry import ArgumentError, CutPin, Pin, PinLike
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
@@ -40,7 +40,7 @@ class Problem:
     distance: float = 0.1
 
     @cached_property
-    def singularities(self) -> tuple[Singularity, ...]:
+    def singularities(self) -> tuple[Zone, ...]:
         """Where stress is not read; of a body of revolution only, others find theirs."""
         return singularities_of(self.pin, self.material, self.clamps, (self.loads,), self.distance)
 
@@ -48,8 +48,8 @@ class Problem:
 @dataclass(frozen=True)
 class Rung:
     """A mesh of a model. element: of the solid model; level: 0 is the first mesh of a run, each
-    further one finer by the square root of 2 (with local solids by fea.cut.local_fields.RATIO),
-    those below 0 coarser.
+    further one finer by the square root of 2 (with local solids by
+    fea.cut.local_fields.LOCAL_MESH_RATIO), those below 0 coarser.
     """
 
     model: Literal["beam", "harmonic", "harmonic+local", "solid"]
@@ -57,7 +57,7 @@ class Rung:
     level: int = 0
 
 
-def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ()) -> MeshResult:
+def result_on(problem: Problem, rung: Rung, before: tuple[MeshMaximum, ...] = ()) -> MeshMaximum:
     """The maximum on one mesh. before: the mesh result of the harmonic model, with local solids or
     not, at the level below, where a run has one, by which it decides where its elements are small.
 
@@ -67,19 +67,19 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshResult, ...] = ())
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     if rung.model == "solid":
         return _solid_result(problem, rung)
-    if rung.model == LOCAL:
+    if rung.model == LOCAL_MODEL:
         return _local_result(problem, rung.level, before)
     if not isinstance(pin, Pin):
         raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
     singularities = problem.singularities
     if rung.model == "beam":
-        return BeamAnswer(pin, material, clamps, loads).result(singularities)
+        return BeamField(pin, material, clamps, loads).result(singularities)
     posed = SectionProblem(pin, material, clamps, (loads,), singularities)
-    section = harmonic_solution(posed, rung.level, STEP, before)
+    section = harmonic_solution(posed, rung.level, MESH_RATIO, before)
     return harmonic_result(section, singularities, loads)
 
 
-def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) -> MeshResult:
+def _local_result(problem: Problem, level: int, before: tuple[MeshMaximum, ...]) -> MeshMaximum:
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     if not isinstance(pin, CutPin):
         raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
@@ -91,15 +91,15 @@ def _local_result(problem: Problem, level: int, before: tuple[MeshResult, ...]) 
     return cut_result(cut, found, loads)
 
 
-def _solid_result(problem: Problem, rung: Rung) -> MeshResult:
-    size = MeshSize().finer(STEP**rung.level)
+def _solid_result(problem: Problem, rung: Rung) -> MeshMaximum:
+    size = MeshSize().finer(MESH_RATIO**rung.level)
     solution = solid_solution(
         problem.pin, problem.material, problem.clamps, (problem.loads,), problem.singularities,
         size, problem.distance, rung.element,
     )  # fmt: skip
     fields = solution.fields
     top = envelope(fields, problem.loads, solution.outside)
-    return MeshResult(
+    return MeshMaximum(
         fields.space.unknowns, top.maximum, top.instant, top.location, scatter=top.scatter,
         energy=fields.energy,
     )  # fmt: skip

@@ -14,46 +14,56 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea.beam.error_model import PLAIN
-from fea.beam.model import BeamAnswer
-from fea.core.equilibrium import NOTHING as NO_SUPPORT
-from fea.core.equilibrium import Balance, Carried, out_of_balance
+from fea.beam.error_model import PLAIN_SECTION_ERROR
+from fea.beam.model import BeamField
+from fea.core.equilibrium import NO_SUPPORT, Balance, Carried, out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between, rise_between, through_time
-from fea.core.peak import NOTHING, Note, Peak
+from fea.core.peak import NO_REASON, Maximum, Reason
 from fea.core.pin_loads import PinLoads
-from fea.cut.region import RingedCutPin, at_corner, loaded_bands, refused, unringed
+from fea.cut.region import RingedCutPin, corner_refusal, loaded_bands, refusal, unringed
 from fea.harmonic.kept_fields import FirstMesh
 from fea.section.place import found_section
 from fea.section.row import row_of
-from fea.section.section_stress import SectionAnswer
+from fea.section.section_stress import SectionField
 from fea.solve.refine import (
-    LOCAL,
+    LOCAL_MODEL,
     NO_MOTION,
     MeshedModel,
     PinJob,
     Progress,
     Solution,
-    because,
     count_loads,
     job_singularities,
     ratio_of,
     refined,
     singularities_of,
     unknowns_after,
+    with_reason,
 )
-from fea.solve.requirement import DECIDED, Asked, Goal, Model, decided, enough
+from fea.solve.requirement import DECIDED_TEXT, Goal, Model, Requirement, accurate_enough, decided
 from geometry import ArgumentError, CutPin, GeometryError, Pin, PinLike
 from geometry.mesh.solid_mesh import MeshError
 
 __all__ = [
-    "Asked", "Goal", "Model", "Progress", "Solution", "count_loads", "decided", "enough",
-    "imbalance", "ratio_of", "singularities_of", "solve_pin", "unknowns_after",
+    "Goal",
+    "Model",
+    "Progress",
+    "Requirement",
+    "Solution",
+    "accurate_enough",
+    "count_loads",
+    "decided",
+    "imbalance",
+    "ratio_of",
+    "singularities_of",
+    "solve_pin",
+    "unknowns_after",
 ]  # fmt: skip
 
-AS_USUAL = Asked()
-TELL = 1e-6  # of the largest load: smaller imbalances are not reported
+DEFAULT_REQUIREMENT = Requirement()
+MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
 
 
 def solve_pin(
@@ -61,7 +71,7 @@ def solve_pin(
     material: Material,
     clamps: tuple[str, ...],
     cases: tuple[PinLoads, ...],
-    asked: Asked = AS_USUAL,
+    asked: Requirement = DEFAULT_REQUIREMENT,
     progress: Progress = lambda _: None,
     between: Mapping[str, Between] = NO_MOTION,
     first: FirstMesh | None = None,
@@ -89,7 +99,7 @@ def solve_pin(
     for case in cases:
         if case.case in balances and (refusal := balances[case.case].refusal):
             codes = (balances[case.case].code,)
-            peak = Peak(pin.name, case.case, asked.model, "rigid", refusal, reasons=codes)
+            peak = Maximum(pin.name, case.case, asked.model, "rigid", refusal, reasons=codes)
             out[case.case] = Solution(peak, None, case)
     live = tuple(c for c in cases if c.case not in out)
     if live and isinstance(pin, CutPin) and holed and asked.model in ("auto", "harmonic"):
@@ -120,7 +130,7 @@ def _with_section(job: PinJob, pin: PinLike, case: PinLoads, found: Solution) ->
         return found
     section, loads = None, found.loads
     if isinstance(pin, Pin):
-        answer = SectionAnswer(pin, job.material, job.constrained, (case,))
+        answer = SectionField(pin, job.material, job.constrained, (case,))
         between = job.between.get(case.case)
         section = found_section(answer, case, between, job.asked.tolerance)
     peak = row_of(found.peak, section, job.material, job.asked.tolerance)
@@ -134,78 +144,78 @@ def _with_section(job: PinJob, pin: PinLike, case: PinLoads, found: Solution) ->
 
 
 def _beam(
-    job: PinJob, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
+    job: PinJob, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Reason]
 ) -> dict[str, Solution]:
     """The cases for which a beam is accurate enough; all if the beam model is requested."""
     asked = job.asked
-    if asked.model == "auto" and asked.goal == "value" and asked.tolerance < PLAIN:
+    if asked.model == "auto" and asked.goal == "value" and asked.tolerance < PLAIN_SECTION_ERROR:
         return {}  # below the error of any beam
     out = {}
     for case in cases:
         singularities = job_singularities(job, (case,)) if asked.model == "auto" else ()
         if any(p.kind != "edge of a load" for p in singularities):
             continue  # where a beam cannot see the singularity
-        found, why = _by_beam(job, pin, case, notes), Note("beam: requested", ("requested",))
+        found, why = _by_beam(job, pin, case, notes), Reason("beam: requested", ("requested",))
         peak = found.peak
         if asked.model == "auto":
-            assert isinstance(found.answer, BeamAnswer)
+            assert isinstance(found.answer, BeamField)
             if found.answer.estimate.error is None:
                 continue
             value, error = peak.max_von_mises or 0.0, peak.error_estimate or 0.0
             if decided(asked, job.material, value - error, value + error):
-                why = Note(f"beam: {DECIDED}", ("beam-decides",))
+                why = Reason(f"beam: {DECIDED_TEXT}", ("beam-decides",))
             elif peak.verdict == "converged":
-                why = Note("beam: its error is within the tolerance", ("beam-within-tolerance",))
+                why = Reason("beam: its error is within the tolerance", ("beam-within-tolerance",))
             else:
                 continue
-        out[case.case] = replace(found, peak=because(peak, why))
+        out[case.case] = replace(found, peak=with_reason(peak, why))
     return out
 
 
-def _by_beam(job: PinJob, pin: Pin, case: PinLoads, notes: dict[str, Note]) -> Solution:
+def _by_beam(job: PinJob, pin: Pin, case: PinLoads, notes: dict[str, Reason]) -> Solution:
     start, rise = time.perf_counter(), 0.0
-    answer = BeamAnswer(pin, job.material, job.constrained, case)
+    answer = BeamField(pin, job.material, job.constrained, case)
     if between := job.between.get(case.case):
         case = through_time(answer, case, between, job.asked.tolerance)
         rise = rise_between(answer, case, between)
-        answer = BeamAnswer(pin, job.material, job.constrained, case)
+        answer = BeamField(pin, job.material, job.constrained, case)
     instant, spent = answer.estimate.instant, time.perf_counter() - start
-    peak = answer.peak(job.asked.tolerance, spent, notes.get(case.case, NOTHING), rise)
+    peak = answer.peak(job.asked.tolerance, spent, notes.get(case.case, NO_REASON), rise)
     return Solution(replace(peak, governing=case.at(np.array([instant]))), answer, case, instant)
 
 
 def _instead(
-    job: PinJob, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Note], failure: str
+    job: PinJob, pin: Pin, cases: tuple[PinLoads, ...], notes: dict[str, Reason], failure: str
 ) -> dict[str, Solution]:
     """Beams, with their own error, where no harmonic mesh could be solved."""
     out = {}
     for case in cases:
-        note = notes.get(case.case, NOTHING) + Note(f"; the harmonic model failed: {failure}")
+        note = notes.get(case.case, NO_REASON) + Reason(f"; the harmonic model failed: {failure}")
         found = _by_beam(job, pin, case, {case.case: note})
-        why = Note("beam: the harmonic model failed", ("harmonic-failed",))
-        out[case.case] = replace(found, peak=because(found.peak, why))
+        why = Reason("beam: the harmonic model failed", ("harmonic-failed",))
+        out[case.case] = replace(found, peak=with_reason(found.peak, why))
     return out
 
 
 def _with_local_solids(
-    job: PinJob, pin: CutPin, cases: tuple[PinLoads, ...], notes: dict[str, Note]
+    job: PinJob, pin: CutPin, cases: tuple[PinLoads, ...], notes: dict[str, Reason]
 ) -> tuple[dict[str, Solution], PinJob]:
     """Of a pin with holes, none where it must be solid as a whole; and the job with the reason."""
     local, whole = replace(job, pin=pin.profile), unringed(pin)
     loaded = [name for case in cases for name in case.surfaces] if whole is pin else []
     if not job.constrained:
         loaded += whole.connections  # which react the imbalance
-    why = refused(whole, job.constrained, loaded)
-    why = why or at_corner(whole, job_singularities(local, cases))
+    why = refusal(whole, job.constrained, loaded)
+    why = why or corner_refusal(whole, job_singularities(local, cases))
     if why is None:
         try:
             local = replace(local, cut=whole, bands=loaded_bands(whole, loaded))
-            return refined(local, LOCAL, cases, notes), job
+            return refined(local, LOCAL_MODEL, cases, notes), job
         except (MeshError, SolveError, GeometryError) as error:
             if job.asked.model == "harmonic":
                 raise
             text = f"solid: a local solid about the cuts failed: {error}"
-            why = Note(text, ("not-axisymmetric", "local-failed"))
+            why = Reason(text, ("not-axisymmetric", "local-failed"))
     if job.asked.model == "harmonic":
         reason = why.text.removeprefix("solid: the pin is not a body of revolution, and ")
         raise ArgumentError(
@@ -227,13 +237,13 @@ def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
         return None
     force = balance.force / balance.largest
     couple = balance.couple / balance.largest / pin.length
-    return (force, couple) if max(force, couple) >= TELL else None
+    return (force, couple) if max(force, couple) >= MIN_REPORTED_IMBALANCE else None
 
 
-def _reacted(share: tuple[float, float]) -> Note:
+def _reacted(share: tuple[float, float]) -> Reason:
     """The imbalance that the bands react, as the end of a note."""
     force, couple = share
-    return Note(
+    return Reason(
         f"; the bearing bands react a residual imbalance: a force of {force:.2g} of the largest "
         f"load and a couple of {couple:.2g} of that load times the length",
         ("imbalance-reacted",),

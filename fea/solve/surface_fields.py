@@ -8,18 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
-from fea.core.pressed import BINS
-from fea.core.solution import Answer
-from fea.cut.evaluate import CutAnswer
-from fea.harmonic.evaluate import HarmonicAnswer
-from fea.harmonic.five_numbers import EVEN, METRIC
+from fea.core.pressed import ARC_COUNT
+from fea.core.solution import StressField
+from fea.cut.evaluate import CutField
+from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.five_numbers import EVEN_COUNT, VON_MISES_ROOT
 from fea.singular.singularities import outside
-from fea.solid.boundary import QUARTERS, SurfaceMesh
-from fea.solid.evaluate import SolidAnswer
+from fea.solid.boundary import QUARTER_TRIANGLES, SurfaceMesh
+from fea.solid.evaluate import SolidField
 from pinbase.arrays import Floats, Ints, Mask
 
-MOST_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
-_MERIDIAN = (True,) * EVEN + (False,) * (5 - EVEN) + (True, False, True)
+MAX_SHOWN_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
+_EVEN_COMPONENTS = (True,) * EVEN_COUNT + (False,) * (5 - EVEN_COUNT) + (True, False, True)
 
 
 @dataclass(frozen=True)
@@ -49,30 +49,30 @@ class UnitSurface:
         return not len(self.triangles)
 
 
-def unit_surface(answer: Answer) -> UnitSurface | None:
+def unit_surface(answer: StressField) -> UnitSurface | None:
     """The surface on the finest mesh; None for a model without fields."""
-    if isinstance(answer, HarmonicAnswer):
+    if isinstance(answer, HarmonicField):
         fields = answer.fields
         r, z = fields.points[: fields.skin].T
         return UnitSurface(
             points=np.stack([r, 0.0 * r, z], axis=1),
             triangles=np.zeros((0, 3), dtype=np.int64),
             n=np.array([load.n for load in fields.loads], dtype=np.int64),
-            even=_MERIDIAN,
-            stress=METRIC @ fields.stress[: fields.skin],
+            even=_EVEN_COMPONENTS,
+            stress=VON_MISES_ROOT @ fields.stress[: fields.skin],
             displacement=fields.displacement[: fields.skin],
         )
-    if isinstance(answer, CutAnswer):
+    if isinstance(answer, CutField):
         cut = answer.surface
         return UnitSurface(
             points=cut.points,
             triangles=cut.triangles,
             n=np.zeros(cut.stress.shape[2], dtype=np.int64),
             even=(True,) * 8,
-            stress=METRIC @ cut.stress,
+            stress=VON_MISES_ROOT @ cut.stress,
             displacement=cut.displacement,
         )
-    if isinstance(answer, SolidAnswer):
+    if isinstance(answer, SolidField):
         solid = answer.solution.fields
         nodes, triangles = _shown(solid.surface)
         return UnitSurface(
@@ -80,58 +80,60 @@ def unit_surface(answer: Answer) -> UnitSurface | None:
             triangles=np.searchsorted(nodes, triangles),
             n=np.zeros(len(solid.loads), dtype=np.int64),
             even=(True,) * 8,
-            stress=METRIC @ solid.stress[nodes],
+            stress=VON_MISES_ROOT @ solid.stress[nodes],
             displacement=solid.displacement[nodes],
         )
     return None
 
 
-def amounts(answer: Answer, loads: PinLoads) -> Floats:
+def amounts(answer: StressField, loads: PinLoads) -> Floats:
     """How much of each unit load of the surface acts at each instant, by phase: (T, K, 2)."""
-    if isinstance(answer, SolidAnswer | CutAnswer):
-        known = answer.solution.fields if isinstance(answer, SolidAnswer) else answer
+    if isinstance(answer, SolidField | CutField):
+        known = answer.solution.fields if isinstance(answer, SolidField) else answer
         one = known.coefficients(loads)
         return np.stack([one, np.zeros_like(one)], axis=2)
-    assert isinstance(answer, HarmonicAnswer)
+    assert isinstance(answer, HarmonicField)
     acting = loads.coefficients()
     none = np.zeros((len(loads), 2))
     return np.stack([acting.get(load, none) for load in answer.fields.loads], axis=1)
 
 
-def excluded(answer: Answer) -> Mask:
+def excluded(answer: StressField) -> Mask:
     """Which points of the surface (P,) lie in a singularity, where the maximum is not read."""
-    if isinstance(answer, CutAnswer):
+    if isinstance(answer, CutField):
         return ~answer.surface.read
-    if isinstance(answer, SolidAnswer):
+    if isinstance(answer, SolidField):
         surface = answer.solution.fields.surface
         inside = ~answer.solution.outside[: len(surface.nodes)]
         return np.asarray(inside[np.searchsorted(surface.nodes, _shown(surface)[0])])
-    assert isinstance(answer, HarmonicAnswer)
+    assert isinstance(answer, HarmonicField)
     return ~outside(answer.singularities, *answer.fields.points[: answer.fields.skin].T)
 
 
-def largest_there(answer: Answer, loads: PinLoads, instant: int) -> Floats:
+def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
     """Von Mises stress (P,) Pa at the surface's points at an instant, of a meridian the largest
     about the axis where it is read (fea.harmonic.free_surface), 0 where it is not.
     """
-    if isinstance(answer, SolidAnswer | CutAnswer):
-        if isinstance(answer, CutAnswer):
-            stress = METRIC @ answer.surface.stress
+    if isinstance(answer, SolidField | CutField):
+        if isinstance(answer, CutField):
+            stress = VON_MISES_ROOT @ answer.surface.stress
         else:
             fields = answer.solution.fields
-            stress = METRIC @ fields.stress[_shown(fields.surface)[0]]
+            stress = VON_MISES_ROOT @ fields.stress[_shown(fields.surface)[0]]
         return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
-    assert isinstance(answer, HarmonicAnswer)
+    assert isinstance(answer, HarmonicField)
     skin = np.arange(answer.fields.skin)
     found, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
     return found
 
 
-def largest_at(answer: Answer, loads: PinLoads, instant: int) -> tuple[float, float, float] | None:
+def largest_at(
+    answer: StressField, loads: PinLoads, instant: int
+) -> tuple[float, float, float] | None:
     """Where (x, y, z), m, the largest stress of what is read of a section is at an instant; None of
     other models.
     """
-    if not isinstance(answer, HarmonicAnswer):
+    if not isinstance(answer, HarmonicField):
         return None
     around = answer.reader(loads.at(np.array([instant])))
     top = around.top(around.fields.outside(answer.singularities))
@@ -139,15 +141,15 @@ def largest_at(answer: Answer, loads: PinLoads, instant: int) -> tuple[float, fl
     return r * math.cos(top.angle), r * math.sin(top.angle), z
 
 
-def unread(answer: Answer, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
+def unread(answer: StressField, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
     """Where points (J,) of the surface are not read, for lugs press on them or beside: (T, J, A) at
     all instants and angles (rad). None where no lugs press on a body of revolution.
     """
-    if not isinstance(answer, HarmonicAnswer) or loads.pressed is None:
+    if not isinstance(answer, HarmonicField) or loads.pressed is None:
         return None
     region = answer.reader(loads).region
     assert region is not None
-    arcs = np.rint(np.degrees(angles) * BINS / 360.0).astype(np.int64) % BINS
+    arcs = np.rint(np.degrees(angles) * ARC_COUNT / 360.0).astype(np.int64) % ARC_COUNT
     some = np.flatnonzero(region.masked(points))
     out = np.zeros((len(loads), len(points), len(angles)), dtype=bool)
     for t in range(len(loads)):
@@ -158,8 +160,8 @@ def unread(answer: Answer, loads: PinLoads, points: Ints, angles: Floats) -> Mas
 def _shown(surface: SurfaceMesh) -> tuple[Ints, Ints]:
     """Nodes (P,), sorted, and plane triangles (M, 3) of them; of a fine mesh the corners alone."""
     corners = surface.corners
-    if len(surface.nodes) > MOST_NODES:
+    if len(surface.nodes) > MAX_SHOWN_NODES:
         corners = corners[:, :3]
     elif corners.shape[1] == 6:
-        corners = corners[:, QUARTERS].reshape(-1, 3)
+        corners = corners[:, QUARTER_TRIANGLES].reshape(-1, 3)
     return np.unique(corners), np.asarray(corners, dtype=np.int64)

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fea.core.linear_solver import SolveError
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import (
-    NOTHING,
+    NO_REASON,
     ErrorParts,
-    Note,
-    Peak,
+    Maximum,
+    Reason,
     Refinement,
     SingularZone,
     Verdict,
@@ -19,23 +19,23 @@ from fea.core.peak import (
     discretisation_error,
 )
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Singularity
+from fea.singular.singularities import Zone
 
-LEAST_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
+MIN_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
 # Scatter of the maximum on the first mesh with the positions of nodes, relative; ~ h^2. Sections:
 # measured on random shoulders; solids: on fillets with and without a bore, 0.07 to 0.13; local
 # solids: on holes under superposed tension, bending and torsion (`benchmarks cut-scatter`), where
 # 95 % of maxima are off by less.
-NOISE = {"harmonic": 0.026, "solid": 0.13, "harmonic+local": 0.05}
-FEWEST = 3  # meshes before a maximum can be converged: two can agree by chance
+FIRST_MESH_SCATTER = {"harmonic": 0.026, "solid": 0.13, "harmonic+local": 0.05}
+MIN_MESHES = 3  # meshes before a maximum can be converged: two can agree by chance
 
-ARTICLES = {
+KIND_ARTICLES = {
     "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"
 }  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Seen:
+class MeshHistory:
     """The meshes of one case so far, coarse to fine, each `ratio` times finer than the one before;
     seconds: the time of each. first: how many meshes of a run are coarser than the first of these.
     fewest: before the maximum can be converged.
@@ -44,13 +44,13 @@ class Seen:
     pin: str
     case: str
     model: str
-    results: tuple[MeshResult, ...]
+    results: tuple[MeshMaximum, ...]
     seconds: tuple[float, ...]
     ratio: float
     first: int = 0
-    fewest: int = FEWEST
+    fewest: int = MIN_MESHES
 
-    def then(self, result: MeshResult, spent: float) -> Seen:
+    def then(self, result: MeshMaximum, spent: float) -> MeshHistory:
         """With one more mesh, on which s were spent."""
         return replace(self, results=(*self.results, result), seconds=(*self.seconds, spent))
 
@@ -85,10 +85,10 @@ class Seen:
         mesh = self._of_mesh(last)
         return ErrorParts(mesh, last.between, last.left_out, truncation=last.truncated)
 
-    def _of_mesh(self, last: MeshResult) -> float:
-        least = LEAST_ORDER.get(self.model, 0.5)
+    def _of_mesh(self, last: MeshMaximum) -> float:
+        least = MIN_ORDER.get(self.model, 0.5)
         finer = self.ratio ** (self.first + len(self.results) - 1)
-        noise = NOISE.get(self.model, 0.0) * last.maximum / finer**2
+        noise = FIRST_MESH_SCATTER.get(self.model, 0.0) * last.maximum / finer**2
         scatter = max(last.scatter, noise)
         return discretisation_error(self.history, self.ratio, scatter, least)
 
@@ -119,12 +119,12 @@ class Seen:
         return len(self.results) >= self.fewest and self.relative <= tolerance
 
 
-def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[SingularZone, ...]:
+def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZone, ...]:
     """The zones to report."""
     return tuple(
         SingularZone(
             location=inside.location,
-            kind=f"{ARTICLES[singularity.kind]} {singularity.kind}",
+            kind=f"{KIND_ARTICLES[singularity.kind]} {singularity.kind}",
             between=singularity.between,
             exponent=inside.exponent,
             exponent_theory=singularity.theory,
@@ -141,8 +141,8 @@ def zones(result: MeshResult, singularities: Sequence[Singularity]) -> tuple[Sin
 
 
 def judge(
-    seen: Seen, singularities: Sequence[Singularity], tolerance: float, note: Note = NOTHING
-) -> Peak:
+    seen: MeshHistory, singularities: Sequence[Zone], tolerance: float, note: Reason = NO_REASON
+) -> Maximum:
     """The peak of a case; `note` is appended to that of the verdict.
 
     Raises: SolveError when the stress is not finite.
@@ -160,7 +160,7 @@ def judge(
     if len(seen.results) < seen.fewest and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
-        own = Note(text, ("too-few-meshes",))
+        own = Reason(text, ("too-few-meshes",))
     error, interval = seen.error, None
     if governing:
         verdict = "singular"
@@ -170,9 +170,9 @@ def judge(
         ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
         outside = "" if known else f"; outside, {own.text}"
         text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
-        own = Note(text, own.codes)
+        own = Reason(text, own.codes)
     own = own + note
-    return Peak(
+    return Maximum(
         pin=seen.pin,
         case=seen.case,
         model=seen.model,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-CAD = (".step", ".stp", ".brep", ".iges", ".igs")  # shapes; everything else is a mesh
+CAD_SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")  # shapes; everything else is a mesh
 
 
 @dataclass(frozen=True)
@@ -32,4 +32,4 @@ class BodyFile:
     @property
     def meshed(self) -> bool:
         """Whether it is a mesh already."""
-        return self.path.suffix.lower() not in CAD
+        return self.path.suffix.lower() not in CAD_SUFFIXES

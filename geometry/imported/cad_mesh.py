@@ -20,7 +20,7 @@ from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
 from geometry.shape.pin import GeometryError
 
-FLAT = 1e-9  # curvature times the body's size below which a surface is plane
+MAX_PLANE_CURVATURE = 1e-9  # curvature times the body's size below which a surface is plane
 
 
 def cad_mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
@@ -177,7 +177,7 @@ def _curvature(gmsh: Any, face: int, whole: float) -> tuple[float, bool]:
     u, v = (np.linspace(a, b, 5)[1:-1] for a, b in zip(low, high, strict=True))
     at = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
     largest = max(np.abs(k).max() for k in gmsh.model.getPrincipalCurvatures(face, at.ravel())[:2])
-    if largest * whole < FLAT:
+    if largest * whole < MAX_PLANE_CURVATURE:
         return math.inf, False
     x = np.reshape(gmsh.model.getValue(2, face, at.ravel()), (-1, 3))
     r = np.hypot(x[:, 0], x[:, 1])

@@ -7,10 +7,10 @@ from skfem import MeshTet2
 
 from geometry.imported.named_bands import facets
 
-LEAST = 0.035  # rad (2 deg): flatter arcs lose less than 0.02 % of their section
-EVEN = 0.3  # how unequally the normals at an arc's ends may lean from its chord
-BENT = 0.05  # of an arc's sag: a middle node nearer to the chord than that is on it
-MOST = 0.5  # of the arcs; some edges lie on no arc
+MIN_ARC_ANGLE = 0.035  # rad (2 deg): flatter arcs lose less than 0.02 % of their section
+MAX_LEAN_DIFFERENCE = 0.3  # how unequally the normals at an arc's ends may lean from its chord
+CHORD_NODE_TOLERANCE = 0.05  # of an arc's sag: a middle node nearer to the chord than that is on it
+MAX_STRAIGHT_SHARE = 0.5  # of the arcs; some edges lie on no arc
 
 
 def cut_off(mesh: MeshTet2) -> float:
@@ -31,10 +31,10 @@ def cut_off(mesh: MeshTet2) -> float:
     length = np.linalg.norm(x[b] - x[a], axis=1)
     lean = [np.sum(normals[end] * (x[b] - x[a]), axis=1) / length for end in (a, b)]
     angle = np.abs(lean[1] - lean[0])
-    arcs = (angle > LEAST) & (np.abs(lean[0] + lean[1]) < EVEN * angle)
+    arcs = (angle > MIN_ARC_ANGLE) & (np.abs(lean[0] + lean[1]) < MAX_LEAN_DIFFERENCE * angle)
     off = np.linalg.norm(x[mesh.nvertices + edge] - 0.5 * (x[a] + x[b]), axis=1)
-    straight = arcs & (off < BENT * length * angle / 8.0)
-    if straight.sum() <= MOST * arcs.sum():
+    straight = arcs & (off < CHORD_NODE_TOLERANCE * length * angle / 8.0)
+    if straight.sum() <= MAX_STRAIGHT_SHARE * arcs.sum():
         return 0.0
     sag = np.where(straight, length * angle / 8.0, 0.0)
     return float(np.tile(here.areas, 3) @ sag / 3.0)

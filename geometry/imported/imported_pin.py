@@ -18,7 +18,7 @@ from geometry.mesh.solid_mesh import MeshSize, SolidMesh
 from geometry.mesh.tet10 import refined
 from geometry.shape.pin import Band, GeometryError
 
-MEASURE = MeshSize(across=3.0, corner=1.0)  # the mesh on which a CAD file is measured
+MEASURING_MESH_SIZE = MeshSize(across=3.0, corner=1.0)  # the mesh on which a CAD file is measured
 
 
 def here(work: Callable[..., Any], *arguments: object) -> Any:
@@ -58,7 +58,7 @@ class SolidBody:
 
     @cached_property
     def _coarse(self) -> SolidMesh:
-        return self.mesh(MEASURE)
+        return self.mesh(MEASURING_MESH_SIZE)
 
     def mesh(self, size: MeshSize) -> SolidMesh:
         """A mesh of this size; the elements of a mesh file are halved once for every factor of two

@@ -19,9 +19,9 @@ from geometry.mesh.tet10 import find_facets, quadratic
 from geometry.shape.pin import GeometryError
 from pinbase.arrays import Ints
 
-SURFACES = ("triangle", "triangle6")
-FARTHEST = 1000.0  # m; as pins with a profile
-HARMLESS = ("vertex", "line", "line3", *SURFACES)
+SURFACE_CELLS = ("triangle", "triangle6")
+MAX_COORDINATE = 1000.0  # m; as pins with a profile
+ACCEPTED_CELLS = ("vertex", "line", "line3", *SURFACE_CELLS)
 
 
 def mesh_from_file(file: BodyFile) -> SolidMesh:
@@ -34,9 +34,10 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
     where = f"pin {file.name}: {file.path.name}"
     _require_tetrahedra({block.type for block in mesh.cells}, where)
     points = np.asarray(mesh.points, dtype=float)
-    if not (np.isfinite(points).all() and np.abs(points).max() < FARTHEST / file.unit):
+    if not (np.isfinite(points).all() and np.abs(points).max() < MAX_COORDINATE / file.unit):
         raise GeometryError(
-            f"{where}: it has nodes whose coordinates are not finite or exceed {FARTHEST:g} m; "
+            f"{where}: it has nodes whose coordinates are not finite or exceed "
+            f"{MAX_COORDINATE:g} m; "
             "check geometry_unit, or export it again",
             "bad-nodes",
         )
@@ -86,7 +87,7 @@ def _require_tetrahedra(kinds: set[str], where: str) -> None:
             f"{', '.join(sorted(kinds)) or 'nodes'}; export a mesh of tetrahedra",
             "no-volume",
         )
-    if other := kinds - {"tetra", "tetra10", *HARMLESS}:
+    if other := kinds - {"tetra", "tetra10", *ACCEPTED_CELLS}:
         raise GeometryError(
             f"{where}: only tetrahedra are supported, but the mesh also has "
             f"{', '.join(sorted(other))}",
@@ -127,12 +128,12 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
         if name.startswith("gmsh:"):
             continue
         for block, rows in zip(mesh.cells, blocks, strict=True):
-            if block.type in SURFACES and rows is not None and len(rows):
+            if block.type in SURFACE_CELLS and rows is not None and len(rows):
                 out.setdefault(name, []).append(block.data[np.asarray(rows, dtype=np.int64), :3])
     marked = mesh.cell_data.get("gmsh:physical")
     for name, (tag, dimension) in mesh.field_data.items() if marked is not None else ():
         for block, tags in zip(mesh.cells, marked, strict=True):
-            if dimension == 2 and block.type in SURFACES and name not in mesh.cell_sets:
+            if dimension == 2 and block.type in SURFACE_CELLS and name not in mesh.cell_sets:
                 out.setdefault(name, []).append(block.data[np.asarray(tags) == tag, :3])
     return {name: np.concatenate(parts).astype(np.int64) for name, parts in out.items()}
 

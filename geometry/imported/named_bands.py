@@ -8,12 +8,12 @@ import numpy as np
 from skfem import ElementTetP2, FacetBasis, MeshTet2
 
 from geometry.imported.body_file import BodyFile, Place
-from geometry.shape.pin import FACES, Band, GeometryError
+from geometry.shape.pin import END_FACES, Band, GeometryError
 from pinbase.arrays import Floats, Ints, Mask
 
-OUTWARD = 0.5  # cosine to the radius above which a facet belongs to an outer surface
-DEPTH = 0.02  # of the local radius: how far below it corners of a band's facets may lie
-THIN = 1e-6  # of the body's length
+MIN_OUTWARD_COSINE = 0.5  # cosine to the radius above which a facet belongs to an outer surface
+MAX_FACET_DEPTH = 0.02  # of the local radius: how far below it corners of a band's facets may lie
+BAND_END_SLACK = 1e-6  # of the body's length
 
 
 @dataclass(frozen=True)
@@ -65,8 +65,8 @@ def with_places(mesh: MeshTet2, file: BodyFile) -> MeshTet2:
     named: dict[str, Ints] = dict(mesh.boundaries or {})
     here = facets(mesh)
     z = here.corners[..., 2]
-    slack = THIN * np.ptp(z)
-    for name, at in zip(FACES, (z.min(), z.max()), strict=True):
+    slack = BAND_END_SLACK * np.ptp(z)
+    for name, at in zip(END_FACES, (z.min(), z.max()), strict=True):
         flat = (np.abs(z - at) < slack).all(axis=1)
         if flat.any():
             named.setdefault(name, here.number[flat])
@@ -78,7 +78,7 @@ def _find(here: Facets, named: dict[str, Ints], place: Place, file: BodyFile) ->
     where = f"pin {file.name}: band {place.name}"
     if place.surface is not None:
         if place.surface not in named:
-            known = ", ".join(n for n in named if n not in FACES) or "none"
+            known = ", ".join(n for n in named if n not in END_FACES) or "none"
             raise GeometryError(
                 f"{where}: {file.path.name} has no surface {place.surface!r}; its surfaces are "
                 f"{known}",
@@ -107,7 +107,9 @@ def outermost(here: Facets, z0: float, z1: float) -> Mask:
     """
     middle = here.corners.mean(axis=1)
     r = np.hypot(middle[:, 0], middle[:, 1])
-    facing = np.sum(middle[:, :2] * here.normals[:, :2], axis=1) > OUTWARD * r * here.areas
+    facing = (
+        np.sum(middle[:, :2] * here.normals[:, :2], axis=1) > MIN_OUTWARD_COSINE * r * here.areas
+    )
     on = (middle[:, 2] > z0) & (middle[:, 2] < z1) & facing
     candidates = np.flatnonzero(on)
     candidates = candidates[np.argsort(middle[candidates, 2])]
@@ -118,7 +120,7 @@ def outermost(here: Facets, z0: float, z1: float) -> Mask:
     last = np.searchsorted(height, z.max(axis=1, initial=-np.inf))
     for i, facet in enumerate(candidates):
         outer = max(largest[first[i] : last[i]].max(initial=0.0), largest[i])
-        on[facet] = radius[facet].min() > (1.0 - DEPTH) * outer
+        on[facet] = radius[facet].min() > (1.0 - MAX_FACET_DEPTH) * outer
     return np.asarray(on)
 
 

@@ -9,12 +9,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.imported.sampled_face import NEAR, SampledFace
+from geometry.imported.sampled_face import FACE_TOLERANCE, SampledFace
 from geometry.shape.polygon import RZ, cross
 from geometry.shape.polyline import Bend
 from pinbase.arrays import Floats
 
-QUARTER = math.pi / 2.0 * (1.0 + 1e-9)
+QUARTER_TURN = math.pi / 2.0 * (1.0 + 1e-9)
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class MeridianSide:
         """
         r, z = np.hypot(face.points[:, 0], face.points[:, 1]), face.points[:, 2]
         out = np.sum(face.points[:, :2] * face.normals[:, :2], axis=1)
-        normals = np.stack([out / np.maximum(r, NEAR * size), face.normals[:, 2]], axis=1)
-        off = r > 1e-3 * size * NEAR
+        normals = np.stack([out / np.maximum(r, FACE_TOLERANCE * size), face.normals[:, 2]], axis=1)
+        off = r > 1e-3 * size * FACE_TOLERANCE
         rz, normals = np.stack([r, z], axis=1)[off], normals[off]
         rim = np.stack([np.hypot(face.rim[:, 0], face.rim[:, 1]), face.rim[:, 2]], axis=1)
-        if np.ptp(normals, axis=0).max() < 10.0 * NEAR:
+        if np.ptp(normals, axis=0).max() < 10.0 * FACE_TOLERANCE:
             return _straight(face, rz, rim, normals[0], to_axis)
         return _round(np.vstack([np.stack([r, z], axis=1), rim]), rz, normals, size, face.name)
 
@@ -49,7 +49,7 @@ class MeridianSide:
     def cylinder(self) -> bool:
         """Whether it is parallel to the axis."""
         (r0, z0), (r1, z1) = self.start, self.end
-        return self.centre is None and abs(r1 - r0) <= NEAR * abs(z1 - z0)
+        return self.centre is None and abs(r1 - r0) <= FACE_TOLERANCE * abs(z1 - z0)
 
     @property
     def radius(self) -> float:
@@ -65,7 +65,7 @@ class MeridianSide:
         if self.centre is None:
             yield self
             return
-        count = math.ceil(abs(self.turn) / QUARTER)
+        count = math.ceil(abs(self.turn) / QUARTER_TURN)
         at = [self.start]
         for k in range(1, count):
             at.append(_turned_about(self.centre, self.start, self.turn * k / count))
@@ -108,7 +108,7 @@ def _round(
     rows[:count, 0], rows[count:, 1] = 1.0, 1.0
     rows[:, 2] = normals.T.ravel()
     found, *_ = np.linalg.lstsq(rows, rz.T.ravel(), rcond=None)
-    if np.abs(rows @ found - rz.T.ravel()).max() > 10.0 * NEAR * size:
+    if np.abs(rows @ found - rz.T.ravel()).max() > 10.0 * FACE_TOLERANCE * size:
         return None
     centre = found[:2]
     way = every - centre
@@ -198,7 +198,10 @@ def _alike(a: MeridianSide, b: MeridianSide, near: float) -> bool:
         return False
     if a.centre is None or b.centre is None:
         return a.centre is b.centre
-    return math.dist(a.centre, b.centre) <= 100.0 * near and abs(abs(a.turn) - abs(b.turn)) < NEAR
+    return (
+        math.dist(a.centre, b.centre) <= 100.0 * near
+        and abs(abs(a.turn) - abs(b.turn)) < FACE_TOLERANCE
+    )
 
 
 def _chain(sides: list[MeridianSide], near: float) -> list[MeridianSide]:
@@ -246,7 +249,7 @@ def _without_straight(bends: list[Bend], near: float) -> list[Bend]:
         before = out[-1]
         one, two = (bend.r - before.r, bend.z - before.z), (after.r - bend.r, after.z - bend.z)
         length = math.hypot(*one) * math.hypot(*two)
-        bent = abs(cross(one, two)) > 10.0 * NEAR * length
+        bent = abs(cross(one, two)) > 10.0 * FACE_TOLERANCE * length
         if bend.radius or (bent and math.hypot(*one) > near):
             out.append(bend)
     return [*out, bends[-1]]

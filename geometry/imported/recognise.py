@@ -18,7 +18,7 @@ from geometry.imported.body_file import BodyFile
 from geometry.imported.cad_mesh import face_names, solids_of
 from geometry.imported.outline_chain import MeridianSide, outlines
 from geometry.imported.recognised_cuts import CutFaces
-from geometry.imported.sampled_face import NEAR, Axis, SampledFace, sampled_faces
+from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace, sampled_faces
 from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
 from geometry.shape.features import Cut
@@ -26,9 +26,9 @@ from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polyline import Bend, pin_of_polyline
 from pinbase.arrays import Floats
 
-SAME_VOLUME = 1e-5
-MOST_FACES = 400
-DIGITS = 7  # of the size, to which dimensions are rounded
+VOLUME_TOLERANCE = 1e-5
+MAX_FACES = 400
+DIMENSION_DIGITS = 7  # of the size, to which dimensions are rounded
 
 
 class NotTurnedError(GeometryError):
@@ -45,7 +45,7 @@ class NotTurnedError(GeometryError):
 
 
 @dataclass(frozen=True)
-class Turned:
+class RecognisedProfile:
     """A recognised body, m. start: z of its start face along the axis, in the file's unit, from the
     point of the axis nearest to the file's origin. along: direction of the axis in the file. x:
     that from which angles count. surfaces: z of cylinders from the start face, by their names.
@@ -64,7 +64,7 @@ class Turned:
         return pin_of_polyline(name, self.outside, self.bore)
 
 
-def turned(file: BodyFile, upright: bool = True) -> Turned:
+def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfile:
     """The profile and cuts of the body in a file. upright: only if the file's z-axis is its
     axis.
 
@@ -73,7 +73,7 @@ def turned(file: BodyFile, upright: bool = True) -> Turned:
     with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
         solids = solids_of(gmsh, file)
         tags = [tag for _, tag in gmsh.model.getEntities(2)]
-        if len(tags) > MOST_FACES:
+        if len(tags) > MAX_FACES:
             raise _not(file, f"it has {len(tags)} faces")
         faces = sampled_faces(gmsh, face_names(file, tags))
         x0, y0, z0, x1, y1, z1 = gmsh.model.getBoundingBox(-1, -1)
@@ -103,7 +103,7 @@ def _axis(
         return sum(f.area for f in round_ones)
 
     areas = [turned_area(axis) for axis in found]
-    best = int(np.argmax(np.array(areas) * [1.0 + NEAR, *[1.0] * (len(found) - 1)]))
+    best = int(np.argmax(np.array(areas) * [1.0 + FACE_TOLERANCE, *[1.0] * (len(found) - 1)]))
     if not areas[best]:
         raise _not(file, "none of its faces is of revolution")
     if best and upright:
@@ -112,7 +112,7 @@ def _axis(
         )
     axis = found[best]
     along = axis.along * math.copysign(1.0, axis.along[int(np.argmax(np.abs(axis.along)))])
-    along = np.where(np.abs(along) < NEAR, 0.0, along)
+    along = np.where(np.abs(along) < FACE_TOLERANCE, 0.0, along)
     along /= np.linalg.norm(along)
     return Axis(axis.point - (axis.point @ along) * along, along)
 
@@ -122,7 +122,7 @@ def _reaches_axis(gmsh: Any, faces: Sequence[SampledFace], axis: Axis) -> set[in
     found = set()
     for face in faces:
         normal = face.normals[0]
-        if face.plane and abs(abs(normal @ axis.along) - 1.0) < NEAR:
+        if face.plane and abs(abs(normal @ axis.along) - 1.0) < FACE_TOLERANCE:
             at = axis.point + ((face.points[0] - axis.point) @ axis.along) * axis.along
             if gmsh.model.isInside(2, face.tag, at.tolist()):
                 found.add(face.tag)
@@ -131,7 +131,7 @@ def _reaches_axis(gmsh: Any, faces: Sequence[SampledFace], axis: Axis) -> set[in
 
 def _turned(
     file: BodyFile, faces: Sequence[SampledFace], axis: Axis, inside: set[int], size: float
-) -> Turned:
+) -> RecognisedProfile:
     frame = axis.frame()
     local = [_in_frame(face, axis.point, frame) for face in faces]
     upright = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
@@ -147,19 +147,19 @@ def _turned(
             )
         sides.append(side)
     try:
-        outside, bore = outlines(sides, NEAR * size)
+        outside, bore = outlines(sides, FACE_TOLERANCE * size)
     except ValueError as error:
         raise _not(file, str(error)) from None
     start = min(bend.z for bend in outside)
     down = np.array([0.0, 0.0, start])
     surfaces = _surfaces(sides, start, size, file.unit)
-    digits = DIGITS - math.floor(math.log10(size))
+    digits = DIMENSION_DIGITS - math.floor(math.log10(size))
     rest = [_in_frame(face, down, np.eye(3)) for face in rest]
     profile = [
         tuple(_rounded(bend, start, digits, 1.0) for bend in line) for line in (outside, bore)
     ]
     cuts = _cuts(file, rest, profile, size) if rest else ()
-    return Turned(
+    return RecognisedProfile(
         tuple(_rounded(bend, start, digits, file.unit) for bend in outside),
         tuple(_rounded(bend, start, digits, file.unit) for bend in bore),
         tuple(cut.rounded(digits).scaled(file.unit) for cut in cuts),
@@ -210,13 +210,13 @@ def _surfaces(
     ends: dict[tuple[int, ...], tuple[float, float]] = {}
     for side in (side for side in sides if side.cylinder):
         z0, z1 = sorted((side.start[1], side.end[1]))
-        key = tuple(round(x / (10.0 * NEAR * size)) for x in (side.start[0], z0, z1))
+        key = tuple(round(x / (10.0 * FACE_TOLERANCE * size)) for x in (side.start[0], z0, z1))
         names.setdefault(key, set()).add(side.name)
         ends[key] = (z0 - start) * unit, (z1 - start) * unit
     return {name: ends[key] for key, (name, *more) in names.items() if not more}
 
 
-def _require_volume(file: BodyFile, found: Turned, volume: float) -> None:
+def _require_volume(file: BodyFile, found: RecognisedProfile, volume: float) -> None:
     try:
         profile = found.pin(file.name)
         made = profile.volume
@@ -224,7 +224,7 @@ def _require_volume(file: BodyFile, found: Turned, volume: float) -> None:
             made = CutPin.of(profile, found.cuts).volume
     except (GeometryError, MeshError) as error:
         raise _not(file, f"as a profile with cuts it is impossible ({error})") from None
-    if abs(made / volume - 1.0) > SAME_VOLUME:
+    if abs(made / volume - 1.0) > VOLUME_TOLERANCE:
         raise _not(
             file, f"a profile of its faces of revolution has {made / volume:.6g} times its volume"
         )

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from geometry.imported.sampled_face import NEAR, Axis, SampledFace
-from geometry.shape.drill import FLAT_TIP, Bottom
+from geometry.imported.sampled_face import FACE_TOLERANCE, Axis, SampledFace
+from geometry.shape.drill import FLAT_TIP_ANGLE, Bottom
 from geometry.shape.features import Cut, outer_radius, radii
 from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
@@ -23,7 +23,7 @@ from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats
 
-Z = np.array([0.0, 0.0, 1.0])
+Z_AXIS = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass
@@ -79,7 +79,7 @@ class CutFaces:
     @property
     def near(self) -> float:
         """Within which two places are one."""
-        return 10.0 * NEAR * self.size
+        return 10.0 * FACE_TOLERANCE * self.size
 
     def _cylinders(
         self, faces: Sequence[SampledFace]
@@ -97,7 +97,7 @@ class CutFaces:
             line, group = place, across if abs(place.along[2]) < 0.5 else along
             made = _Drilled(line, 0.0, 0.0, 0.0, [face])
             s, _ = made.local(face.points)
-            if np.ptp(s) > NEAR * self.size:
+            if np.ptp(s) > FACE_TOLERANCE * self.size:
                 bent.append(face)
                 continue
             t = made.local(face.rim)[1]
@@ -108,19 +108,23 @@ class CutFaces:
     def _placed(self, axis: Axis) -> Axis | None:
         """An axis along the pin's or across it and through it, from the point nearest to that."""
         way = axis.along / np.linalg.norm(axis.along)
-        if abs(abs(way[2]) - 1.0) < NEAR:
-            return Axis(axis.point * [1.0, 1.0, 0.0], Z)
-        if abs(way[2]) > NEAR:
+        if abs(abs(way[2]) - 1.0) < FACE_TOLERANCE:
+            return Axis(axis.point * [1.0, 1.0, 0.0], Z_AXIS)
+        if abs(way[2]) > FACE_TOLERANCE:
             return None
-        if abs(way[0] * axis.point[1] - way[1] * axis.point[0]) > NEAR * self.size:
+        if abs(way[0] * axis.point[1] - way[1] * axis.point[0]) > FACE_TOLERANCE * self.size:
             return None
-        way = way * (1.0 if way[0] > NEAR or (abs(way[0]) <= NEAR and way[1] > 0.0) else -1.0)
+        way = way * (
+            1.0
+            if way[0] > FACE_TOLERANCE or (abs(way[0]) <= FACE_TOLERANCE and way[1] > 0.0)
+            else -1.0
+        )
         return Axis(axis.point * [0.0, 0.0, 1.0], way)
 
     def _joined(self, group: list[_Drilled], made: _Drilled) -> None:
         for other in group:
             same = np.abs(other.axis.point - made.axis.point).max() < self.near
-            same &= np.abs(other.axis.along - made.axis.along).max() < NEAR
+            same &= np.abs(other.axis.along - made.axis.along).max() < FACE_TOLERANCE
             if same and abs(other.radius - made.radius) < self.near:
                 other.low, other.high = min(other.low, made.low), max(other.high, made.high)
                 other.faces += made.faces
@@ -131,7 +135,9 @@ class CutFaces:
         """The cylinder about whose axis a face is of revolution, and near which it lies."""
         for c in drilled:
             s, _ = c.local(face.rim)
-            normal_along = not face.plane or abs(abs(face.normals[0] @ c.axis.along) - 1.0) < NEAR
+            normal_along = (
+                not face.plane or abs(abs(face.normals[0] @ c.axis.along) - 1.0) < FACE_TOLERANCE
+            )
             inside = (
                 s.max() <= 2.0 * c.radius if not face.plane else s.max() <= c.radius + self.near
             )
@@ -152,7 +158,7 @@ class CutFaces:
             for other in planes[i + 1 :]:
                 m = one.normals[0]
                 h = float(one.points[0] @ m)
-                if abs(abs(m @ other.normals[0]) - 1.0) > NEAR or abs(h) < self.near:
+                if abs(abs(m @ other.normals[0]) - 1.0) > FACE_TOLERANCE or abs(h) < self.near:
                     continue
                 if abs(float(other.points[0] @ m) + h) > self.near:
                     continue
@@ -171,7 +177,7 @@ class CutFaces:
         across: Sequence[_Drilled],
         along: Sequence[_Drilled],
     ) -> tuple[Slot, set[int]] | None:
-        k = np.cross(walls[0].normals[0], Z)
+        k = np.cross(walls[0].normals[0], Z_AXIS)
         rim = np.concatenate([wall.rim for wall in walls])
         k = k * math.copysign(1.0, float((rim @ k).mean()))
         z0, z1 = float(rim[:, 2].min()), float(rim[:, 2].max())
@@ -179,13 +185,13 @@ class CutFaces:
             c
             for c in across
             if abs(c.radius - h) < self.near
-            and abs(abs(c.axis.along @ k) - 1.0) < NEAR
+            and abs(abs(c.axis.along @ k) - 1.0) < FACE_TOLERANCE
             and min(abs(c.axis.point[2] - z) for z in (z0, z1)) < self.near
         ]
         floors = [
             f
             for f in planes
-            if abs(abs(f.normals[0] @ k) - 1.0) < NEAR
+            if abs(abs(f.normals[0] @ k) - 1.0) < FACE_TOLERANCE
             and float((f.points @ k).mean()) < float((rim @ k).max())
             and np.abs(f.rim @ walls[0].normals[0]).max() <= h + self.near
             and f.rim[:, 2].max() > z0 + self.near
@@ -222,7 +228,7 @@ class CutFaces:
         out, used = [], set()
         for face in planes:
             normal = face.normals[0]
-            if abs(normal[2]) > NEAR:
+            if abs(normal[2]) > FACE_TOLERANCE:
                 raise ValueError(face.name)
             distance = float(face.points[0] @ normal)
             normal = normal * math.copysign(1.0, distance)
@@ -234,7 +240,7 @@ class CutFaces:
                 touches = min(abs(z.max() - z0), abs(z.min() - z1)) < self.near
                 if axis is None or not touches or level.min() < abs(distance) - self.near:
                     continue
-                if abs(abs(axis.along @ np.cross(normal, Z)) - 1.0) < NEAR:
+                if abs(abs(axis.along @ np.cross(normal, Z_AXIS)) - 1.0) < FACE_TOLERANCE:
                     radius = float(
                         np.linalg.norm(np.cross(other.points[0] - axis.point, axis.along))
                     )
@@ -253,20 +259,20 @@ class CutFaces:
         """Where the full diameter ends, before its corner is rounded, and what follows; end: t of
         the wall there; way: of t, out of the hole.
         """
-        tip, top, curved = FLAT_TIP, end, False
+        tip, top, curved = FLAT_TIP_ANGLE, end, False
         for face in self._beyond_wall(c):
             s, t = c.local(face.points)
             if face.plane:
                 top = float(t.mean())
                 continue
             slope = np.abs(face.normals @ c.axis.along)
-            if np.ptp(slope) < 10.0 * NEAR:
+            if np.ptp(slope) < 10.0 * FACE_TOLERANCE:
                 tip = 2.0 * math.asin(min(1.0, float(slope.mean())))
                 apex = t - way * s / math.tan(tip / 2.0)
                 top = float(apex.mean()) + way * c.radius / math.tan(tip / 2.0)
             else:
                 curved = True
-        if curved and tip == FLAT_TIP:
+        if curved and tip == FLAT_TIP_ANGLE:
             rims = [way * c.local(face.rim)[1].min() for face in self._beyond_wall(c)]
             ends = [way * c.local(face.rim)[1].max() for face in self._beyond_wall(c)]
             top = way * min(*rims, *ends)
@@ -283,7 +289,7 @@ class CutFaces:
                 chamfer = float((s + outer - np.abs(t)).mean()) - c.radius
         blind = bool(self._beyond_wall(c))
         if c.low < 0.0 < c.high and not blind:
-            angle = 0.0 if math.pi - angle % math.pi < NEAR else angle % math.pi
+            angle = 0.0 if math.pi - angle % math.pi < FACE_TOLERANCE else angle % math.pi
             return Hole(z, 2.0 * c.radius, angle, chamfer=chamfer)
         way = 1.0 if c.high > -c.low else -1.0
         end = c.low if way > 0.0 else c.high

@@ -19,9 +19,9 @@ import numpy as np
 
 from pinbase.arrays import Floats
 
-NEAR = 1e-6  # of the body's size: two places; and of 1: two directions
-GRID = np.linspace(0.0, 1.0, 7)
-ALONG = np.linspace(0.0, 1.0, 9)
+FACE_TOLERANCE = 1e-6  # of the body's size: two places; and of 1: two directions
+FACE_GRID_FRACTIONS = np.linspace(0.0, 1.0, 7)
+EDGE_FRACTIONS = np.linspace(0.0, 1.0, 9)
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,11 @@ class Axis:
     def frame(self) -> Floats:
         """Unit vectors x, y, z (3, 3) by row, z along the axis; the file's own where that is z."""
         z = self.along
-        first = np.eye(3)[int(np.argmin(np.abs(z)))] if abs(z[2]) < 1.0 - NEAR else np.eye(3)[0]
+        first = (
+            np.eye(3)[int(np.argmin(np.abs(z)))]
+            if abs(z[2]) < 1.0 - FACE_TOLERANCE
+            else np.eye(3)[0]
+        )
         x = first - (first @ z) * z
         x /= np.linalg.norm(x)
         return np.stack([x, np.cross(z, x), z])
@@ -56,7 +60,7 @@ class SampledFace:
     @property
     def plane(self) -> bool:
         """Whether it is flat."""
-        return bool(np.ptp(self.normals, axis=0).max() < NEAR)
+        return bool(np.ptp(self.normals, axis=0).max() < FACE_TOLERANCE)
 
     def motions(self, centre: Floats, size: float) -> Floats:
         """A basis (K, 6) of the motions (a, w) that leave it in itself; lengths over `size`, from
@@ -65,7 +69,7 @@ class SampledFace:
         p = (self.points - centre) / size
         rows = np.hstack([self.normals, np.cross(p, self.normals)])
         _, values, basis = np.linalg.svd(rows, full_matrices=True)
-        return np.asarray(basis[values < NEAR * np.sqrt(len(rows))])
+        return np.asarray(basis[values < FACE_TOLERANCE * np.sqrt(len(rows))])
 
     def axis(self, centre: Floats, size: float) -> Axis | None:
         """The one line about which it is of revolution; None of planes, spheres and others."""
@@ -77,7 +81,7 @@ class SampledFace:
         left, values, _ = np.linalg.svd(motions[:, 3:])
         turn = left[:, 0] @ motions / values[0]
         w, a = turn[3:], turn[:3]
-        if abs(w @ a) > NEAR and len(motions) == 1:  # a screw
+        if abs(w @ a) > FACE_TOLERANCE and len(motions) == 1:  # a screw
             return None
         return Axis(centre + size * np.cross(w, a), w)
 
@@ -87,7 +91,7 @@ class SampledFace:
         across = np.cross(axis.along, p)
         r = np.linalg.norm(across, axis=1)
         about = np.abs(np.sum(across * self.normals, axis=1))
-        return bool((about <= NEAR * np.maximum(r, size)).all())
+        return bool((about <= FACE_TOLERANCE * np.maximum(r, size)).all())
 
 
 def sampled_faces(gmsh: Any, names: dict[int, str]) -> list[SampledFace]:
@@ -98,17 +102,17 @@ def sampled_faces(gmsh: Any, names: dict[int, str]) -> list[SampledFace]:
 def _sampled(gmsh: Any, tag: int, name: str) -> SampledFace:
     model = gmsh.model
     low, high = model.getParametrizationBounds(2, tag)
-    u, v = (a + GRID * (b - a) for a, b in zip(low, high, strict=True))
+    u, v = (a + FACE_GRID_FRACTIONS * (b - a) for a, b in zip(low, high, strict=True))
     at = np.stack(np.meshgrid(u, v), axis=-1).ravel().tolist()
     points = np.reshape(model.getValue(2, tag, at), (-1, 3))
     normals = np.reshape(model.getNormal(tag, at), (-1, 3))
     length = np.linalg.norm(normals, axis=1)
-    inner = (GRID > 0.0) & (GRID < 1.0)
+    inner = (FACE_GRID_FRACTIONS > 0.0) & (FACE_GRID_FRACTIONS < 1.0)
     good = np.isfinite(length) & (length > 0.5) & np.outer(inner, inner).ravel()  # not at a pole
     rim = [np.zeros((0, 3))]
     for _, curve in model.getBoundary([(2, tag)], combined=False, oriented=False):
         first, last = model.getParametrizationBounds(1, curve)
-        along = (first[0] + ALONG * (last[0] - first[0])).tolist()
+        along = (first[0] + EDGE_FRACTIONS * (last[0] - first[0])).tolist()
         rim.append(np.reshape(model.getValue(1, curve, along), (-1, 3)))
     area = float(model.occ.getMass(2, tag))
     face = SampledFace(tag, name, points[good], normals[good], np.concatenate(rim), area)

@@ -22,17 +22,23 @@ from geometry.shape.pin import Pin
 Spots = Sequence[tuple[float, float, float]]
 
 # about what a cut disturbs: elements over the diameter, and along a fillet's quarter circle
-ELSEWHERE = MeshSize(across=2.5, corner=1.0, arc=1.0, growth=0.6)
-QUARTER = 6.0  # elements on a quarter of a hole's edge
-ALONG = 1.4  # size at the edges of slots, which are long, over that
-ARC, ARC_ALONG = 4.0, 2.5  # elements on the quarter circle of a rounded corner; of slots
-CORNER = 0.07  # size at a sharp inner corner, of a cut's size
-FACE = 0.12  # size on a flat, of the pin's diameter
-WALL, LONG_WALL = 1.5, 2.0  # size on its wall over that at its edge; of passages
-GROWTH = 0.45  # of the size with the distance from there
-REACH = 0.2  # of a cut's size: how far about a spot its elements are small, at most
-ROWS = 6.0  # and of these elements
-ON = 1e-3  # of a cut's size: a spot on one of its surfaces
+REMOTE_MESH_SIZE = MeshSize(across=2.5, corner=1.0, arc=1.0, growth=0.6)
+QUARTER_CIRCLE_ELEMENTS = 6.0  # elements on a quarter of a hole's edge
+SLOT_EDGE_SIZE_RATIO = 1.4  # size at the edges of slots, which are long, over that
+CORNER_ARC_ELEMENTS, SLOT_ARC_ELEMENTS = (
+    4.0,
+    2.5,
+)  # elements on the quarter circle of a rounded corner; of slots
+SHARP_CORNER_SIZE = 0.07  # size at a sharp inner corner, of a cut's size
+FLAT_FACE_SIZE = 0.12  # size on a flat, of the pin's diameter
+WALL_SIZE_RATIO, PASSAGE_WALL_SIZE_RATIO = (
+    1.5,
+    2.0,
+)  # size on its wall over that at its edge; of passages
+PIECE_SIZE_GROWTH = 0.45  # of the size with the distance from there
+MAX_SPOT_REACH = 0.2  # of a cut's size: how far about a spot its elements are small, at most
+SPOT_ELEMENT_ROWS = 6.0  # and of these elements
+SPOT_TOLERANCE = 1e-3  # of a cut's size: a spot on one of its surfaces
 
 
 @dataclass(frozen=True)
@@ -114,13 +120,13 @@ def piece_mesh(piece: Piece, finer: float, spots: Spots = (), at_spots: float = 
     def make(size: MeshSize) -> SolidMesh:
         return _mesh(piece, size, spots, at_spots)
 
-    return sound_mesh(make, MeshSize(QUARTER * finer), piece.profile.name, small)
+    return sound_mesh(make, MeshSize(QUARTER_CIRCLE_ELEMENTS * finer), piece.profile.name, small)
 
 
 def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidMesh:
     unit = unit_of_solid(piece.profile)
     small = piece.scaled(1.0 / unit)
-    finer = size.across / QUARTER
+    finer = size.across / QUARTER_CIRCLE_ELEMENTS
     with gmsh_model(small.profile.name) as gmsh:
         if "z" in small.mirrors and any(cut.undivided for cut in small.cuts.values()):
             _upper_half(gmsh, small)
@@ -133,11 +139,12 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float) -> SolidM
             x, y, z = (c / unit for c in spot)
             h, flat = _at_spot(small, (x, y, z))
             h = h / at_spots
-            d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{min(flat, ROWS * h)!r}"
-            fields.append(formula_size(gmsh, f"{h!r}+{GROWTH / 2!r}*({d}+Fabs({d}))"))
+            inner = min(flat, SPOT_ELEMENT_ROWS * h)
+            d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{inner!r}"
+            fields.append(formula_size(gmsh, f"{h!r}+{PIECE_SIZE_GROWTH / 2!r}*({d}+Fabs({d}))"))
         # By default 1e-9, for which edges with kinks in their size take up to 20 times the rest.
         gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
-        set_sizes(gmsh, small.profile, ELSEWHERE.finer(finer**0.5), (), fields)
+        set_sizes(gmsh, small.profile, REMOTE_MESH_SIZE.finer(finer**0.5), (), fields)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
         jacobian, repaired = repair(gmsh)
@@ -163,22 +170,31 @@ def _upper_half(gmsh: Any, piece: Piece) -> None:
 def _edge_size(piece: Piece, cut: Cut) -> float:
     """Of elements at the edges of a cut on the first mesh, m."""
     if math.isinf(cut.size):
-        return FACE * piece.across(cut)
-    return math.pi * cut.size / (4.0 * QUARTER) * (ALONG if isinstance(cut, Slot) else 1.0)
+        return FLAT_FACE_SIZE * piece.across(cut)
+    return (
+        math.pi
+        * cut.size
+        / (4.0 * QUARTER_CIRCLE_ELEMENTS)
+        * (SLOT_EDGE_SIZE_RATIO if isinstance(cut, Slot) else 1.0)
+    )
 
 
 def _arc_size(cut: Cut, radius: float) -> float:
     """The same where a corner is rounded."""
-    return math.pi * radius / (2.0 * (ARC_ALONG if isinstance(cut, Slot) else ARC))
+    return (
+        math.pi
+        * radius
+        / (2.0 * (SLOT_ARC_ELEMENTS if isinstance(cut, Slot) else CORNER_ARC_ELEMENTS))
+    )
 
 
 def _at_spot(piece: Piece, spot: tuple[float, float, float]) -> tuple[float, float]:
     """Size of elements at a spot on the first mesh, and how far about it, m."""
     at, cuts = np.array([spot]), piece.cuts.values()
-    found = [(_edge_size(piece, cut), REACH * piece.across(cut)) for cut in cuts]
+    found = [(_edge_size(piece, cut), MAX_SPOT_REACH * piece.across(cut)) for cut in cuts]
     for cut in cuts:
         for s in cut.surfaces(piece.profile):
-            if s.radius and abs(float(s.off(at)[0])) < ON * piece.across(cut):
+            if s.radius and abs(float(s.off(at)[0])) < SPOT_TOLERANCE * piece.across(cut):
                 found.append((_arc_size(cut, s.radius), s.radius))
     return min(found)
 
@@ -200,20 +216,22 @@ def _sizes(
         every = [tag for tags in own.values() for tag in tags]
         edges = sorted(rims & _curves(gmsh, every))
         if not math.isinf(cut.size):
-            fields.append(near(gmsh, "CurvesList", edges, h, GROWTH))
-        wall = (LONG_WALL if isinstance(cut, Passage) else WALL) * h
-        fields.append(near(gmsh, "SurfacesList", every, wall, GROWTH))
+            fields.append(near(gmsh, "CurvesList", edges, h, PIECE_SIZE_GROWTH))
+        wall = (PASSAGE_WALL_SIZE_RATIO if isinstance(cut, Passage) else WALL_SIZE_RATIO) * h
+        fields.append(near(gmsh, "SurfacesList", every, wall, PIECE_SIZE_GROWTH))
         for part, tags in own.items():
             if radii[part]:
                 arc = _arc_size(cut, radii[part]) / finer
                 arc = min(arc, wall)
-                fields.append(near(gmsh, "SurfacesList", tags, arc, GROWTH))
-                fields.append(near(gmsh, "CurvesList", sorted(_curves(gmsh, tags)), arc, GROWTH))
+                fields.append(near(gmsh, "SurfacesList", tags, arc, PIECE_SIZE_GROWTH))
+                fields.append(
+                    near(gmsh, "CurvesList", sorted(_curves(gmsh, tags)), arc, PIECE_SIZE_GROWTH)
+                )
         if not any(radii[part] for part in own):
             inner = [curve for curve in _curves(gmsh, every) if _shared(gmsh, curve, every)]
             if inner and len(own) > 1:
-                size = CORNER * piece.across(cut) / finer
-                fields.append(near(gmsh, "CurvesList", inner, size, GROWTH))
+                size = SHARP_CORNER_SIZE * piece.across(cut) / finer
+                fields.append(near(gmsh, "CurvesList", inner, size, PIECE_SIZE_GROWTH))
     return fields
 
 

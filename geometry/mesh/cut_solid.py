@@ -15,17 +15,19 @@ from geometry.shape.features import Cut, Off, outer_radius
 from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
-from geometry.shape.pin import FACES, GeometryError, Pin
+from geometry.shape.pin import END_FACES, GeometryError, Pin
 from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 from pinbase.arrays import Floats
 
 Cuts = Mapping[str, Cut]  # by their names, "hole 1"
 Entity = tuple[int, int]
 
-MIRRORS = {"mirror x": 0, "mirror y": 1}  # planes by the component that vanishes on them
-ASTRAY = 1e-4  # of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces
-ON = 1e-6  # of the pin's size: a curve on two surfaces
-SAMPLES = (0.0, 0.21, 0.5, 0.77, 1.0)  # of an edge of a face
+MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # planes by the component that vanishes on them
+MAX_CURVE_DEVIATION = (
+    1e-4  # of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces
+)
+CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve on two surfaces
+EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of an edge of a face
 
 
 def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) -> Entity:
@@ -101,12 +103,12 @@ def _prism(
     high = [point(-half, b), point(0.0, z1), point(half, b)]
     first, last = point(0.0, a), point(0.0, b)
     curves = [occ.addCircleArc(low[0], first, low[1]), occ.addCircleArc(low[1], first, low[2])]
-    if b - a > ON * half:
+    if b - a > CURVE_TOLERANCE * half:
         curves.append(occ.addLine(low[2], high[0]))
     else:
         high[0], high[2] = low[2], low[0]
     curves += [occ.addCircleArc(high[0], last, high[1]), occ.addCircleArc(high[1], last, high[2])]
-    if b - a > ON * half:
+    if b - a > CURVE_TOLERANCE * half:
         curves.append(occ.addLine(high[2], low[0]))
     face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
     made = occ.extrude([(2, face)], top - floor, 0.0, 0.0)
@@ -116,7 +118,7 @@ def _prism(
 def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> Entity:
     """With the edges of its floor rounded, of a flat those across."""
     gmsh.model.occ.synchronize()
-    near = ON * (cut.z1 - cut.z0)
+    near = CURVE_TOLERANCE * (cut.z1 - cut.z0)
     edges = []
     for _, curve in gmsh.model.getBoundary([tool], recursive=False, oriented=False):
         for _, edge in gmsh.model.getBoundary([(2, curve)], oriented=False):
@@ -130,7 +132,7 @@ def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> En
 
 def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[Entity]:
     """With the edges rounded at which a hole meets the outer surface."""
-    near, r = ON * pin.largest_diameter, outer_radius(pin, hole.z)
+    near, r = CURVE_TOLERANCE * pin.largest_diameter, outer_radius(pin, hole.z)
     placed, edges = hole.placed(pin, 4.0 * r), set()
     for _, face in gmsh.model.getBoundary(body, oriented=False):
         for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False):
@@ -145,7 +147,7 @@ def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[E
 
 def _along(gmsh: Any, curve: int) -> Floats:
     low, high = gmsh.model.getParametrizationBounds(1, curve)
-    at = [float(low[0] + s * (high[0] - low[0])) for s in SAMPLES]
+    at = [float(low[0] + s * (high[0] - low[0])) for s in EDGE_SAMPLE_FRACTIONS]
     return np.reshape(gmsh.model.getValue(1, curve, at), (-1, 3))
 
 
@@ -153,7 +155,7 @@ def named_parts(
     gmsh: Any, pin: Pin, cuts: Cuts, planes: Collection[str] = (), whole: bool = True
 ) -> dict[tuple[str, str], list[int]]:
     """Face tags by name and part: the profile's edges (part ""), "hole 1" and its "wall"; of a
-    sector also its `planes`, MIRRORS by name. whole: whether all must be there.
+    sector also its `planes`, MIRROR_COMPONENTS by name. whole: whether all must be there.
 
     Raises: GeometryError when a feature is cut away by others; MeshError.
     """
@@ -162,7 +164,7 @@ def named_parts(
     for e in meridian(pin):
         if e.name:
             known.append(((e.name, ""), kind_of(e), _off_edge(e)))
-    known += [((plane, ""), "Plane", _off_mirror(MIRRORS[plane])) for plane in planes]
+    known += [((plane, ""), "Plane", _off_mirror(MIRROR_COMPONENTS[plane])) for plane in planes]
     for name, cut in cuts.items():  # a shoulder before the end of a flat in the same plane
         known += [((name, s.part), s.kind, s.off) for s in cut.surfaces(pin)]
     named: dict[tuple[str, str], list[int]] = {}
@@ -170,7 +172,7 @@ def named_parts(
         points, kind = _points(gmsh, face), gmsh.model.getType(2, face)
         off = [float(np.abs(f(points)).max()) if k in ("", kind) else math.inf for _, k, f in known]
         best = int(np.argmin(off))
-        if off[best] > ASTRAY * size:
+        if off[best] > MAX_CURVE_DEVIATION * size:
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
                 "for surfaces that just touch",
@@ -197,7 +199,7 @@ def name_faces(gmsh: Any, pin: Pin, cuts: Cuts) -> dict[str, list[int]]:
 
 def _require_all(pin: Pin, cuts: Cuts, found: Collection[str]) -> None:
     """Raises: GeometryError where a cut, a band that bears, or an end face is gone."""
-    wanted = (*FACES, *pin.connections, *cuts)
+    wanted = (*END_FACES, *pin.connections, *cuts)
     if gone := [name for name in wanted if name not in found]:
         own = next((name for name in gone if name in cuts), "").split()
         raise GeometryError(
@@ -215,7 +217,7 @@ def _points(gmsh: Any, face: int) -> Floats:
     if model.getType(2, face) == "Cylinder":  # whose edges may all lie on another one, too
         low, high = model.getParametrizationBounds(2, face)
         u, v = np.meshgrid(
-            *(a + np.array(SAMPLES) * (b - a) for a, b in zip(low, high, strict=True))
+            *(a + np.array(EDGE_SAMPLE_FRACTIONS) * (b - a) for a, b in zip(low, high, strict=True))
         )
         at = np.stack([u, v], axis=-1).ravel().tolist()
         found.append(np.reshape(model.getValue(2, face, at), (-1, 3)))

@@ -10,16 +10,16 @@ from contextlib import contextmanager
 from typing import Any
 
 from geometry.mesh.signals_kept import signals_kept
-from pinbase.errors import Coded
+from pinbase.errors import CodedError
 
 # For gmsh, which has one state for all threads of a process, and for whatever else draws random
 # numbers from the C library, whose rand() has one state too: else meshes differ from run to run.
-ONE_AT_A_TIME = threading.RLock()
+GMSH_LOCK = threading.RLock()
 
 _open = False
 
 
-class MeshError(Coded, ArithmeticError):
+class MeshError(CodedError, ArithmeticError):
     """No valid mesh could be generated; the message says what was tried and what may help."""
 
 
@@ -34,7 +34,7 @@ def gmsh_model(name: str) -> Iterator[Any]:
     import gmsh
 
     global _open
-    with ONE_AT_A_TIME:
+    with GMSH_LOCK:
         if _open:
             raise RuntimeError(
                 f"gmsh session {name!r} was opened inside another one; close that first"

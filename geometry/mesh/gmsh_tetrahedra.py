@@ -12,8 +12,8 @@ from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
 
-SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
-MOST_REPAIRS = 8  # halvings of an edge's curvature
+MIN_JACOBIAN_RATIO = 0.1  # min / max of det J that every element must exceed
+MAX_REPAIRS = 8  # halvings of an edge's curvature
 TETRA10, TRIANGLE6 = 11, 9  # gmsh's element types
 TETRA4, TRIANGLE3 = 4, 2
 GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
@@ -45,8 +45,8 @@ def repair(gmsh: Any) -> tuple[float, int]:
             "thinner than the pin",
             "no-elements",
         )
-    for _ in range(MOST_REPAIRS):
-        bad = np.flatnonzero(ratios <= SMALLEST_JACOBIAN)
+    for _ in range(MAX_REPAIRS):
+        bad = np.flatnonzero(ratios <= MIN_JACOBIAN_RATIO)
         if not len(bad):
             break
         touched.update(bad.tolist())

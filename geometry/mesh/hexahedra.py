@@ -17,11 +17,18 @@ from skfem import ElementHexS2
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats, Ints
 
-BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
-SQUARE = 0.55  # its size over the radius of the disc
-DEEP = 0.6  # of a fillet's radius, the least room behind its corner; without it that stays sharp
-ROUND = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))  # corners of a face, in their order
-SAME = 1e-7  # of the length: nodes closer than this are one
+SIDE_BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
+SQUARE_SIZE_RATIO = 0.55  # its size over the radius of the disc
+MIN_FILLET_DEPTH = (
+    0.6  # of a fillet's radius, the least room behind its corner; without it that stays sharp
+)
+FACE_CORNER_ORDER = (
+    (0.0, 0.0),
+    (1.0, 0.0),
+    (1.0, 1.0),
+    (0.0, 1.0),
+)  # corners of a face, in their order
+NODE_TOLERANCE = 1e-7  # of the length: nodes closer than this are one
 
 
 @dataclass(frozen=True)
@@ -82,7 +89,7 @@ def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
                     rim = np.flatnonzero(radius.min(axis=1) > b * (1.0 - 1e-9))
                     outside[i].append(count - len(xy) + rim)
     points = _filleted(pin, np.concatenate(cells))
-    nodes, elements = _merged(points, SAME * pin.smallest_diameter)
+    nodes, elements = _merged(points, NODE_TOLERANCE * pin.smallest_diameter)
     return HexMesh(nodes, elements, tuple(np.concatenate(o) for o in outside), quarters)
 
 
@@ -91,11 +98,11 @@ def twenty() -> Ints:
     middles of edges below, above and between.
     """
     ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
-    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in zip(ROUND, (*ROUND[1:], ROUND[0]),
-                                                                  strict=True)]  # fmt: skip
-    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in ROUND]
+    edges = zip(FACE_CORNER_ORDER, (*FACE_CORNER_ORDER[1:], FACE_CORNER_ORDER[0]), strict=True)
+    middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in edges]
+    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in FACE_CORNER_ORDER]
     theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
-    theirs += [(*xy, 0.5) for xy in ROUND]
+    theirs += [(*xy, 0.5) for xy in FACE_CORNER_ORDER]
     return np.array([ours.index(x) for x in theirs])
 
 
@@ -133,7 +140,7 @@ class _Fillet:
         place = np.clip((b - a) / self.radius, -1.0, 1.0)
         reach = 1.0 - np.abs(place) / 2.0 - np.sqrt(0.5 - place**2 / 4.0)
         deep = -np.minimum(a, b) / self.depth
-        left = np.where(deep > -SAME, np.clip(1.0 - deep, 0.0, 1.0), 0.0)
+        left = np.where(deep > -NODE_TOLERANCE, np.clip(1.0 - deep, 0.0, 1.0), 0.0)
         return np.asarray(self.radius * reach * left)
 
 
@@ -145,7 +152,7 @@ def _fillets(pin: Pin) -> list[_Fillet]:
         thin, thick, way = (left, right, -1) if left.diameter < right.diameter else (right, left, 1)
         wall = (thin.diameter - max(thin.bore, thick.bore)) / 2.0
         depth = min(radius, wall, thick.length)
-        if radius and depth >= DEEP * radius:
+        if radius and depth >= MIN_FILLET_DEPTH * radius:
             at = thin.diameter / 2.0, pin.stations[i + 1]
             found.append(_Fillet(*at, way, radius, depth))
     return found
@@ -214,8 +221,10 @@ def _grid(rows: int, columns: int, position: object, inner: float, outer: float)
 
 def _square(radius: float, u: Floats, v: Floats) -> Floats:
     """Positions on the bulged square, 0 <= u, v <= 1."""
-    size = SQUARE * radius
-    return np.stack([size * u * (1.0 - BULGE * v**2), size * v * (1.0 - BULGE * u**2)], axis=-1)
+    size = SQUARE_SIZE_RATIO * radius
+    return np.stack(
+        [size * u * (1.0 - SIDE_BULGE * v**2), size * v * (1.0 - SIDE_BULGE * u**2)], axis=-1
+    )
 
 
 def _fan(radius: float, t: Floats, around: Floats) -> Floats:

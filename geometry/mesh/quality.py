@@ -13,8 +13,8 @@ from skfem import MeshTet2
 from geometry.mesh.tet10 import Quadratic
 from pinbase.arrays import Floats, Ints
 
-CUBIC = 3  # degree of det J of a quadratic tetrahedron
-DENSE = 12  # points along an edge where Bernstein's coefficients leave it open
+JACOBIAN_DEGREE = 3  # degree of det J of a quadratic tetrahedron
+DENSE_EDGE_POINTS = 12  # points along an edge where Bernstein's coefficients leave it open
 
 
 def _lattice(order: int) -> Ints:
@@ -26,8 +26,8 @@ def _lattice(order: int) -> Ints:
 
 def _bernstein(at: Floats) -> Floats:
     """The cubic polynomials of Bernstein at barycentric points (Q, 4): (Q, 20)."""
-    powers = _lattice(CUBIC)
-    times = [factorial(CUBIC) / prod(map(factorial, p)) for p in powers.tolist()]
+    powers = _lattice(JACOBIAN_DEGREE)
+    times = [factorial(JACOBIAN_DEGREE) / prod(map(factorial, p)) for p in powers.tolist()]
     return np.asarray(np.prod(at[:, None, :] ** powers, axis=2) * np.array(times))
 
 
@@ -38,7 +38,7 @@ def distortion(made: Quadratic) -> Floats:
     it is looked at closely. (Ten nodes are not enough: of bent elements with det J positive there
     one in thirty was inside out elsewhere.)
     """
-    points = _lattice(CUBIC) / CUBIC
+    points = _lattice(JACOBIAN_DEGREE) / JACOBIAN_DEGREE
     det = made.determinants(points[:, 1:])
     sign = np.sign(det.mean(axis=1, keepdims=True))
     det = det * sign
@@ -46,7 +46,10 @@ def distortion(made: Quadratic) -> Floats:
     found = _ratio(det)
     open_ = np.flatnonzero(~(coefficients.min(axis=0) > 0.0))
     if len(open_):
-        dense = made.determinants(_lattice(DENSE)[:, 1:] / DENSE, open_) * sign[open_]
+        dense = (
+            made.determinants(_lattice(DENSE_EDGE_POINTS)[:, 1:] / DENSE_EDGE_POINTS, open_)
+            * sign[open_]
+        )
         found[open_] = _ratio(dense)
     return found
 

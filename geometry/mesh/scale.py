@@ -11,8 +11,8 @@ from itertools import pairwise
 
 from geometry.shape.pin import Pin
 
-SMALLEST = 1e-4  # a dimension that their tolerances leave alone
-LARGEST = 100.0  # a diameter of which they find the volume to 1e-6
+MIN_DIMENSION = 1e-4  # a dimension that their tolerances leave alone
+MAX_DIAMETER = 100.0  # a diameter of which they find the volume to 1e-6
 
 
 def unit_of(pin: Pin) -> float:
@@ -27,5 +27,5 @@ def unit_of_solid(pin: Pin) -> float:
     for left, right in pairwise(pin.segments):
         step, step_inside = left.diameters[1] - right.diameter, left.bores[1] - right.bore
         small += [abs(step) / 2, abs(step_inside) / 2]
-    fits = min(x for x in small if x) >= SMALLEST and pin.smallest_diameter <= LARGEST
+    fits = min(x for x in small if x) >= MIN_DIMENSION and pin.smallest_diameter <= MAX_DIAMETER
     return 1.0 if fits else unit_of(pin)

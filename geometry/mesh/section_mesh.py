@@ -34,10 +34,10 @@ __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
 
 TRIANGLE3, LINE2 = 2, 1  # gmsh's element types
-MOST_TRIANGLES = 2e5
-EVERYWHERE = 1e9  # beyond any pin, whose smallest diameter is 1
-SMALLEST_JACOBIAN = 0.1  # min / max of det J that every element must exceed
-SMALLEST_FILLET = 1e-8  # of the adjacent diameter: gmsh hangs at 1e-13
+MAX_TRIANGLES = 2e5
+UNBOUNDED_LENGTH = 1e9  # beyond any pin, whose smallest diameter is 1
+MIN_JACOBIAN_RATIO = 0.1  # min / max of det J that every element must exceed
+MIN_FILLET_RATIO = 1e-8  # of the adjacent diameter: gmsh hangs at 1e-13
 
 
 class SharedByMeshes(dict[str, Any]):
@@ -69,7 +69,7 @@ class MeridianMesh:
 
     def distortion(self) -> Floats:
         """Least over largest det J (M,) at corners and amid sides."""
-        x = self.nodes[self.elements].swapaxes(1, 2) @ _SLOPES
+        x = self.nodes[self.elements].swapaxes(1, 2) @ _NODE_SLOPES
         r, z = x[:, 0], x[:, 1]
         det = r[:, :6] * z[:, 6:] - r[:, 6:] * z[:, :6]
         det *= np.sign(det[:, :1])
@@ -97,7 +97,7 @@ def triangle_shapes(at: Floats) -> tuple[Floats, Floats]:
 
 
 _AT_NODES = np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]).T
-_SLOPES = triangle_shapes(_AT_NODES)[1].swapaxes(0, 1).reshape(6, 12)  # by x, then by y
+_NODE_SLOPES = triangle_shapes(_AT_NODES)[1].swapaxes(0, 1).reshape(6, 12)  # by x, then by y
 
 
 def meridian_mesh(
@@ -127,7 +127,7 @@ def meridian_mesh(
 
 
 def _require_reasonable(pin: Pin, size: SectionSize) -> None:
-    if (count := triangles(pin, size)) > MOST_TRIANGLES:
+    if (count := triangles(pin, size)) > MAX_TRIANGLES:
         raise MeshError(
             f"pin {pin.name}: the mesh would need {count:.1e} elements, because the thinnest part "
             "is very small compared with the whole; model the critical part on its own",
@@ -135,7 +135,7 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
         )
     for rounding in pin.roundings:
         rho, thin = rounding.radius, 2.0 * rounding.at[0]
-        if rho < SMALLEST_FILLET * thin:
+        if rho < MIN_FILLET_RATIO * thin:
             number = rounding.name.split()[-1]
             raise MeshError(
                 f"pin {pin.name}: the radius of {rounding.name} is {rho / thin:.1e} of the "
@@ -176,7 +176,7 @@ def _stretch(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, lis
     for part in parts:
         if part.near < far:
             numbers = {"VIn": part.near, "VOut": far, "Thickness": (far - part.near) / growth}
-            ends = {"XMin": 0.0, "XMax": EVERYWHERE, "YMin": part.z0, "YMax": part.z1}
+            ends = {"XMin": 0.0, "XMax": UNBOUNDED_LENGTH, "YMin": part.z0, "YMax": part.z1}
             fields.append(_field(gmsh, "Box", numbers | ends))
     return far, fields
 

@@ -10,17 +10,17 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from pinbase.platform import bare
+from pinbase.platform import portable
 
-NAMES = "SIGFPE", "SIGHUP", "SIGINT", "SIGPIPE", "SIGSEGV", "SIGTERM"
-TAKEN = tuple(getattr(signal, name) for name in NAMES if hasattr(signal, name))
-SIGACTION = 256  # bytes; more than any C library's struct sigaction has
+SIGNAL_NAMES = "SIGFPE", "SIGHUP", "SIGINT", "SIGPIPE", "SIGSEGV", "SIGTERM"
+SIGNALS = tuple(getattr(signal, name) for name in SIGNAL_NAMES if hasattr(signal, name))
+SIGACTION_BYTES = 256  # bytes; more than any C library's struct sigaction has
 
 
 @contextmanager
 def signals_kept() -> Iterator[None]:
     """Signals are handled afterwards as before."""
-    with _by_python() if bare() else _by_sigaction():
+    with _by_python() if portable() else _by_sigaction():
         yield
 
 
@@ -28,7 +28,7 @@ def signals_kept() -> Iterator[None]:
 def _by_sigaction() -> Iterator[None]:
     """In any thread, and also handlers that Python does not know (faulthandler's)."""
     libc = ctypes.CDLL(None)
-    kept = {each: ctypes.create_string_buffer(SIGACTION) for each in TAKEN}
+    kept = {each: ctypes.create_string_buffer(SIGACTION_BYTES) for each in SIGNALS}
     for each, handler in kept.items():
         libc.sigaction(each, None, handler)
     try:
@@ -41,7 +41,7 @@ def _by_sigaction() -> Iterator[None]:
 @contextmanager
 def _by_python() -> Iterator[None]:
     """In the main thread, the only one in which Python sets handlers."""
-    kept = {each: signal.getsignal(each) for each in TAKEN}
+    kept = {each: signal.getsignal(each) for each in SIGNALS}
     try:
         yield
     finally:

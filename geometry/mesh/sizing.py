@@ -10,11 +10,16 @@ from dataclasses import dataclass
 from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ
 
-QUIET_ARC, QUIET_GROWTH = 1.5, 1.0  # as of SectionSize, of fillets where nothing is looked for
-EDGE = 0.4  # elements along a rounded edge, where stress is low, over those along a fillet
-EQUILATERAL = 0.43  # area of a triangle over its side squared
-MANY = 1e4  # triangles of a first mesh
-STEEPEST = 0.6  # growth of elements next to a spot, on all meshes
+LOW_STRESS_ARC, LOW_STRESS_GROWTH = (
+    1.5,
+    1.0,
+)  # as of SectionSize, of fillets where nothing is looked for
+ROUNDED_EDGE_ARC_RATIO = (
+    0.4  # elements along a rounded edge, where stress is low, over those along a fillet
+)
+TRIANGLE_AREA_RATIO = 0.43  # area of a triangle over its side squared
+MAX_UNIFORM_TRIANGLES = 1e4  # triangles of a first mesh
+SPOT_GROWTH = 0.6  # growth of elements next to a spot, on all meshes
 
 
 @dataclass(frozen=True)
@@ -92,8 +97,12 @@ def stretches(pin: Pin, size: SectionSize) -> list[Stretch]:
         z0, z1 = ends[0][0], ends[-1][1]
         walls = [d - b for d, b in zip(diameters, bores, strict=True)]
         parts.append(Stretch(z0, z1, min(*walls, z1 - z0) / size.across))
-        triangles += (z1 - z0) * max(walls) / 2.0 / (EQUILATERAL * first**2)
-    return parts if triangles > MANY else [Stretch(0.0, pin.length, largest(pin, size))]
+        triangles += (z1 - z0) * max(walls) / 2.0 / (TRIANGLE_AREA_RATIO * first**2)
+    return (
+        parts
+        if triangles > MAX_UNIFORM_TRIANGLES
+        else [Stretch(0.0, pin.length, largest(pin, size))]
+    )
 
 
 def triangles(pin: Pin, size: SectionSize) -> float:
@@ -102,7 +111,7 @@ def triangles(pin: Pin, size: SectionSize) -> float:
     for part in stretches(pin, size):
         for s, z in zip(pin.segments, pin.stations, strict=False):
             if part.z0 <= z < part.z1:
-                total += s.length * max(s.walls) / 2.0 / (EQUILATERAL * part.near**2)
+                total += s.length * max(s.walls) / 2.0 / (TRIANGLE_AREA_RATIO * part.near**2)
     return total
 
 
@@ -125,8 +134,8 @@ def grades(
         kind.setdefault((rounding.radius, rounding.reach), []).append(rounding.at)
     for found, arc, growth in (
         (arcs, size.arc, size.growth),
-        (coarse, QUIET_ARC, QUIET_GROWTH),
-        (edges, EDGE * size.arc, size.growth),
+        (coarse, LOW_STRESS_ARC, LOW_STRESS_GROWTH),
+        (edges, ROUNDED_EDGE_ARC_RATIO * size.arc, size.growth),
     ):
         for (rho, reach), corners in found.items():
             out.append(Grade(tuple(corners), rho * math.pi / 2.0 / arc, 1.3 * reach, growth))
@@ -136,7 +145,7 @@ def grades(
     for (near, reach), places in close.items():
         points = tuple(places)
         steep = near < size.growth * reach
-        out.append(Grade(points, near, 0.0, STEEPEST if steep else size.growth))
+        out.append(Grade(points, near, 0.0, SPOT_GROWTH if steep else size.growth))
         if steep:
             out.append(Grade(points, size.growth * reach, reach, size.growth))
     return out

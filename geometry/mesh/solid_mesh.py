@@ -13,7 +13,7 @@ from geometry.mesh.cut_pin import CutPin
 from geometry.mesh.cut_solid import cut_solid, grade, name_faces
 from geometry.mesh.elements import Element
 from geometry.mesh.gmsh_session import MeshError, formula_size, gmsh_model, set_size
-from geometry.mesh.gmsh_tetrahedra import SMALLEST_JACOBIAN, collect, repair
+from geometry.mesh.gmsh_tetrahedra import MIN_JACOBIAN_RATIO, collect, repair
 from geometry.mesh.revolve import revolve
 from geometry.mesh.scale import unit_of_solid
 from geometry.shape.pin import Pin
@@ -22,7 +22,7 @@ from pinbase.arrays import Floats
 
 __all__ = ["MeshError", "MeshSize", "SolidMesh", "solid_mesh"]
 
-MOST_ELEMENTS = 1e6
+MAX_ELEMENTS = 1e6
 
 
 @dataclass(frozen=True)
@@ -84,12 +84,12 @@ def sound_mesh(
     tried = []
     for factor in (1.0, 1.15, 1.35):
         mesh = make(size.finer(factor))
-        if mesh.jacobian > SMALLEST_JACOBIAN:
+        if mesh.jacobian > MIN_JACOBIAN_RATIO:
             return mesh
         tried.append(mesh.jacobian)
     raise MeshError(
         f"pin {pin}: gmsh produced inverted or sliver elements at three mesh sizes (min/max "
-        f"Jacobian {', '.join(f'{j:.2g}' for j in tried)}; at least {SMALLEST_JACOBIAN} is "
+        f"Jacobian {', '.join(f'{j:.2g}' for j in tried)}; at least {MIN_JACOBIAN_RATIO} is "
         f"required), and straightening their edges did not help; look for {small}",
         "bad-elements",
     )
@@ -127,7 +127,7 @@ def _mesh(
 def _require_reasonable(pin: Pin, size: MeshSize) -> None:
     """Raises: MeshError when even the coarse part of the mesh would be too large to make."""
     elements = pin.volume / (0.12 * _far(pin, size) ** 3)  # 0.12 h^3: a regular tetrahedron
-    if elements > MOST_ELEMENTS:
+    if elements > MAX_ELEMENTS:
         raise MeshError(
             f"pin {pin.name}: the mesh would need {elements:.1e} elements, because the thinnest "
             "part is very small compared with the whole; model the critical part on its own",

@@ -9,9 +9,16 @@ from skfem import ElementTetP2, MeshTet1, MeshTet2
 
 from pinbase.arrays import Floats, Ints
 
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of nodes 4 to 9: VTK's and scikit-fem's
+TET10_EDGES = (
+    (0, 1),
+    (1, 2),
+    (0, 2),
+    (0, 3),
+    (1, 3),
+    (2, 3),
+)  # of nodes 4 to 9: VTK's and scikit-fem's
 # the four corners, and the octahedron between them along its diagonal from edge 02 to edge 13
-CHILDREN = np.array([
+CHILD_TETRAHEDRA = np.array([
     (0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3),
     (6, 8, 4, 5), (6, 8, 5, 9), (6, 8, 9, 7), (6, 8, 7, 4),
 ])  # fmt: skip
@@ -35,7 +42,9 @@ class Quadratic:
 
 
 def quadratic(points: Floats, cells: Ints) -> Quadratic:
-    """A mesh of points (N, 3), m, and cells (M, 4), or (M, 10) with nodes on edges as EDGES."""
+    """A mesh of points (N, 3), m, and cells (M, 4), or (M, 10) with nodes on edges as
+    TET10_EDGES.
+    """
     corners = np.unique(cells[:, :4])
     vertex = np.full(len(points), -1, dtype=np.int64)
     vertex[corners] = np.arange(len(corners))
@@ -62,9 +71,9 @@ def find_facets(made: Quadratic, triangles: Ints) -> Ints:
 def refined(mesh: MeshTet2) -> MeshTet2:
     """Every element in eight, on the same curved shape; boundaries keep their names."""
     parent = np.concatenate([mesh.t, mesh.nvertices + mesh.t2e]).T
-    children = parent[:, CHILDREN].reshape(-1, 4)
-    corner_at = ElementTetP2.doflocs[CHILDREN]  # (8, 4, 3)
-    middles = np.stack([(corner_at[:, a] + corner_at[:, b]) / 2 for a, b in EDGES], axis=1)
+    children = parent[:, CHILD_TETRAHEDRA].reshape(-1, 4)
+    corner_at = ElementTetP2.doflocs[CHILD_TETRAHEDRA]  # (8, 4, 3)
+    middles = np.stack([(corner_at[:, a] + corner_at[:, b]) / 2 for a, b in TET10_EDGES], axis=1)
     shapes, _ = _shapes(middles.reshape(-1, 3))  # (48, 10)
     at = np.einsum("qi,mia->mqa", shapes, mesh.doflocs.T[parent]).reshape(-1, 6, 3)
     number = np.arange(at.shape[0] * 6).reshape(-1, 6) + len(mesh.doflocs.T)

@@ -10,7 +10,9 @@ from geometry.shape.pin import Pin
 from geometry.shape.polygon import RZ, cross
 from geometry.shape.profile import Arc, Edge, meridian
 
-SHORT = 1e-9  # of the smallest diameter: what rounding leaves of a shaft that fillets take whole
+MIN_SHAFT_LENGTH = (
+    1e-9  # of the smallest diameter: what rounding leaves of a shaft that fillets take whole
+)
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ def vertices(pin: Pin) -> tuple[Vertex, ...]:
 
     Angles are those between the tangents there: pi where a fillet runs into its shaft.
     """
-    short = SHORT * pin.smallest_diameter
+    short = MIN_SHAFT_LENGTH * pin.smallest_diameter
     edges = [e for e in meridian(pin) if math.dist(e.start, e.end) > short]
     found = []
     for before, after in zip(edges, (*edges[1:], edges[0]), strict=True):

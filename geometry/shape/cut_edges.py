@@ -20,9 +20,9 @@ from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats
 
-ROUND = np.linspace(0.0, 2.0 * np.pi, 73)
-UPRIGHT = 1e-3  # rad: how far off x a cut may be milled from that is seen from aside
-LITTLE = 1e-9  # of the pin's radius
+CIRCLE_ANGLES = np.linspace(0.0, 2.0 * np.pi, 73)
+UPRIGHT_TOLERANCE = 1e-3  # rad: how far off x a cut may be milled from that is seen from aside
+FRONT_TOLERANCE = 1e-9  # of the pin's radius
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def _placed(angle: float, u: Floats, aside: Floats, z: Floats) -> Floats:
 
 def _seen(points: Floats) -> list[tuple[Floats, bool]]:
     """A line on the outside of a pin, its parts in front and behind."""
-    front = points[:, 1] >= -LITTLE * np.abs(points[:, :2]).max()
+    front = points[:, 1] >= -FRONT_TOLERANCE * np.abs(points[:, :2]).max()
     changes = np.flatnonzero(front[1:] != front[:-1]) + 1
     out = []
     for part in np.split(np.arange(len(points)), changes):
@@ -80,7 +80,7 @@ def _inside(points: Floats) -> list[tuple[Floats, bool]]:
 
 
 def _mouth(angle: float, a: float, z: float, r: float, side: float) -> Floats:
-    aside, along = a * np.cos(ROUND), a * np.sin(ROUND)
+    aside, along = a * np.cos(CIRCLE_ANGLES), a * np.sin(CIRCLE_ANGLES)
     u = side * np.sqrt(np.maximum(r**2 - aside**2, 0.0))
     return _placed(angle, u, aside, z + along)
 
@@ -113,7 +113,12 @@ def _bottom(
     angle: float, z: float, a: float, floor: float, tip: float
 ) -> list[tuple[Floats, bool]]:
     """Of a blind hole across the pin: its edge, and the cone below it."""
-    edge = _placed(angle, np.full(len(ROUND), floor), a * np.cos(ROUND), z + a * np.sin(ROUND))
+    edge = _placed(
+        angle,
+        np.full(len(CIRCLE_ANGLES), floor),
+        a * np.cos(CIRCLE_ANGLES),
+        z + a * np.sin(CIRCLE_ANGLES),
+    )
     cone = _placed(angle, np.array([floor, tip, floor]), np.zeros(3), z + a * np.array([-1, 0, 1]))
     return _inside(edge) + (_inside(cone) if tip < floor else [])
 
@@ -160,7 +165,7 @@ def _flat(flat: Flat, pin: Pin, z0: float, z1: float) -> DrawnCut:
         aside = np.linspace(-half, half, 49)
         lines += _seen(_placed(flat.angle, np.sqrt(r**2 - aside**2), aside, np.full(49, z)))
         lines += _seen(_placed(flat.angle, np.full(49, flat.distance), aside, np.full(49, z)))
-    if abs(math.sin(flat.angle)) < UPRIGHT:  # edges behind are those in front
+    if abs(math.sin(flat.angle)) < UPRIGHT_TOLERANCE:  # edges behind are those in front
         lines = [(x, hidden) for x, hidden in lines if not hidden]
     return DrawnCut(tuple(lines), tuple(notches))
 
@@ -193,7 +198,7 @@ def _slot(slot: Slot, pin: Pin, z0: float, z1: float) -> DrawnCut:
         u = side * np.sqrt(np.maximum(r**2 - aside**2, 0.0))
         lines += _seen(_placed(slot.angle, u, aside, z))
     bore = _bore(pin, 0.5 * (z0 + z1))
-    if not through and abs(math.sin(slot.angle)) < UPRIGHT:
+    if not through and abs(math.sin(slot.angle)) < UPRIGHT_TOLERANCE:
         up = math.copysign(1.0, math.cos(slot.angle))
         notch = z0, up * max(floor, bore), z1, up * r
         edges = [(x, False) for x, hidden in lines if not hidden] + _notch(pin, *notch)

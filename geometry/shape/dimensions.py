@@ -10,7 +10,7 @@ from typing import Any
 from geometry.shape.pin import Pin
 from geometry.shape.segment import Pair
 
-_RADII = (("edge_radius", "edge_radii"), ("bore_radius", "bore_radii"))
+_RADIUS_KEYS = (("edge_radius", "edge_radii"), ("bore_radius", "bore_radii"))
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def dimensions(pin: Pin) -> Iterator[Dimension]:
         for k, segment in enumerate(pin.segments):
             if value := getattr(segment, key):
                 yield _of_segment(pin, f"profile[{k + 1}].{key}", value, k, _field(key))
-    for key, name in _RADII:
+    for key, name in _RADIUS_KEYS:
         for k, segment in enumerate(pin.segments):
             for end, value in enumerate(getattr(segment, name)):
                 if value:

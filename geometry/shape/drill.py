@@ -13,8 +13,8 @@ from geometry.shape.profile import Arc, Edge, kind_of, off_edge
 from pinbase.arrays import Floats
 from pinbase.errors import Place
 
-FLAT_TIP = math.pi
-POINTED = math.pi / 6.0  # rad: the least angle of a tip
+FLAT_TIP_ANGLE = math.pi
+MIN_TIP_ANGLE = math.pi / 6.0  # rad: the least angle of a tip
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,15 @@ class Bottom:
     which the corners there are rounded, m.
     """
 
-    tip: float = FLAT_TIP
+    tip: float = FLAT_TIP_ANGLE
     radius: float = 0.0
 
     def rounded(self, digits: int) -> Bottom:
         """With its radius rounded to so many digits, and its angle."""
         tip = round(self.tip, 9)
-        return Bottom(FLAT_TIP if tip >= round(FLAT_TIP, 9) else tip, round(self.radius, digits))
+        return Bottom(
+            FLAT_TIP_ANGLE if tip >= round(FLAT_TIP_ANGLE, 9) else tip, round(self.radius, digits)
+        )
 
     def scaled(self, factor: float) -> Bottom:
         """The same in another unit."""
@@ -54,11 +56,11 @@ class Bottom:
 
     def height(self, diameter: float) -> float:
         """Of the cone below the full diameter, m."""
-        return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP else 0.0
+        return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP_ANGLE else 0.0
 
     def check(self, diameter: float, what: str, at: Place) -> None:
         """Raises: GeometryError where the radius does not fit."""
-        in_range = POINTED <= self.tip <= FLAT_TIP + 1e-12
+        in_range = MIN_TIP_ANGLE <= self.tip <= FLAT_TIP_ANGLE + 1e-12
         require(
             in_range,
             f"{what}: the tip's angle is {math.degrees(self.tip):.4g} deg and must be from 30 deg "
@@ -67,7 +69,7 @@ class Bottom:
             at,
         )
         half = self.tip / 2.0
-        taken = math.tan(half / 2.0) + (1.0 / math.tan(half) if self.tip < FLAT_TIP else 0.0)
+        taken = math.tan(half / 2.0) + (1.0 / math.tan(half) if self.tip < FLAT_TIP_ANGLE else 0.0)
         most = 0.98 * diameter / 2.0 / math.sin(half) / taken
         require(
             self.radius <= most,
@@ -80,14 +82,14 @@ class Bottom:
     def edges(self, a: float, floor: float) -> tuple[Edge, ...]:
         """From the axis to the wall (s = a), whose straight part begins at t >= floor, m."""
         half, rho = self.tip / 2.0, self.radius
-        s, c = math.sin(half), math.cos(half) if self.tip < FLAT_TIP else 0.0
+        s, c = math.sin(half), math.cos(half) if self.tip < FLAT_TIP_ANGLE else 0.0
         apex = (0.0, floor - self.height(2.0 * a))
         corner = (a, floor)
         out: list[Edge] = []
         if rho == 0.0:
             return (Edge("bottom", apex, corner),)
         first, back = apex, rho * math.tan(half / 2.0)
-        if self.tip < FLAT_TIP:
+        if self.tip < FLAT_TIP_ANGLE:
             on = rho / math.tan(half)
             top = (0.0, apex[1] + rho / s - rho)
             first = (on * s, apex[1] + on * c)
@@ -98,7 +100,7 @@ class Bottom:
         return tuple(out)
 
 
-SQUARE = Bottom()  # flat, its corner sharp
+SQUARE_BOTTOM = Bottom()  # flat, its corner sharp
 
 
 class Drilled(Cut):

@@ -14,7 +14,7 @@ from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
-SAME_ANGLE = 1e-9
+ANGLE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class Cut(ABC):
             return False
         period = 1.0 if self.half_turn else 0.5
         turn = math.sin(period * (self.angle - other.angle))
-        if abs(turn) > SAME_ANGLE and not self.round:
+        if abs(turn) > ANGLE_TOLERANCE and not self.round:
             return False
         ours, others = dataclasses.asdict(self), dataclasses.asdict(other)  # type: ignore[call-overload]
         return all(_near(ours[key], others[key], tolerance) for key in ours if key != "angle")

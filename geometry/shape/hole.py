@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from geometry.shape.drill import (
-    SQUARE,
+    SQUARE_BOTTOM,
     Bottom,
     Drilled,
     Placed,
@@ -25,9 +25,9 @@ from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-SAME_SIDE = 0.9  # cosine of the angle between holes drilled from the same side
-THIN = 0.02  # of a diameter: walls that nobody makes, and of which meshes have no end
-WIDER = 1.5  # of its radius: how far a rounded mouth reaches at most
+MIN_SAME_SIDE_COSINE = 0.9  # cosine of the angle between holes drilled from the same side
+MIN_WALL_RATIO = 0.02  # of a diameter: walls that nobody makes, and of which meshes have no end
+MAX_MOUTH_REACH = 1.5  # of its radius: how far a rounded mouth reaches at most
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Hole(Drilled):
     diameter: float
     angle: float = 0.0
     depth: float | None = None
-    bottom: Bottom = SQUARE
+    bottom: Bottom = SQUARE_BOTTOM
     chamfer: float = 0.0
     mouth_radius: float = 0.0
 
@@ -120,8 +120,8 @@ class Hole(Drilled):
         def off(x: Floats) -> Floats:
             s, _ = placed.local(x)
             r = np.hypot(x[:, 0], x[:, 1])
-            aside = np.maximum(s - a - WIDER * rho, a - s)
-            return np.maximum(np.maximum(aside, outer - WIDER * rho - r), 0.0)
+            aside = np.maximum(s - a - MAX_MOUTH_REACH * rho, a - s)
+            return np.maximum(np.maximum(aside, outer - MAX_MOUTH_REACH * rho - r), 0.0)
 
         return off
 
@@ -159,8 +159,9 @@ class Hole(Drilled):
         require(positive(self.depth), f"{what}: the depth must be positive", "not-positive", at)
         left = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
         require(
-            left >= THIN * self.diameter or not pin.radii(self.z)[0],
-            f"{what}: its bottom is less than {THIN:g} times its diameter from the surface of the "
+            left >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
+            f"{what}: its bottom is less than {MIN_WALL_RATIO:g} times its diameter from the "
+            f"surface of the "
             "bore; deepen it into the bore, or reduce its depth",
             "thin-wall",
             at,
@@ -191,15 +192,16 @@ class Hole(Drilled):
         between them; of blind ones that are drilled from the same side.
         """
         both_through = self.depth is None and other.depth is None
-        if not both_through and math.cos(self.angle - other.angle) < SAME_SIDE:
+        if not both_through and math.cos(self.angle - other.angle) < MIN_SAME_SIDE_COSINE:
             return
         apart = abs(self.z - other.z)
         wall = apart - 0.5 * (self.diameter + other.diameter)
         least = min(self.diameter, other.diameter)
         require(
-            abs(wall) >= THIN * least,
+            abs(wall) >= MIN_WALL_RATIO * least,
             f"pin {pin.name}: {names[0]} and {names[1]} all but touch: between them a wall of at "
-            f"least {THIN:g} times the smaller diameter must be left; move them apart, or well "
+            f"least {MIN_WALL_RATIO:g} times the smaller diameter must be left; move them apart, "
+            f"or well "
             "into each other",
             "thin-wall",
             at,

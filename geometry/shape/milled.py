@@ -15,7 +15,7 @@ from geometry.shape.tolerance import snapped
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-MOST_ROUNDED = 0.45  # of the width of a slot: the radius of its bottom
+MAX_BOTTOM_RADIUS_RATIO = 0.45  # of the width of a slot: the radius of its bottom
 
 
 class Milled(Cut):
@@ -249,11 +249,12 @@ class Slot(Milled):
             "too-deep",
             at,
         )
-        limit = min(MOST_ROUNDED * self.width, 0.9 * (self.depth - (most - side)))
+        limit = min(MAX_BOTTOM_RADIUS_RATIO * self.width, 0.9 * (self.depth - (most - side)))
         require(
             self.radius <= limit + near,
             f"{what}: the radius of its bottom is {self.radius / limit if limit else 0:.4g} times "
-            f"the most that fits, {MOST_ROUNDED:g} of the width and the height of its walls",
+            f"the most that fits, {MAX_BOTTOM_RADIUS_RATIO:g} of the width and the height of its "
+            f"walls",
             "radius-too-large",
             at,
         )

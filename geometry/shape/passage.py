@@ -10,7 +10,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from geometry.shape.drill import (
-    SQUARE,
+    SQUARE_BOTTOM,
     Bottom,
     Drilled,
     Placed,
@@ -19,7 +19,7 @@ from geometry.shape.drill import (
     turned_surfaces,
 )
 from geometry.shape.features import SmoothPart, positive, radii, require
-from geometry.shape.pin import FACES, Pin
+from geometry.shape.pin import END_FACES, Pin
 from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
@@ -40,7 +40,7 @@ class Passage(Drilled):
     offset: float
     angle: float = 0.0
     mouth: Mouth = "both"
-    bottom: Bottom = SQUARE
+    bottom: Bottom = SQUARE_BOTTOM
 
     what: ClassVar[str] = "passage"
 
@@ -69,7 +69,7 @@ class Passage(Drilled):
     @property
     def faces(self) -> tuple[str, ...]:
         """With its mouths."""
-        return FACES if self.mouth == "both" else (self.mouth,)
+        return END_FACES if self.mouth == "both" else (self.mouth,)
 
     def takes(self, x: Floats, radius: float) -> Mask:
         """None."""

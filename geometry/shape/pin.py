@@ -14,14 +14,14 @@ import numpy as np
 from geometry.shape.polygon import Leg, Rounding, bore_turn_at, corners, legs, roundings, turn_at
 from geometry.shape.profile import meridian, volume_within
 from geometry.shape.segment import Segment
-from geometry.shape.tolerance import ROUND_OFF, SAME, merged, snapped
+from geometry.shape.tolerance import DIMENSION_ROUND_OFF, LENGTH_TOLERANCE, merged, snapped
 from pinbase.arrays import Floats
-from pinbase.errors import Coded
+from pinbase.errors import CodedError
 
-FACES = ("start", "end")
+END_FACES = ("start", "end")
 
 
-class GeometryError(Coded, ValueError):
+class GeometryError(CodedError, ValueError):
     """The pin as described is impossible; the message says why and what would be right."""
 
 
@@ -82,7 +82,7 @@ class Pin:
     @cached_property
     def tolerance(self) -> float:
         """The length (m) below which two dimensions are one."""
-        return SAME * self.smallest_diameter
+        return LENGTH_TOLERANCE * self.smallest_diameter
 
     @cached_property
     def stations(self) -> tuple[float, ...]:
@@ -191,7 +191,9 @@ class Pin:
 
         Raises: GeometryError listing the names there are.
         """
-        if name in FACES and any(leg.name == name and leg.start != leg.end for leg in self.legs):
+        if name in END_FACES and any(
+            leg.name == name and leg.start != leg.end for leg in self.legs
+        ):
             return name
         return self.labels[self._position(name)]
 
@@ -199,7 +201,7 @@ class Pin:
         for i, s in enumerate(self.segments):
             if name in (s.connection, s.name, self.labels[i]):
                 return i
-        known = ", ".join((*FACES, *self.labels))
+        known = ", ".join((*END_FACES, *self.labels))
         raise GeometryError(
             f"pin {self.name} has no surface {name!r}; its surfaces are {known}", "unknown-surface"
         )
@@ -229,7 +231,9 @@ def _merged(segments: tuple[Segment, ...], tolerance: float) -> tuple[tuple[Segm
     outer = merged((d for s in segments for d in s.diameters), tolerance)
     inner = merged((0.0, *(d for s in segments for d in s.bores)), tolerance)
     changes = [*outer.items(), *inner.items()]
-    apart = max((old - new for old, new in changes if old - new > ROUND_OFF * old), default=0.0)
+    apart = max(
+        (old - new for old, new in changes if old - new > DIMENSION_ROUND_OFF * old), default=0.0
+    )
     one = (
         s.with_diameters(
             (outer[s.diameters[0]], outer[s.diameters[1]]), (inner[s.bores[0]], inner[s.bores[1]])
@@ -291,7 +295,7 @@ def _check(pin: Pin) -> None:
                 "segments-separate",
                 ("segment", i),
             )
-    names = [n for s in pin.segments for n in {s.connection, s.name} if n] + list(FACES)
+    names = [n for s in pin.segments for n in {s.connection, s.name} if n] + list(END_FACES)
     twice = sorted({n for n in names if names.count(n) > 1})
     if twice:
         raise GeometryError(
@@ -312,7 +316,7 @@ def _check_edges(pin: Pin) -> None:
                 other = pin.segments[i + 2 * end - 1].diameters[1 - end]
                 if turns[k] != "edge" and not (turns[k] == "step" and s.diameters[end] > other):
                     raise GeometryError(
-                        f"{what}: its outer surface has no edge at its {FACES[end]} for "
+                        f"{what}: its outer surface has no edge at its {END_FACES[end]} for "
                         "edge_radius to round; set that to 0 (the radius of an inner corner is a "
                         "fillet)",
                         "no-edge",
@@ -320,7 +324,8 @@ def _check_edges(pin: Pin) -> None:
                     )
             if s.bore_radii[end] and (not s.bores[end] or (within and inside[k] == "smooth")):
                 raise GeometryError(
-                    f"{what}: its bore has no corner at its {FACES[end]} for bore_radius to round; "
+                    f"{what}: its bore has no corner at its {END_FACES[end]} for bore_radius to "
+                    f"round; "
                     "set that to 0",
                     "no-edge",
                     ("segment", i + 1),

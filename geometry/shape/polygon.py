@@ -12,7 +12,9 @@ from geometry.shape.segment import Segment
 RZ = tuple[float, float]
 Turn = Literal["step", "inner", "edge", "smooth"]
 
-SMOOTH = 1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
+SMOOTH_ANGLE_TOLERANCE = (
+    1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
+)
 
 
 class Profile(Protocol):
@@ -87,7 +89,7 @@ def _turn(left: tuple[float, float, float], right: tuple[float, float, float]) -
     if b != c:
         return "step"
     bend = math.atan2(d - c, 2.0 * after) - math.atan2(b - a, 2.0 * length)
-    return "smooth" if abs(bend) <= SMOOTH else "inner" if bend > 0.0 else "edge"
+    return "smooth" if abs(bend) <= SMOOTH_ANGLE_TOLERANCE else "inner" if bend > 0.0 else "edge"
 
 
 def corners(pin: Profile) -> tuple[Node, ...]:

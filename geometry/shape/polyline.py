@@ -10,7 +10,7 @@ from itertools import pairwise
 from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polygon import turn_at
 from geometry.shape.segment import Segment
-from geometry.shape.tolerance import SAME, merged
+from geometry.shape.tolerance import LENGTH_TOLERANCE, merged
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = (
     """
     where = f"pin {name}"
     _require_forward(f"{where}: meridian", outside)
-    least, end = 2.0 * SAME * min(bend.r for bend in outside), outside[-1].z
+    least, end = 2.0 * LENGTH_TOLERANCE * min(bend.r for bend in outside), outside[-1].z
     inside = bore or (Bend(0.0, 0.0), Bend(end, 0.0))
     _require_forward(f"{where}: bore_meridian", inside)
     for line, what in ((outside, "meridian"), (inside, "bore_meridian")):

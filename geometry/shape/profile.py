@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.shape.polygon import RZ, SMOOTH, Profile, corners, cross
+from geometry.shape.polygon import RZ, SMOOTH_ANGLE_TOLERANCE, Profile, corners, cross
 from pinbase.arrays import Floats
 
 __all__ = [
@@ -104,7 +104,7 @@ def sharp_corners(pin: Profile) -> tuple[Corner, ...]:
     return tuple(
         Corner(node.r, node.z)
         for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False)
-        if node.r and not node.radius and cross(before.along, after.along) < -SMOOTH
+        if node.r and not node.radius and cross(before.along, after.along) < -SMOOTH_ANGLE_TOLERANCE
     )
 
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import pairwise
 
-SAME = 1e-9  # of the smallest diameter
-ROUND_OFF = 1e-13  # of the dimension: two ways to write one length differ by less
+LENGTH_TOLERANCE = 1e-9  # of the smallest diameter
+DIMENSION_ROUND_OFF = 1e-13  # of the dimension: two ways to write one length differ by less
 
 
 def merged(values: Iterable[float], tolerance: float) -> dict[float, float]:

@@ -16,8 +16,8 @@ from loads.motion.loop_equations import cross, number
 from loads.motion.motion import Motion
 from pinbase.arrays import Complex, Floats
 
-SAME = 1e-12  # relative: an instant this close to a switch is at it
-COINCIDE = 1e-12  # of the length scale: points this close have no line between them
+SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch is at it
+MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,9 @@ class Applied:
         t = motion.times
         on = np.ones(len(motion), dtype=bool)
         if self.switches:
-            on = (t > self.begin + SAME * abs(self.begin)) & (t <= self.end + SAME * abs(self.end))
+            on = (t > self.begin + SWITCH_TIME_TOLERANCE * abs(self.begin)) & (
+                t <= self.end + SWITCH_TIME_TOLERANCE * abs(self.end)
+            )
         factor = np.zeros(len(motion))
         if self.times is None:
             factor[on] = 1.0
@@ -180,7 +182,7 @@ class Spring:
         match self.between:
             case Distance(items, points):
                 line, _ = self.between.line(motion)
-                if np.abs(line).min() <= COINCIDE * motion.linkage.length_scale:
+                if np.abs(line).min() <= MIN_POINT_DISTANCE * motion.linkage.length_scale:
                     raise LinkageError(
                         f"spring {self.name}: its two points coincide, so its force has no "
                         "direction",

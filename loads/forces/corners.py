@@ -11,7 +11,7 @@ from loads.motion.motion import Course
 from loads.motion.refine import Resolved, resolved
 from pinbase.arrays import Floats
 
-STEPS = 60  # of bisection: to the last digit
+BISECTION_STEPS = 60  # of bisection: to the last digit
 
 
 def corners(course: Course, loads: Sequence[Load], samples: Floats) -> Floats:
@@ -45,7 +45,7 @@ def _passed(found: Resolved, j: int, kink: Kinks) -> Floats:
         off = x - level
         turns = np.flatnonzero(off[:-1] * off[1:] < 0.0)
         low, high, sign = found.times[turns], found.times[turns + 1], np.sign(off[turns])
-        for _ in range(STEPS if len(turns) else 0):
+        for _ in range(BISECTION_STEPS if len(turns) else 0):
             middle = 0.5 * (low + high)
             same = np.sign(found.interpolate(middle)[:, j] - level) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)

@@ -18,7 +18,7 @@ from pinbase.arrays import Floats
 Interpolation = Literal["linear", "monotone"]
 Outside = Literal["error", "hold", "repeat"]
 
-AT_END = 1e-9  # of the range: this little outside a table is its end
+TABLE_END_TOLERANCE = 1e-9  # of the range: this little outside a table is its end
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class ForceTable:
         low, high = self.x[0], self.x[-1]
         off = np.maximum(low - at, at - high)
         k = int(off.argmax())
-        if off[k] > AT_END * (high - low):
+        if off[k] > TABLE_END_TOLERANCE * (high - low):
             raise LinkageError(
                 f"{self.name} goes from {self._shown(low)} to {self._shown(high)}, but "
                 f"{self._shown(float(at[k]))} occurs; extend it, or give outside = "

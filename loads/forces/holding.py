@@ -19,7 +19,9 @@ from loads.motion.mobility import moving_bodies
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
-OPENS = 1e-9  # of the largest force: a stop that carries this little of the wrong sign is free
+OPENING_FORCE_TOLERANCE = (
+    1e-9  # of the largest force: a stop that carries this little of the wrong sign is free
+)
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def require_closed(held: Holding, forces: Floats) -> None:
         if not isinstance(each, Turn) or each.carries == "both":
             continue
         wrong = -forces[:, k] if each.carries == "positive" else forces[:, k]
-        if wrong.max() > OPENS * np.abs(forces).max():
+        if wrong.max() > OPENING_FORCE_TOLERANCE * np.abs(forces).max():
             raise LinkageError(
                 f"stop {each.name} carries only {each.carries} couples, but to hold this load it "
                 f"would have to carry {forces[int(wrong.argmax()), k]:.4g} N m: it opens; name "

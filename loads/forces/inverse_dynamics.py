@@ -18,14 +18,14 @@ from loads.forces.acting import Load, balance
 from loads.forces.holding import holding, require_closed
 from loads.forces.reactions import Reactions
 from loads.forces.sharing import shares
-from loads.linkage.friction import MOST_CONTACTS, JammingError, contact_sizes
+from loads.linkage.friction import MAX_ENUMERATED_CONTACTS, JammingError, contact_sizes
 from loads.linkage.linkage import GROUND, LinkageError, Point, Slider, Turn
 from loads.motion.joint_forces import connection_members, slider_couple, slider_members
 from loads.motion.loop_equations import cross, number, pairs
 from loads.motion.motion import Motion
 from pinbase.arrays import Complex, Floats
 
-STANDS = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
+MIN_SLIDING_SPEED = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
 
 
 @dataclass(frozen=True)
@@ -262,7 +262,7 @@ class _Balance:
 
     def _opposing(self, speed: Floats) -> Floats:
         """(T,) direction of friction at a speed, m/s: 0 at rest."""
-        return np.where(np.abs(speed) > STANDS * self.motion.pace, -np.sign(speed), 0.0)
+        return np.where(np.abs(speed) > MIN_SLIDING_SPEED * self.motion.pace, -np.sign(speed), 0.0)
 
     def _rubbing_sliders(self) -> Iterator[_Source]:
         motion, first = self.motion, self.loops.frames - 1
@@ -328,9 +328,10 @@ class _Balance:
         free = self._pressed(sources, f, self.needed)
         owner = [i for i, contacts in enumerate(free) for _ in range(contacts.shape[1])]
         rubbing = sum(sources[i].kind != "teeth" for i in owner)
-        if rubbing > MOST_CONTACTS:
+        if rubbing > MAX_ENUMERATED_CONTACTS:
             raise LinkageError(
-                f"{rubbing} contacts have friction; at most {MOST_CONTACTS} can be solved",
+                f"{rubbing} contacts have friction; at most {MAX_ENUMERATED_CONTACTS} can be "
+                f"solved",
                 "too-many-contacts",
             )
         unit = [np.concatenate(self._pressed(sources, s.f, self.nothing, s), 1) for s in sources]

@@ -16,15 +16,17 @@ from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
 
-NOTHING = 1e-9  # of the largest force, by length and speed: a drive that gives less gives nothing
-ROUNDING = 1e-8  # of the largest: a mean below it is zero
-AGREES = (
+MIN_DRIVE_SHARE = (
+    1e-9  # of the largest force, by length and speed: a drive that gives less gives nothing
+)
+MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
+AGREEMENT_TOLERANCE = (
     1e-5  # of a maximum: closer than this to its limit, the value at the instant itself is reported
 )
 
 
 @dataclass(frozen=True)
-class Extreme:
+class Extremum:
     """A maximum or minimum over time, and its time, s."""
 
     value: float
@@ -38,10 +40,10 @@ class Effort:
     or rad; work (T,) J done up to each sample.
     """
 
-    largest: Extreme
+    largest: Extremum
     mean: float
     rms: float
-    power: Extreme
+    power: Extremum
     stroke: float
     work: Floats
 
@@ -52,8 +54,8 @@ class PeakForces:
     then. unresolved: (J, 2) s, where they are not certain.
     """
 
-    force: dict[str, Extreme]
-    moment: dict[str, Extreme]
+    force: dict[str, Extremum]
+    moment: dict[str, Extremum]
     vector: dict[str, Floats]
     unresolved: Floats
 
@@ -69,8 +71,8 @@ class OverTime:
 
     peaks: PeakForces
     drives: tuple[Effort, ...]
-    transmission: dict[tuple[str, str], Extreme]
-    condition: Extreme
+    transmission: dict[tuple[str, str], Extremum]
+    condition: Extremum
     violation: float
     corners: Floats
 
@@ -112,15 +114,15 @@ def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]
     exact = vectors[rows, rows]
     limit = found.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
     size = np.linalg.norm(exact, axis=1)
-    agrees = np.abs(size - best) <= AGREES * best
+    agrees = np.abs(size - best) <= AGREEMENT_TOLERANCE * best
     value = np.where(agrees, size, best) * np.repeat(unit, count)
     vector = np.where(agrees[:, None], exact, limit) * unit[0]
 
-    def named(first: int) -> dict[str, Extreme]:
+    def named(first: int) -> dict[str, Extremum]:
         found = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
-        return {name: Extreme(*peak) for name, peak in zip(names, found, strict=False)}
+        return {name: Extremum(*peak) for name, peak in zip(names, found, strict=False)}
 
-    nothing = dict.fromkeys(names, Extreme(0.0, float(found.ends[0])))
+    nothing = dict.fromkeys(names, Extremum(0.0, float(found.ends[0])))
     return PeakForces(
         named(0),
         named(count) if len(unit) > 1 else nothing,
@@ -179,8 +181,8 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
         np.max([np.abs(getattr(d, key)).max(axis=0) for d in first], axis=0)
         for key in ("drive", "power")
     )
-    effort = np.maximum(drive, NOTHING * forces * max(scale, 1.0))
-    power = np.maximum(power, NOTHING * forces * course.pace)
+    effort = np.maximum(drive, MIN_DRIVE_SHARE * forces * max(scale, 1.0))
+    power = np.maximum(power, MIN_DRIVE_SHARE * forces * course.pace)
     power = np.where(power > 0.0, power, 1.0)
     connections, drives = len(samples.reactions.connections), len(effort)
 
@@ -217,18 +219,18 @@ def _efforts(
 
     best, when = found.largest(lambda values: np.abs(efforts(values)))
     exact = np.abs(np.diagonal(solve(when).drive))
-    best = np.where(np.abs(exact - best) <= AGREES * best, exact, best)
+    best = np.where(np.abs(exact - best) <= AGREEMENT_TOLERANCE * best, exact, best)
     mean = found.mean(efforts)
-    mean = np.where(np.abs(mean) > ROUNDING * best, mean, 0.0)
+    mean = np.where(np.abs(mean) > MEAN_ROUND_OFF * best, mean, 0.0)
     rms = np.sqrt(found.mean(lambda values: efforts(values) ** 2))
     work = found.integral(samples, lambda values: values[:, -D:] * power)
     most, at = found.largest(lambda values: np.abs(values[:, -D:] * power))
     return tuple(
         Effort(
-            Extreme(float(best[k]), float(when[k])),
+            Extremum(float(best[k]), float(when[k])),
             float(mean[k]),
             float(rms[k]),
-            Extreme(float(most[k]), float(at[k])),
+            Extremum(float(most[k]), float(at[k])),
             float(strokes[k]),
             work[:, k],
         )
@@ -265,7 +267,7 @@ def _reversals(course: Course, samples: Floats) -> Floats:
     return np.unique(np.concatenate(out))
 
 
-def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extreme], Extreme]:
+def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extremum], Extremum]:
     """Smallest transmission angles, and the largest condition number, over times (T,) s that lie
     as densely as the forces need.
     """
@@ -285,7 +287,7 @@ def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extr
     when = found.largest(np.negative)[1]
     values = np.diagonal(columns(course.at(when)))
     angles = {
-        key: Extreme(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))
+        key: Extremum(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))
         for key, value, time in zip(keys, values, when, strict=False)
     }
-    return angles, Extreme(float(1.0 / values[-1]), float(when[-1]))
+    return angles, Extremum(float(1.0 / values[-1]), float(when[-1]))

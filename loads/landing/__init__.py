@@ -3,7 +3,7 @@
 from loads.landing.drop import Drop, LandingError
 from loads.landing.landing import Landing, LandingHistory, land
 from loads.landing.requirements import (
-    DROPS,
+    DROP_RULES,
     GROUND_RULES,
     descent_velocity,
     required_velocity,
@@ -26,7 +26,7 @@ from loads.landing.tyre import PowerTyre, TableTyre
 from loads.landing.wheel import Wheel
 
 __all__ = [
-    "DROPS",
+    "DROP_RULES",
     "GROUND_RULES",
     "AppliedOverTime",
     "Drop",

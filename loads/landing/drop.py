@@ -21,18 +21,32 @@ from loads.landing.travel import TELESCOPIC, Levered, Telescopic
 from loads.landing.tyre import Tyre, damped
 from loads.landing.wheel import Wheel
 from pinbase.arrays import Floats
-from pinbase.errors import Coded
+from pinbase.errors import CodedError
 
-RTOL = 1e-11
-ATOL = 1e-13  # of the scale of each variable
-FIRST_STEP = 1e-7  # of the time left: what begins at zero must leave it before it is watched
-STEPS = 200  # at least, so that no event is missed within one
-MOST_SPANS = 500
+RELATIVE_TOLERANCE = 1e-11
+ABSOLUTE_TOLERANCE = 1e-13  # of the scale of each variable
+FIRST_STEP_SHARE = 1e-7  # of the time left: what begins at zero must leave it before it is watched
+MIN_STEPS = 200  # at least, so that no event is missed within one
+MAX_SPANS = 500
 Method = Literal["DOP853", "Radau"]
-ROWS = Z, V, U, W, BEND, BENDS, SPIN, OIL, RUB, TYRE, SLIP, RUNWAY, STOP = range(13)
+STATE_ROWS = (
+    TYRE_DEFLECTION,
+    DEFLECTION_RATE,
+    WHEEL_TRAVEL,
+    WHEEL_TRAVEL_RATE,
+    LEG_DEFLECTION,
+    LEG_DEFLECTION_RATE,
+    WHEEL_SPIN,
+    OIL_ENERGY,
+    FRICTION_ENERGY,
+    TYRE_ENERGY,
+    SLIP_ENERGY,
+    RUNWAY_ENERGY,
+    STOP_ENERGY,
+) = range(13)
 
 
-class LandingError(Coded, ValueError):
+class LandingError(CodedError, ValueError):
     """A drop that the leg does not survive, or that cannot be computed."""
 
 
@@ -95,10 +109,10 @@ class DropForces:
 
 
 def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
-    """At states y (ROWS, T)."""
-    vertical = damped(d.tyre, y[Z], y[V])
-    stroke, lever, _ = d.travel.at(y[U])
-    speed = lever * y[W]
+    """At states y (STATE_ROWS, T)."""
+    vertical = damped(d.tyre, y[TYRE_DEFLECTION], y[DEFLECTION_RATE])
+    stroke, lever, _ = d.travel.at(y[WHEEL_TRAVEL])
+    speed = lever * y[WHEEL_TRAVEL_RATE]
     common = d.gravity * (1.0 - d.lift) - vertical / d.mass
     if d.strut is None or mode.strut == 0:
         sprung = unsprung = common
@@ -114,27 +128,34 @@ def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
     if d.wheel is not None:
         drag = mode.wheel * d.wheel.friction * vertical
         if mode.wheel == 0:
-            drag = d.wheel.rolling_drag(y[BEND], y[BENDS])
-        on_leg = d.wheel.on_leg(drag, y[BEND], y[BENDS])
+            drag = d.wheel.rolling_drag(y[LEG_DEFLECTION], y[LEG_DEFLECTION_RATE])
+        on_leg = d.wheel.on_leg(drag, y[LEG_DEFLECTION], y[LEG_DEFLECTION_RATE])
     return DropForces(
         vertical, drag, at_wheel, along, on_leg, sprung, unsprung, stroke, speed, lever
     )
 
 
 def _rates(d: Drop, y: Floats, mode: Mode) -> Floats:
-    """Derivatives of the state, (ROWS, T)."""
+    """Derivatives of the state, (STATE_ROWS, T)."""
     f, out = forces(d, y, mode), np.zeros_like(y)
-    out[Z], out[V], out[U], out[W] = y[V], f.unsprung, y[W], f.sprung - f.unsprung
+    out[TYRE_DEFLECTION], out[DEFLECTION_RATE], out[WHEEL_TRAVEL], out[WHEEL_TRAVEL_RATE] = (
+        y[DEFLECTION_RATE],
+        f.unsprung,
+        y[WHEEL_TRAVEL_RATE],
+        f.sprung - f.unsprung,
+    )
     if d.strut is not None:
-        out[OIL] = d.strut.oil_force(f.speed) * f.speed
-        out[RUB] = mode.strut * d.strut.friction * f.speed
-    out[TYRE] = (f.vertical - d.tyre.force(y[Z])) * y[V]
+        out[OIL_ENERGY] = d.strut.oil_force(f.speed) * f.speed
+        out[FRICTION_ENERGY] = mode.strut * d.strut.friction * f.speed
+    out[TYRE_ENERGY] = (f.vertical - d.tyre.force(y[TYRE_DEFLECTION])) * y[DEFLECTION_RATE]
     if d.wheel is not None:
-        out[BEND] = y[BENDS]
-        out[BENDS], out[SPIN] = d.wheel.rates(f.drag, y[BEND], y[BENDS])
-        slip = 0.0 if mode.wheel == 0 else d.wheel.slip(y[BENDS], y[SPIN])
-        out[SLIP] = f.drag * slip + d.wheel.rate * y[BENDS] ** 2
-        out[RUNWAY] = f.drag * d.wheel.speed
+        out[LEG_DEFLECTION] = y[LEG_DEFLECTION_RATE]
+        out[LEG_DEFLECTION_RATE], out[WHEEL_SPIN] = d.wheel.rates(
+            f.drag, y[LEG_DEFLECTION], y[LEG_DEFLECTION_RATE]
+        )
+        slip = 0.0 if mode.wheel == 0 else d.wheel.slip(y[LEG_DEFLECTION_RATE], y[WHEEL_SPIN])
+        out[SLIP_ENERGY] = f.drag * slip + d.wheel.rate * y[LEG_DEFLECTION_RATE] ** 2
+        out[RUNWAY_ENERGY] = f.drag * d.wheel.speed
     return out
 
 
@@ -142,9 +163,9 @@ def _limits(d: Drop, y: Floats) -> tuple[float, float]:
     """Between what forces at the wheel (N) a strut that stands still remains so."""
     if d.strut is None:
         return -np.inf, np.inf
-    stroke, lever, _ = d.travel.at(y[U])
+    stroke, lever, _ = d.travel.at(y[WHEEL_TRAVEL])
     spring, rub = d.strut.spring.force(stroke), d.strut.friction
-    low = -np.inf if y[U] == 0.0 else float(lever * (spring - rub))
+    low = -np.inf if y[WHEEL_TRAVEL] == 0.0 else float(lever * (spring - rub))
     return low, float(lever * (spring + rub))
 
 
@@ -153,14 +174,14 @@ Event = tuple[str, int, Callable[[Floats], float]]
 
 def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
     """(name, direction, function of the state) of all that may end a mode."""
-    out: list[Event] = [("tyre", -1 if mode.touches else 1, lambda y: y[Z])]
+    out: list[Event] = [("tyre", -1 if mode.touches else 1, lambda y: y[TYRE_DEFLECTION])]
     if np.isfinite(d.tyre.most):
-        out.append(("tyre-exceeded", 1, lambda y: y[Z] - d.tyre.most))
+        out.append(("tyre-exceeded", 1, lambda y: y[TYRE_DEFLECTION] - d.tyre.most))
     if d.strut is not None and mode.strut:
         most = d.travel.rise(d.strut.stroke)
-        out.append(("turns", -mode.strut, lambda y: y[W]))
-        out.append(("extended", -1, lambda y: y[U]))
-        out.append(("bottoms", 1, lambda y: y[U] - most))
+        out.append(("turns", -mode.strut, lambda y: y[WHEEL_TRAVEL_RATE]))
+        out.append(("extended", -1, lambda y: y[WHEEL_TRAVEL]))
+        out.append(("bottoms", 1, lambda y: y[WHEEL_TRAVEL] - most))
     elif d.strut is not None:
         low, high = _limits(d, y)
         out.append(("moves", 1, lambda y: float(forces(d, y, mode).at_wheel) - high))
@@ -170,7 +191,13 @@ def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
         return out
     if mode.wheel:
         wheel = d.wheel
-        out.append(("rolls", -mode.wheel, lambda y: float(wheel.slip(y[BENDS], y[SPIN]))))
+        out.append(
+            (
+                "rolls",
+                -mode.wheel,
+                lambda y: float(wheel.slip(y[LEG_DEFLECTION_RATE], y[WHEEL_SPIN])),
+            )
+        )
     elif d.wheel.stiffness is not None:
         out.append(("slides", 1, lambda y: _beyond_grip(d, y, mode)))
     return out
@@ -187,15 +214,17 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
     """State and mode with which to go on."""
     y = y.copy()
     if event == "tyre":
-        y[Z] = 0.0
+        y[TYRE_DEFLECTION] = 0.0
         return y, replace(mode, touches=not mode.touches, wheel=_slides(d, y))
     if event in ("rolls", "slides"):
         return y, replace(mode, wheel=_wheel(d, y, mode, event))
     if event == "extended":
-        both = (d.sprung * (y[V] + y[W]) + d.unsprung * y[V]) / d.mass
-        y[STOP] += 0.5 * d.sprung * d.unsprung / d.mass * y[W] ** 2
-        y[V], y[U] = both, 0.0
-    y[W] = 0.0
+        both = (
+            d.sprung * (y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]) + d.unsprung * y[DEFLECTION_RATE]
+        ) / d.mass
+        y[STOP_ENERGY] += 0.5 * d.sprung * d.unsprung / d.mass * y[WHEEL_TRAVEL_RATE] ** 2
+        y[DEFLECTION_RATE], y[WHEEL_TRAVEL] = both, 0.0
+    y[WHEEL_TRAVEL_RATE] = 0.0
     low, high = _limits(d, y)
     hold = float(forces(d, y, replace(mode, strut=0)).at_wheel)
     if event == "moves":
@@ -208,7 +237,11 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
 
 def _slides(d: Drop, y: Floats) -> int:
     """Which way a wheel slides that touches the ground."""
-    return -1 if d.wheel is not None and d.wheel.slip(y[BENDS], y[SPIN]) < 0.0 else 1
+    return (
+        -1
+        if d.wheel is not None and d.wheel.slip(y[LEG_DEFLECTION_RATE], y[WHEEL_SPIN]) < 0.0
+        else 1
+    )
 
 
 def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
@@ -234,7 +267,7 @@ def fall(d: Drop, method: Method = "DOP853") -> tuple[DropPhase, ...]:
     tyre goes beyond its table.
     """
     y, mode, time, spans = _start(d), Mode(), 0.0, list[DropPhase]()
-    for _ in range(MOST_SPANS):
+    for _ in range(MAX_SPANS):
         span, y, mode = _span(d, time, y, mode, method)
         if span.last > span.first:
             spans.append(span)
@@ -242,24 +275,24 @@ def fall(d: Drop, method: Method = "DOP853") -> tuple[DropPhase, ...]:
             return tuple(spans)
         time = span.last
     raise LandingError(
-        f"the strut or the wheel changes its mode more than {MOST_SPANS:,} times until "
+        f"the strut or the wheel changes its mode more than {MAX_SPANS:,} times until "
         f"{time:.6g} s; reduce the friction or the duration",
         "too-many-events",
     )
 
 
 def _start(d: Drop) -> Floats:
-    y = np.zeros(len(ROWS))
-    y[V] = d.velocity
+    y = np.zeros(len(STATE_ROWS))
+    y[DEFLECTION_RATE] = d.velocity
     return y
 
 
 def _scales(d: Drop) -> Floats:
     """Of the rows of the state."""
-    out = np.full(len(ROWS), d.mass * d.velocity**2)
-    out[[V, W, BENDS]] = d.velocity
-    out[[Z, U, BEND]] = d.velocity * 0.1
-    out[SPIN] = 1.0 if d.wheel is None else max(d.wheel.speed / d.wheel.radius, 1.0)
+    out = np.full(len(STATE_ROWS), d.mass * d.velocity**2)
+    out[[DEFLECTION_RATE, WHEEL_TRAVEL_RATE, LEG_DEFLECTION_RATE]] = d.velocity
+    out[[TYRE_DEFLECTION, WHEEL_TRAVEL, LEG_DEFLECTION]] = d.velocity * 0.1
+    out[WHEEL_SPIN] = 1.0 if d.wheel is None else max(d.wheel.speed / d.wheel.radius, 1.0)
     return out
 
 
@@ -276,10 +309,10 @@ def _span(
         method,
         dense_output=True,
         events=[_terminal(direction, of) for _, direction, of in known],
-        rtol=RTOL,
-        atol=ATOL * _scales(d),
-        max_step=d.duration / STEPS,
-        first_step=FIRST_STEP * (d.duration - time),
+        rtol=RELATIVE_TOLERANCE,
+        atol=ABSOLUTE_TOLERANCE * _scales(d),
+        max_step=d.duration / MIN_STEPS,
+        first_step=FIRST_STEP_SHARE * (d.duration - time),
     )
     if found.status < 0:
         raise LandingError(f"the drop cannot be integrated: {found.message}", "not-integrated")
@@ -302,8 +335,9 @@ def _terminal(direction: int, of: Callable[[Floats], float]) -> Any:
 
 def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> LandingError:
     f = forces(d, y, mode)
-    left = 0.5 * d.mass * float(y[V] + y[W] * d.sprung / d.mass) ** 2
-    where = f"{time:.4g} s after touch-down, the aircraft still sinking at {y[V] + y[W]:.3g} m/s"
+    left = 0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
+    sinking = f"{y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]:.3g} m/s"
+    where = f"{time:.4g} s after touch-down, the aircraft still sinking at {sinking}"
     if event == "bottoms":
         return LandingError(
             f"the strut bottoms at {float(f.stroke):.4g} m {where} (about {left:.4g} J are left): "

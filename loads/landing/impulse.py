@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 # peak force over mean force of a pulse, for the same impulse in the same time
-PULSES = {"rectangular": 1.0, "half-sine": math.pi / 2.0, "triangular": 2.0}
+PULSE_PEAK_RATIOS = {"rectangular": 1.0, "half-sine": math.pi / 2.0, "triangular": 2.0}
 
 
 def impulse_force(
@@ -16,4 +16,4 @@ def impulse_force(
 
     Source: any text on impulse and momentum; Grenier (2008), eq. L2, for the rectangular pulse.
     """
-    return mass * velocity_change / impulse_time * PULSES[pulse]
+    return mass * velocity_change / impulse_time * PULSE_PEAK_RATIOS[pulse]

@@ -8,31 +8,31 @@ from functools import cached_property
 import numpy as np
 
 from loads.landing.drop import (
-    BEND,
-    BENDS,
-    OIL,
-    ROWS,
-    RUB,
-    RUNWAY,
-    SLIP,
-    SPIN,
-    STOP,
-    TYRE,
+    DEFLECTION_RATE,
+    FRICTION_ENERGY,
+    LEG_DEFLECTION,
+    LEG_DEFLECTION_RATE,
+    OIL_ENERGY,
+    RUNWAY_ENERGY,
+    SLIP_ENERGY,
+    STATE_ROWS,
+    STOP_ENERGY,
+    TYRE_DEFLECTION,
+    TYRE_ENERGY,
+    WHEEL_SPIN,
+    WHEEL_TRAVEL,
+    WHEEL_TRAVEL_RATE,
     Drop,
     DropForces,
     DropPhase,
     LandingError,
-    U,
-    V,
-    W,
-    Z,
     fall,
     forces,
 )
 from loads.motion.refine import resolved
 from pinbase.arrays import Floats
 
-PEAKS = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "spring_back")
+PEAK_NAMES = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "spring_back")
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Landing:
         """At times (T,) s; outside the drop as at its ends, and at a change as just before."""
         d, inside = self.drop, np.clip(times, 0.0, self.spans[-1].last)
         which = np.searchsorted([span.last for span in self.spans], inside)
-        y, parts = np.empty((len(ROWS), len(times))), dict[str, Floats]()
+        y, parts = np.empty((len(STATE_ROWS), len(times))), dict[str, Floats]()
         for k in np.unique(which):
             here, span = which == k, self.spans[k]
             y[:, here] = span.state(inside[here])
@@ -114,13 +114,20 @@ class Landing:
                 parts.setdefault(name, np.empty(len(times)))[here] = values
         f = DropForces(**parts)
         return LandingHistory(
-            times, y[Z], y[U], y[W], y[V] + y[W], y[SPIN], f, _energies(d, y, f.stroke)
+            times,
+            y[TYRE_DEFLECTION],
+            y[WHEEL_TRAVEL],
+            y[WHEEL_TRAVEL_RATE],
+            y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE],
+            y[WHEEL_SPIN],
+            f,
+            _energies(d, y, f.stroke),
         )
 
     @cached_property
     def peaks(self) -> dict[str, LandingPeak]:
-        """Largest values by name of PEAKS, between the steps, too; spring_back: of the leg's drag
-        forward.
+        """Largest values by name of PEAK_NAMES, between the steps, too; spring_back: of the leg's
+        drag forward.
         """
         times = np.linspace(0.0, self.spans[-1].last, 201)
 
@@ -134,7 +141,7 @@ class Landing:
         exact = np.diagonal(columns(when))
         return {
             name: LandingPeak(float(max(value, 0.0)), float(time))
-            for name, value, time in zip(PEAKS, np.maximum(best, exact), when, strict=True)
+            for name, value, time in zip(PEAK_NAMES, np.maximum(best, exact), when, strict=True)
         }
 
     @property
@@ -162,24 +169,30 @@ def land(drop: Drop) -> Landing:
 
 def _energies(d: Drop, y: Floats, stroke: Floats) -> LandingEnergies:
     """At states y (ROWS, T)."""
-    z1, v1, none = y[Z] + y[U], y[V] + y[W], np.zeros(y.shape[1])
+    z1, v1, none = (
+        y[TYRE_DEFLECTION] + y[WHEEL_TRAVEL],
+        y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE],
+        np.zeros(y.shape[1]),
+    )
     wheel, bending = d.wheel, none
-    kinetic = 0.5 * (d.sprung * v1**2 + d.unsprung * y[V] ** 2)
+    kinetic = 0.5 * (d.sprung * v1**2 + d.unsprung * y[DEFLECTION_RATE] ** 2)
     if wheel is not None:
         bent = wheel.mass if wheel.stiffness is not None else 0.0
-        kinetic = kinetic + 0.5 * (bent * y[BENDS] ** 2 + wheel.inertia * y[SPIN] ** 2)
-        bending = 0.5 * (wheel.stiffness or 0.0) * y[BEND] ** 2
+        kinetic = kinetic + 0.5 * (
+            bent * y[LEG_DEFLECTION_RATE] ** 2 + wheel.inertia * y[WHEEL_SPIN] ** 2
+        )
+        bending = 0.5 * (wheel.stiffness or 0.0) * y[LEG_DEFLECTION] ** 2
     return LandingEnergies(
         kinetic=kinetic,
-        potential=-d.gravity * (d.sprung * z1 + d.unsprung * y[Z]),
+        potential=-d.gravity * (d.sprung * z1 + d.unsprung * y[TYRE_DEFLECTION]),
         spring=none if d.strut is None else d.strut.spring.energy(stroke),
-        tyre=d.tyre.energy(y[Z]),
+        tyre=d.tyre.energy(y[TYRE_DEFLECTION]),
         bending=bending,
-        oil=y[OIL],
-        friction=y[RUB],
-        stop=y[STOP],
-        tyre_damping=y[TYRE],
-        slip=y[SLIP],
+        oil=y[OIL_ENERGY],
+        friction=y[FRICTION_ENERGY],
+        stop=y[STOP_ENERGY],
+        tyre_damping=y[TYRE_ENERGY],
+        slip=y[SLIP_ENERGY],
         lift=d.lift * d.weight * z1,
-        runway=y[RUNWAY],
+        runway=y[RUNWAY_ENERGY],
     )

@@ -10,9 +10,11 @@ from dataclasses import dataclass
 
 from pinbase.errors import ArgumentError
 
-FOOT = 0.3048
-PSF = 4.4482216152605 / FOOT**2  # lbf/ft^2 in Pa
-FRICTION = 0.8  # which no sliding coefficient of a tyre need exceed: 25.473(d), appendix D to 23
+M_PER_FOOT = 0.3048
+PA_PER_PSF = 4.4482216152605 / M_PER_FOOT**2  # lbf/ft^2 in Pa
+MAX_TYRE_FRICTION = (
+    0.8  # which no sliding coefficient of a tyre need exceed: 25.473(d), appendix D to 23
+)
 
 
 @dataclass(frozen=True)
@@ -26,21 +28,21 @@ class DropRule:
     lift: float
 
 
-DROPS = {
+DROP_RULES = {
     "25.473-landing-weight": DropRule(
         "14 CFR 25.473(a)(2): 10 ft/s at the design landing weight, lift at most the weight",
-        10.0 * FOOT,
+        10.0 * M_PER_FOOT,
         1.0,
     ),
     "25.473-take-off-weight": DropRule(
         "14 CFR 25.473(a)(3): 6 ft/s at the design take-off weight, lift at most the weight",
-        6.0 * FOOT,
+        6.0 * M_PER_FOOT,
         1.0,
     ),
     "25.723-reserve-energy": DropRule(
         "14 CFR 25.723(b): reserve energy, 12 ft/s at the design landing weight, lift at most the "
         "weight; the gear may not fail",
-        12.0 * FOOT,
+        12.0 * M_PER_FOOT,
         1.0,
     ),
     "23.473": DropRule(
@@ -66,49 +68,49 @@ class GroundRule:
     deflection: float = 1.0
 
 
-LARGEST, STATIC = "largest vertical reaction", "static load on the wheel"
+LARGEST_REACTION, STATIC_REACTION = "largest vertical reaction", "static load on the wheel"
 GROUND_RULES = {
     "25.479-drag": GroundRule(
         "14 CFR 25.479(d)(1): the largest vertical reaction with a quarter of it aft",
-        1.0, 0.25, 0.0, LARGEST,
+        1.0, 0.25, 0.0, LARGEST_REACTION,
     ),
     "25.479-drift": GroundRule(
         "14 CFR 25.479(d)(2): 75 % of the largest vertical reaction, with 40 % of that aft and "
         "25 % to the side, at 75 % of the deflection of strut and tyres at that reaction",
-        0.75, 0.75 * 0.40, 0.75 * 0.25, LARGEST, 0.75,
+        0.75, 0.75 * 0.40, 0.75 * 0.25, LARGEST_REACTION, 0.75,
     ),
     "23.479-drag": GroundRule(
         "14 CFR 23.479(b): the largest vertical reaction with a quarter of it aft, the least drag",
-        1.0, 0.25, 0.0, LARGEST,
+        1.0, 0.25, 0.0, LARGEST_REACTION,
     ),
     "23.499-aft": GroundRule(
         "14 CFR 23.499(a): 2.25 times the static load, with 0.8 of that aft",
-        2.25, 2.25 * 0.8, 0.0, STATIC,
+        2.25, 2.25 * 0.8, 0.0, STATIC_REACTION,
     ),
     "23.499-forward": GroundRule(
         "14 CFR 23.499(b): 2.25 times the static load, with 0.4 of that forward",
-        2.25, -2.25 * 0.4, 0.0, STATIC,
+        2.25, -2.25 * 0.4, 0.0, STATIC_REACTION,
     ),
     "23.499-side": GroundRule(
         "14 CFR 23.499(c): 2.25 times the static load, with 0.7 of that to the side",
-        2.25, 0.0, 2.25 * 0.7, STATIC,
+        2.25, 0.0, 2.25 * 0.7, STATIC_REACTION,
     ),
 }  # fmt: skip
 
 
 def descent_velocity(wing_loading: float) -> float:
     """m/s of 14 CFR 23.473(d), at a wing loading in Pa."""
-    return min(max(4.4 * math.sqrt(math.sqrt(wing_loading / PSF)), 7.0), 10.0) * FOOT
+    return min(max(4.4 * math.sqrt(math.sqrt(wing_loading / PA_PER_PSF)), 7.0), 10.0) * M_PER_FOOT
 
 
 def required_velocity(rule: str, wing_loading: float | None) -> float:
-    """Of a rule in DROPS, m/s. Raises: ArgumentError without the wing loading it needs."""
-    fixed = DROPS[rule].velocity
+    """Of a rule in DROP_RULES, m/s. Raises: ArgumentError without the wing loading it needs."""
+    fixed = DROP_RULES[rule].velocity
     if fixed is not None:
         return fixed
     if wing_loading is None:
         raise ArgumentError(
-            f"{DROPS[rule].clause}: give wing_loading or velocity", "no-wing-loading"
+            f"{DROP_RULES[rule].clause}: give wing_loading or velocity", "no-wing-loading"
         )
     return descent_velocity(wing_loading)
 
@@ -124,5 +126,5 @@ def spin_up_drag(
 
     Source: appendix D to 14 CFR part 23.
     """
-    drag = math.sqrt(2.0 * inertia * speed * FRICTION * vertical / time) / radius
-    return min(drag, FRICTION * vertical)
+    drag = math.sqrt(2.0 * inertia * speed * MAX_TYRE_FRICTION * vertical / time) / radius
+    return min(drag, MAX_TYRE_FRICTION * vertical)

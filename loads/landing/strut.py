@@ -14,7 +14,7 @@ import numpy as np
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
-ALMOST_NO_GAS = 0.98  # of the volume: the most that a full stroke may displace
+MAX_DISPLACED_GAS_SHARE = 0.98  # of the volume: the most that a full stroke may displace
 
 
 class StrutSpring(Protocol):
@@ -117,12 +117,15 @@ class Strut:
 
     def __post_init__(self) -> None:
         gas = self.spring
-        if isinstance(gas, GasSpring) and gas.area * self.stroke > ALMOST_NO_GAS * gas.volume:
+        if (
+            isinstance(gas, GasSpring)
+            and gas.area * self.stroke > MAX_DISPLACED_GAS_SHARE * gas.volume
+        ):
             raise ArgumentError(
                 f"a stroke of {self.stroke:g} m displaces {gas.area * self.stroke:.4g} m^3 of gas, "
                 f"but the extended strut has {gas.volume:.4g} m^3, of which at most "
-                f"{ALMOST_NO_GAS:.0%} can be displaced: shorten the stroke to at most "
-                f"{ALMOST_NO_GAS * gas.volume / gas.area:.4g} m, or enlarge the volume",
+                f"{MAX_DISPLACED_GAS_SHARE:.0%} can be displaced: shorten the stroke to at most "
+                f"{MAX_DISPLACED_GAS_SHARE * gas.volume / gas.area:.4g} m, or enlarge the volume",
                 "stroke-exceeds-gas",
             )
 

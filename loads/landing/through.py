@@ -22,8 +22,8 @@ from loads.motion.motion import Course, Motion
 from pinbase.arrays import Complex, Floats
 from pinbase.errors import ArgumentError
 
-POINTS = 65  # strokes at which the rise of the axle is computed
-UNIT = 1.0  # s, of a drive through these strokes
+STROKE_POINTS = 65  # strokes at which the rise of the axle is computed
+DRIVE_DURATION = 1.0  # s, of a drive through these strokes
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ def effective_mass(linkage: Linkage, place: Touchdown, stroke: float) -> float:
 
 def _closing(linkage: Linkage, place: Touchdown, stroke: float) -> tuple[Floats, Motion]:
     """Strokes from none to the whole one, and the leg in them as its strut closes evenly."""
-    strokes = np.linspace(0.0, stroke, POINTS)
+    strokes = np.linspace(0.0, stroke, STROKE_POINTS)
     assert place.strut is not None
     laws: list[Law] = [StateDrive(value) for value in place.extended]
     start = place.extended[place.strut]
-    laws[place.strut] = ConstantDrive(start, start - stroke, UNIT)
-    return strokes, Course(linkage, laws, 0.0, UNIT).at(UNIT * strokes / stroke)
+    laws[place.strut] = ConstantDrive(start, start - stroke, DRIVE_DURATION)
+    return strokes, Course(linkage, laws, 0.0, DRIVE_DURATION).at(DRIVE_DURATION * strokes / stroke)
 
 
 def at_deflection(landing: Landing, place: Touchdown, time: float, part: float) -> tuple[Law, ...]:

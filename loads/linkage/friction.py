@@ -21,11 +21,15 @@ import numpy as np
 from loads.linkage.linkage import LinkageError
 from pinbase.arrays import Complex, Floats, Ints
 
-MOST_CONTACTS = 8  # 256 patterns of signs
-STEPS = 4  # in which friction of pins grows from nothing
-MOST_STEPS = 60  # of Newton's method
-EXACT = 1e-5  # of SAME: sizes are corrected until they change by no more
-SAME = 1e-9  # of the largest contact force: what counts as zero and as the same answer
+MAX_ENUMERATED_CONTACTS = 8  # 256 patterns of signs
+FRICTION_STEPS = 4  # in which friction of pins grows from nothing
+MAX_NEWTON_STEPS = 60  # of Newton's method
+FORCE_SIZE_TOLERANCE = (
+    1e-5  # of CONTACT_FORCE_TOLERANCE: sizes are corrected until they change by no more
+)
+CONTACT_FORCE_TOLERANCE = (
+    1e-9  # of the largest contact force: what counts as zero and as the same answer
+)
 
 
 class JammingError(LinkageError):
@@ -59,14 +63,14 @@ def contact_sizes(free: Complex, response: Complex) -> Floats:
     """Sizes n (T, K) = |free + response n| of contact forces; complex those of pins, which press in
     any direction, response (T, K, K).
 
-    Raises: JammingError where none or, of real ones up to MOST_CONTACTS, several exist.
+    Raises: JammingError where none or, of real ones up to MAX_ENUMERATED_CONTACTS, several exist.
     """
     if not response.any():
         return np.abs(free)
-    if free.shape[1] <= MOST_CONTACTS and not free.imag.any() and not response.imag.any():
+    if free.shape[1] <= MAX_ENUMERATED_CONTACTS and not free.imag.any() and not response.imag.any():
         return np.abs(contact_forces(free.real, -response.real))
     sizes = np.abs(free)
-    for part in np.linspace(0.0, 1.0, STEPS + 1)[1:]:
+    for part in np.linspace(0.0, 1.0, FRICTION_STEPS + 1)[1:]:
         sizes = _newton(free, part * response, sizes)
     return sizes
 
@@ -76,17 +80,17 @@ def _newton(free: Complex, response: Complex, sizes: Floats) -> Floats:
     determinant vanishes: more friction is then not consistent with the motion.
     """
     one = np.eye(free.shape[1])
-    least = SAME * (np.abs(free).max(axis=1) + 1e-300)
-    for _ in range(MOST_STEPS):
+    least = CONTACT_FORCE_TOLERANCE * (np.abs(free).max(axis=1) + 1e-300)
+    for _ in range(MAX_NEWTON_STEPS):
         force = free + (response @ sizes[..., None])[..., 0]
         size = np.abs(force)
         along = force / np.where(size > 0.0, size, 1.0)
         slope = np.real(np.conj(along)[..., None] * response)
-        lost = np.linalg.det(one - slope) <= SAME
+        lost = np.linalg.det(one - slope) <= CONTACT_FORCE_TOLERANCE
         off = size - sizes
         if lost.any():
             break
-        if np.all(np.abs(off).max(axis=1) <= EXACT * least):
+        if np.all(np.abs(off).max(axis=1) <= FORCE_SIZE_TOLERANCE * least):
             return size
         sizes = sizes + np.linalg.solve(one - slope, off[..., None])[..., 0]
     else:
@@ -110,11 +114,11 @@ def contact_forces(free: Floats, feedback: Floats) -> Floats:
     for signs in product((1.0, -1.0), repeat=count):
         s = np.array(signs)
         matrix = np.eye(count) + feedback * s
-        possible = np.abs(np.linalg.det(matrix)) > SAME
+        possible = np.abs(np.linalg.det(matrix)) > CONTACT_FORCE_TOLERANCE
         n = np.linalg.solve(
             np.where(possible[:, None, None], matrix, np.eye(count)), free[..., None]
         )[..., 0]
-        slack = SAME * np.maximum(size, np.abs(n).max(axis=1))
+        slack = CONTACT_FORCE_TOLERANCE * np.maximum(size, np.abs(n).max(axis=1))
         agrees = possible & np.all(n * s >= -slack[:, None], axis=1)
         known = (answers > 0) & np.all(np.abs(n - found) <= slack[:, None], axis=1)
         new = agrees & ~known

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from pinbase.errors import Coded, Place
+from pinbase.errors import CodedError, Place
 
 Point = tuple[float, float]
 Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageError
@@ -17,7 +17,7 @@ Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageEr
 GROUND = "ground"
 
 
-class LinkageError(Coded, ValueError):
+class LinkageError(CodedError, ValueError):
     """The linkage as described cannot be analysed; the message says why and what would be right."""
 
     several: tuple[LinkageError, ...] = ()

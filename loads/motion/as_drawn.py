@@ -11,11 +11,11 @@ from pinbase.arrays import Floats
 
 Singular = Literal["change point", "dead point"]
 
-ASIDE = 0.05  # rad (or length scales) that a coordinate moves away from the drawing
-TRIES = 12  # ways to move away
-FAR = 20.0 * ASIDE  # what goes further is not near the drawing
+TRIAL_DISPLACEMENT = 0.05  # rad (or length scales) that a coordinate moves away from the drawing
+TRIAL_COUNT = 12  # ways to move away
+MAX_TRIAL_DISPLACEMENT = 20.0 * TRIAL_DISPLACEMENT  # what goes further is not near the drawing
 RANK_TOLERANCE = 1e-9  # smallest singular value that counts, relative to the largest
-CLOSED = 1e-10  # of the length scale: gap of a loop that is closed
+CLOSED_LOOP_TOLERANCE = 1e-10  # of the length scale: gap of a loop that is closed
 
 
 def rank(singular: Floats) -> int:
@@ -48,7 +48,9 @@ def _nearby(loops: Loops) -> list[Floats]:
     _, singular, right = np.linalg.svd(closing)
     ways = right[rank(singular) :]
     random = np.random.default_rng(0)
-    tried = [random.standard_normal(len(ways)) @ ways for _ in range(TRIES if len(ways) else 0)]
+    tried = [
+        random.standard_normal(len(ways)) @ ways for _ in range(TRIAL_COUNT if len(ways) else 0)
+    ]
     return [q for way in tried if (q := _closed(loops, way / np.linalg.norm(way))) is not None]
 
 
@@ -57,15 +59,15 @@ def _closed(loops: Loops, way: Floats) -> Floats | None:
     drawing; None where Newton's method finds none.
     """
     scale = loops.linkage.length_scale
-    x = ASIDE * scale * way
+    x = TRIAL_DISPLACEMENT * scale * way
     for _ in range(40):
         pose = loops.pose((x / loops.scale)[None])
         gap = loops.residual((x / loops.scale)[None], pose, loops.drawn_drives[None])[0]
-        error = np.append(gap[: loops.guides], way @ x - ASIDE * scale)
-        if np.abs(error).max() <= CLOSED * scale:
+        error = np.append(gap[: loops.guides], way @ x - TRIAL_DISPLACEMENT * scale)
+        if np.abs(error).max() <= CLOSED_LOOP_TOLERANCE * scale:
             return np.asarray(x / loops.scale)
         J = np.vstack([loops.jacobian(pose)[0][: len(error) - 1], way])
         x = x - np.linalg.lstsq(J, error, rcond=1e-12)[0]
-        if not np.abs(x).max() <= FAR * scale:
+        if not np.abs(x).max() <= MAX_TRIAL_DISPLACEMENT * scale:
             return None
     return None

@@ -9,7 +9,7 @@ import numpy as np
 
 from loads.linkage.linkage import GROUND, Linkage, Point
 
-CHANGE = 1e-9  # of the perimeter: shortest + longest equal the other two
+CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest equal the other two
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class FourBar:
         perimeter = sum(self.lengths)
         shortest, longest = min(self.lengths), max(self.lengths)
         excess = 2.0 * (shortest + longest) - perimeter
-        if abs(excess) <= CHANGE * perimeter:
+        if abs(excess) <= CHANGE_POINT_TOLERANCE * perimeter:
             return "change point"
         if excess > 0.0:
             return "triple-rocker (not Grashof)"

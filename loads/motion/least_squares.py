@@ -20,8 +20,8 @@ from pinbase.arrays import Floats
 
 Ints = NDArray[np.int64]
 
-ROUNDS = 30  # of powers for a condition number
-SETTLED = 1e-6  # relative: changes by less in a round; the error is of that order
+MAX_POWER_ROUNDS = 30  # of powers for a condition number
+CONDITION_TOLERANCE = 1e-6  # relative: changes by less in a round; the error is of that order
 
 
 @dataclass(frozen=True)
@@ -168,11 +168,11 @@ class Factors:
         start = np.random.default_rng(0).standard_normal((self._n, 1))
         x = np.repeat(start / np.linalg.norm(start), self._diagonal.shape[1], axis=1)
         before, found = np.zeros(x.shape[1]), np.full(x.shape[1], np.nan)
-        for _ in range(ROUNDS):
+        for _ in range(MAX_POWER_ROUNDS):
             x = apply(x)
             size = np.sqrt(_total(x**2))
             x /= size
-            settled = np.isnan(found) & (np.abs(size - before) <= SETTLED * size)
+            settled = np.isnan(found) & (np.abs(size - before) <= CONDITION_TOLERANCE * size)
             found[settled] = size[settled]  # at once: whatever other systems there are
             if not np.isnan(found).any():
                 break

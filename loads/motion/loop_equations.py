@@ -24,10 +24,10 @@ import numpy as np
 from loads.linkage.gears import gap_weights, row
 from loads.linkage.linkage import Linkage, Point, Slider, Turn
 from loads.motion.least_squares import Factors, Step, elimination
-from loads.motion.spanning_tree import ROUNDING, ends_of, frames, shortest, spanning_tree
+from loads.motion.spanning_tree import LENGTH_ROUND_OFF, ends_of, frames, shortest, spanning_tree
 from pinbase.arrays import Complex, Floats, Ints
 
-AT_ONCE = 2**20  # entries of the matrices of a batch of instants: 8 MB
+MATRIX_BATCH_ENTRIES = 2**20  # entries of the matrices of a batch of instants: 8 MB
 
 
 def number(point: Point) -> complex:
@@ -109,7 +109,7 @@ class Loops:
 
     def parts(self, count: int) -> list[slice]:
         """Slices of so many instants that matrices of all instants of one take little memory."""
-        each = max(1, AT_ONCE // max(1, self.rows * self.columns))
+        each = max(1, MATRIX_BATCH_ENTRIES // max(1, self.rows * self.columns))
         return [slice(k, min(k + each, count)) for k in range(0, max(count, 1), each)]
 
     @cached_property
@@ -337,7 +337,7 @@ class Loops:
     def closures(self) -> Points:
         """The loops' equations: sums and differences of the gaps, with few nonzeros."""
         turning, sliding = self.gaps.turning @ self._combined, self.gaps.sliding @ self._combined
-        turning[np.abs(turning) < ROUNDING * self.linkage.length_scale] = 0.0
+        turning[np.abs(turning) < LENGTH_ROUND_OFF * self.linkage.length_scale] = 0.0
         return Points(turning, sliding)
 
     def _gaps(self) -> Points:

@@ -13,7 +13,7 @@ from loads.motion.joint_forces import connection_members
 from loads.motion.loop_equations import Loops, Pose
 from pinbase.arrays import Floats
 
-TAKES_PART = 1e-6  # of the largest part in a null vector
+MIN_PARTICIPATION = 1e-6  # of the largest part in a null vector
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def is_particle(linkage: Linkage, name: str) -> bool:
 
 
 def moving_bodies(
-    loops: Loops, pose: Pose, rates: Floats, least: float = TAKES_PART
+    loops: Loops, pose: Pose, rates: Floats, least: float = MIN_PARTICIPATION
 ) -> tuple[str, ...]:
     """Bodies that take part in motions given as rates (k, n) at one pose; `least`: how fast, of
     the fastest.
@@ -105,7 +105,7 @@ def stressed_connections(loops: Loops, pose: Pose, multipliers: Floats) -> tuple
     forces = connection_members(loops).forces(nothing, closing)
     size = np.abs(np.hstack([forces, closing[:, len(loops.closing) :]])).max(axis=0)
     names = [name for name, _ in loops.linkage.forces]
-    return tuple(n for n, f in zip(names, size, strict=True) if f > TAKES_PART * size.max())
+    return tuple(n for n, f in zip(names, size, strict=True) if f > MIN_PARTICIPATION * size.max())
 
 
 def require_determined(linkage: Linkage) -> Mobility:

@@ -18,10 +18,14 @@ from loads.motion.positions import Path
 from loads.motion.singular_positions import impasse
 from pinbase.arrays import Complex, Floats
 
-GRID = 257  # instants at which a course evaluates its drives, in addition to those of their laws
-STANDS = 1e-9  # of the fastest coordinate of the course: a point this slow has no direction
-DENSE = 30  # coordinates up to which condition numbers come from singular values
-SAME = 1e-12  # of the whole time: this close to a corner is at it
+DRIVE_GRID_POINTS = (
+    257  # instants at which a course evaluates its drives, in addition to those of their laws
+)
+MIN_POINT_SPEED = (
+    1e-9  # of the fastest coordinate of the course: a point this slow has no direction
+)
+MAX_DENSE_COORDINATES = 30  # coordinates up to which condition numbers come from singular values
+CORNER_TIME_TOLERANCE = 1e-12  # of the whole time: this close to a corner is at it
 
 
 @dataclass(frozen=True)
@@ -103,7 +107,7 @@ class Motion:
         """(T,) 1/m of the path of an item's point, positive to the left; NaN where it stands."""
         _, v, a = self.point(item, drawn)
         speed = np.linalg.norm(v, axis=1)
-        speed = np.where(speed > STANDS * self.pace, speed, np.nan)
+        speed = np.where(speed > MIN_POINT_SPEED * self.pace, speed, np.nan)
         return np.asarray((v[:, 0] * a[:, 1] - v[:, 1] * a[:, 0]) / speed**3)
 
     def joint(self, name: str) -> tuple[Floats, Floats, Floats]:
@@ -166,7 +170,7 @@ class Motion:
 def _condition(part: Motion) -> Floats:
     """Of small systems by singular values, which of large ones take longer than the motion."""
     found = np.full(len(part), np.nan)
-    if part.loops.columns > DENSE:
+    if part.loops.columns > MAX_DENSE_COORDINATES:
         found = part.loops.factors(part.pose).condition()
     unknown = np.flatnonzero(np.isnan(found))
     found[unknown] = np.linalg.cond(part.loops.jacobian(part.pose[unknown]))
@@ -192,7 +196,10 @@ class Course:
         self.loops, self.laws = Loops(linkage), tuple(laws)
         self.first, self.last = first, last
         self.corners = self._inside(t for law in laws for t in law.corners)
-        grid = [*np.linspace(first, last, GRID), *self._inside(t for x in laws for t in x.pieces)]
+        grid = [
+            *np.linspace(first, last, DRIVE_GRID_POINTS),
+            *self._inside(t for x in laws for t in x.pieces),
+        ]
         self.path = Path(self.loops, self._drives, np.unique(grid))
         self.pace = 0.0
         self.pace = float(np.abs(self.at(self.path.nodes).v * self.loops.scale).max(initial=0.0))
@@ -210,7 +217,7 @@ class Course:
         begin, they are those just before.
         """
         if len(self.laws) > 1 and len(self.corners):
-            same = SAME * (self.last - self.first)
+            same = CORNER_TIME_TOLERANCE * (self.last - self.first)
             k = np.clip(np.searchsorted(self.corners, times - same), 0, len(self.corners) - 1)
             times = np.where(np.abs(times - self.corners[k]) <= same, times - 3.0 * same, times)
         course = [law(times) for law in self.laws]

@@ -9,18 +9,20 @@ import numpy as np
 
 from loads.motion.least_squares import Factors
 from loads.motion.loop_equations import Loops
-from loads.motion.singular_positions import Impasse, impasse
+from loads.motion.singular_positions import MotionBlocked, impasse
 from pinbase.arrays import Floats
 
 NEWTON_TOLERANCE = 1e-10  # last correction, of the length scale: the error is its square
-CLOSURE = 1e-11  # largest gap of a closed loop, of the length scale
-LARGEST_TURN = 0.25  # rad (or length scales) that a step of the continuation may move a coordinate
-CONTRACTION = 0.25  # each Newton correction must be at most this part of the one before
-WEAKEST = 1e-10  # pivot, of the largest: below it rank is lost
-STRAIGHT = 0.02  # rad (or length scales) by which a step may leave the drives' straight line
+CLOSURE_TOLERANCE = 1e-11  # largest gap of a closed loop, of the length scale
+MAX_STEP_TURN = 0.25  # rad (or length scales) that a step of the continuation may move a coordinate
+MAX_CONTRACTION_RATIO = 0.25  # each Newton correction must be at most this part of the one before
+MIN_PIVOT_RATIO = 1e-10  # pivot, of the largest: below it rank is lost
+MAX_LINE_DEVIATION = (
+    0.02  # rad (or length scales) by which a step may leave the drives' straight line
+)
 
 Drives = Callable[[Floats], Floats]
-_COURSE = ("start", "run", "q", "rate", "bend")
+_COURSE_KEYS = ("start", "run", "q", "rate", "bend")
 
 
 class _Lost(Exception):
@@ -73,7 +75,7 @@ class Path:
         )
         steps = self._follow(way[-1].q[1], drives, grid)
         self._ends = np.array([step.end for step in steps])
-        self._course = [np.stack([getattr(step, key) for step in steps]) for key in _COURSE]
+        self._course = [np.stack([getattr(step, key) for step in steps]) for key in _COURSE_KEYS]
         self.nodes = np.append([step.begin for step in steps], self._ends[-1])  # s
 
     def at(self, times: Floats) -> Floats:
@@ -84,7 +86,7 @@ class Path:
         values = self.drives(times)
         guess = self._guess(times, values)
         try:
-            near = 0.1 * LARGEST_TURN * self._length
+            near = 0.1 * MAX_STEP_TURN * self._length
             parts = self.loops.parts(len(times))
             return np.concatenate([_newton(self.loops, guess[k], values[k], near) for k in parts])
         except (_Lost, _Open):
@@ -118,11 +120,11 @@ class Path:
             if factors.turn_to(loops.jacobian(pose))[0] < 0.0:
                 raise self._crossed((now, end), q, q1, drives, marks[grid > now])
             beyond = loops.factors(pose)
-            if beyond.weakest[0] < WEAKEST:
+            if beyond.weakest[0] < MIN_PIVOT_RATIO:
                 raise impasse(loops, q1, there, self._furthest(here, marks[grid > now]))
             steps.append(self._step(now, end, here, there - here, (q, q1), (factors, beyond)))
             fastest = float(np.abs(steps[-1].rate[1] * loops.scale).max()) / self._length
-            step = (end - now) * min(2.0, 0.98 * LARGEST_TURN / max(fastest, 1e-300))
+            step = (end - now) * min(2.0, 0.98 * MAX_STEP_TURN / max(fastest, 1e-300))
             now, here, q, factors = end, there, q1, beyond
         return steps
 
@@ -138,7 +140,7 @@ class Path:
             return q
         rate = factors.solve(loops.drive_side(run[None])) / loops.scale
         moved = float(np.abs(rate * loops.scale).max()) / self._length
-        if not moved <= LARGEST_TURN or not self._straight(factors, between - here, run):
+        if not moved <= MAX_STEP_TURN or not self._straight(factors, between - here, run):
             raise _Lost
         if not run.any():
             return q
@@ -150,7 +152,7 @@ class Path:
         """Whether drives that pass (M, D), from where they are, do not leave the line to `run`."""
         off = passed - _part(self.loops, passed, run)[:, None] * run
         size = np.abs(factors.solve(self.loops.drive_side(off))).max(initial=0.0)
-        return bool(size <= STRAIGHT * self._length)
+        return bool(size <= MAX_LINE_DEVIATION * self._length)
 
     def _step(
         self,
@@ -179,7 +181,7 @@ class Path:
 
     def _crossed(
         self, times: tuple[float, float], q: Floats, q1: Floats, drives: Drives, ahead: Floats
-    ) -> Impasse:
+    ) -> MotionBlocked:
         """Where between two instants rank was lost and another path crosses, by halving."""
         (low, high), (begin, end) = times, times
         at, factors = q, self._factors(q)
@@ -245,7 +247,7 @@ def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> F
     `first` (m). Factors are kept while corrections fall fast.
     """
     scale = loops.linkage.length_scale
-    before, factors = first / CONTRACTION, None
+    before, factors = first / MAX_CONTRACTION_RATIO, None
     for _ in range(12):
         pose = loops.pose(q)
         gap = loops.residual(q, pose, drives)
@@ -261,10 +263,10 @@ def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> F
             raise _Lost
         q = q + x / loops.scale
         if size <= NEWTON_TOLERANCE * scale:
-            if np.abs(loops.residual(q, loops.pose(q), drives)).max() > CLOSURE * scale:
+            if np.abs(loops.residual(q, loops.pose(q), drives)).max() > CLOSURE_TOLERANCE * scale:
                 raise _Open(q[-1])
             return q
-        if size > CONTRACTION * before and size > 1e-9 * scale:
+        if size > MAX_CONTRACTION_RATIO * before and size > 1e-9 * scale:
             raise _Lost
         if size > 1e-2 * scale:
             factors = None

@@ -15,25 +15,33 @@ import numpy as np
 
 from pinbase.arrays import Floats
 
-DEGREE = 8
-TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
-PANELS = 16  # at least, of all the time before any is halved
-INSET = 1e-6  # of a span: so far inside its corners it is evaluated, to see one side of a jump only
-SAME = 1e-9  # of the whole time: corners this close are one; of a maximum: so is an end's value
-EQUAL = 1e-12  # of a maximum: what is no larger than by this is not larger
-DEEPEST = 24  # halvings of a panel
-SMALL = 1e-6  # of the largest of all quantities: one below it need not be resolved as finely
-FINE = 33  # points in which a largest value is looked for, in a panel, then between two of those
+PANEL_DEGREE = 8
+INTERPOLATION_TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
+MIN_PANELS = 16  # at least, of all the time before any is halved
+CORNER_INSET = (
+    1e-6  # of a span: so far inside its corners it is evaluated, to see one side of a jump only
+)
+CORNER_MERGE_TOLERANCE = (
+    1e-9  # of the whole time: corners this close are one; of a maximum: so is an end's value
+)
+MAXIMUM_TOLERANCE = 1e-12  # of a maximum: what is no larger than by this is not larger
+MAX_PANEL_HALVINGS = 24  # halvings of a panel
+MIN_RESOLVED_SHARE = (
+    1e-6  # of the largest of all quantities: one below it need not be resolved as finely
+)
+SEARCH_POINTS = (
+    33  # points in which a largest value is looked for, in a panel, then between two of those
+)
 
 At = Callable[[Floats], Floats]
 
-_NODES = np.linspace(-1.0, 1.0, DEGREE + 1)
-_FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(_NODES, DEGREE))
+_PANEL_NODES = np.linspace(-1.0, 1.0, PANEL_DEGREE + 1)
+_CHEBYSHEV_FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(_PANEL_NODES, PANEL_DEGREE))
 
 
 def _weights(x: Floats) -> Floats:
     """(N, nodes) of the values at the nodes in the polynomial at x (N,) of [-1, 1]."""
-    return np.asarray(np.polynomial.chebyshev.chebvander(x, DEGREE) @ _FIT)
+    return np.asarray(np.polynomial.chebyshev.chebvander(x, PANEL_DEGREE) @ _CHEBYSHEV_FIT)
 
 
 @dataclass(frozen=True)
@@ -103,7 +111,7 @@ class Resolved:
     @property
     def nodes(self) -> Floats:
         """(N,) s, rising: the instants of all panels, between which little happens."""
-        return np.unique(_Panels.times(self.panels.low, self.panels.high, _NODES))
+        return np.unique(_Panels.times(self.panels.low, self.panels.high, _PANEL_NODES))
 
     def quantities(self, chosen: slice) -> Resolved:
         """Some of the quantities."""
@@ -122,7 +130,7 @@ class Resolved:
 
     def integral(self, times: Floats, of: Callable[[Floats], Floats]) -> Floats:
         """(T, M) from the first time to `times` (T,) s, of what `of` makes (N, M) of values."""
-        x, weight = np.polynomial.legendre.leggauss(2 * DEGREE)
+        x, weight = np.polynomial.legendre.leggauss(2 * PANEL_DEGREE)
 
         def between(panel: np.ndarray, low: Floats, high: Floats) -> Floats:
             at = _Panels.times(low, high, x)
@@ -142,17 +150,19 @@ class Resolved:
         equally large ones that at an end.
         """
         low, high = self.ends[:-1], self.ends[1:]
-        x = np.linspace(-1.0, 1.0, FINE)
+        x = np.linspace(-1.0, 1.0, SEARCH_POINTS)
         times = _Panels.times(low, high, x)
         found = of(self._inside(times))
         top = found.argmax(axis=0)
         best, when = found[top, np.arange(len(top))], times.ravel()[top]
-        panel, point = np.divmod(top, FINE)
-        beyond = (point == FINE - 1).astype(int) - (point == 0)  # at an end: it may be past that
+        panel, point = np.divmod(top, SEARCH_POINTS)
+        beyond = (point == SEARCH_POINTS - 1).astype(int) - (
+            point == 0
+        )  # at an end: it may be past that
         for each in (panel, np.clip(panel + beyond, 0, len(low) - 1)):
             best, when = self._near(of, best, when, each)
         for k in (-1, 0):
-            same = found[k] >= best - SAME * np.abs(best)
+            same = found[k] >= best - CORNER_MERGE_TOLERANCE * np.abs(best)
             best, when = np.where(same, found[k], best), np.where(same, self.ends[k], when)
         return best, when
 
@@ -161,17 +171,17 @@ class Resolved:
     ) -> tuple[Floats, Floats]:
         """The largest values (M,) and their times near those known, each in a panel (M,)."""
         low, high = self.ends[:-1][panel], self.ends[1:][panel]
-        x, rows = np.linspace(-1.0, 1.0, FINE), np.arange(len(panel))
-        at, width = np.clip(when, low, high), (high - low) / (FINE - 1)
+        x, rows = np.linspace(-1.0, 1.0, SEARCH_POINTS), np.arange(len(panel))
+        at, width = np.clip(when, low, high), (high - low) / (SEARCH_POINTS - 1)
         while np.any(width > 1e-9 * (self.ends[-1] - self.ends[0])):
             here = _Panels.times(np.maximum(at - width, low), np.minimum(at + width, high), x)
-            near = of(self.panels.at(np.repeat(panel, FINE), here.ravel()))
-            near = near.reshape(len(panel), FINE, -1)[rows, :, rows]
+            near = of(self.panels.at(np.repeat(panel, SEARCH_POINTS), here.ravel()))
+            near = near.reshape(len(panel), SEARCH_POINTS, -1)[rows, :, rows]
             k = near.argmax(axis=1)
-            better = near[rows, k] > best + EQUAL * np.abs(best)
+            better = near[rows, k] > best + MAXIMUM_TOLERANCE * np.abs(best)
             best = np.where(better, near[rows, k], best)
             at, when = (np.where(better, here[rows, k], t) for t in (at, when))
-            width = width / (0.25 * (FINE - 1))
+            width = width / (0.25 * (SEARCH_POINTS - 1))
         return best, when
 
     def _inside(self, times: Floats) -> Floats:
@@ -197,7 +207,7 @@ def resolved(
     ends = _spans(times, corners)
     low, high = _first(ends)
     samples, values = times, at(times) if known is None else known
-    first = _Panels.times(low, high, _NODES).ravel()
+    first = _Panels.times(low, high, _PANEL_NODES).ravel()
     solved = [(samples, values), (first, at(first))]
     large = np.zeros(values.shape[1])
     for _, found in solved:
@@ -205,13 +215,13 @@ def resolved(
     active = _Panels(
         low,
         high,
-        solved[1][1].reshape(len(low), DEGREE + 1, -1),
+        solved[1][1].reshape(len(low), PANEL_DEGREE + 1, -1),
         np.zeros(len(low), dtype=bool),
     )
     done, left = list[_Panels](), list[_Panels]()
-    middle = 0.5 * (_NODES[1:] + _NODES[:-1])
+    middle = 0.5 * (_PANEL_NODES[1:] + _PANEL_NODES[:-1])
     halfway, used = _weights(middle), 0
-    for depth in range(DEEPEST + 1):
+    for depth in range(MAX_PANEL_HALVINGS + 1):
         between = _Panels.times(active.low, active.high, middle)
         if used and used + between.size > most:
             left.append(active)
@@ -221,15 +231,15 @@ def resolved(
         solved.append((between.ravel(), fresh))
         large = np.maximum(large, np.abs(fresh).max(axis=0, initial=0.0))
         scale = _scale(large, groups)
-        fresh = fresh.reshape(len(between), DEGREE, -1)
+        fresh = fresh.reshape(len(between), PANEL_DEGREE, -1)
         off = _largest(np.abs(halfway @ active.values - fresh) / scale)
         np.maximum.at(off, *_off_at(active, samples, values, scale))
-        good = off <= TOLERANCE
+        good = off <= INTERPOLATION_TOLERANCE
         done.append(active[good].halves(fresh[good]))
         active = active[~good].halves(fresh[~good])
         if not len(active.low):
             break
-        if depth == DEEPEST:
+        if depth == MAX_PANEL_HALVINGS:
             left.append(active)
     return _gathered(solved, done, left, ends)
 
@@ -237,7 +247,7 @@ def resolved(
 def _spans(times: Floats, corners: Floats | tuple[float, ...]) -> Floats:
     """(S + 1,) ends of the spans: the first and the last time, and the corners between."""
     first, last = float(times[0]), float(times[-1])
-    apart = SAME * (last - first)
+    apart = CORNER_MERGE_TOLERANCE * (last - first)
     inside = [c for c in sorted(corners) if first + apart < c < last - apart]
     kept = [first]
     for c in inside:
@@ -250,10 +260,10 @@ def _first(ends: Floats) -> tuple[Floats, Floats]:
     """Low and high ends of the first panels. They differ in width, so that equal steps in all of
     them are never the period of what repeats itself.
     """
-    count = max(1, -(-PANELS // (len(ends) - 1)))
+    count = max(1, -(-MIN_PANELS // (len(ends) - 1)))
     width = 1.0 + 0.5 * np.mod(np.arange(count) * 0.6180339887, 1.0)
     parts = np.concatenate([[0.0], np.cumsum(width)]) / width.sum()
-    inset = INSET * np.diff(ends)
+    inset = CORNER_INSET * np.diff(ends)
     first, last = ends[:-1] + inset, ends[1:] - inset
     cuts = first[:, None] + (last - first)[:, None] * parts
     return cuts[:, :-1].ravel(), cuts[:, 1:].ravel()
@@ -272,7 +282,7 @@ def _scale(large: Floats, groups: Sequence[int] | None) -> Floats:
         of_group = np.zeros(max(groups, default=-1) + 1)
         np.maximum.at(of_group, list(groups), large)
         large = of_group[list(groups)]
-    large = np.maximum(large, SMALL * large.max(initial=0.0))
+    large = np.maximum(large, MIN_RESOLVED_SHARE * large.max(initial=0.0))
     return np.where(large > 0.0, large, 1.0)
 
 

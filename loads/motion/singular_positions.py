@@ -19,13 +19,13 @@ from loads.motion.mobility import moving_bodies, stressed_connections
 from pinbase.arrays import Floats
 
 Kind = Literal["dead point", "change point", "open"]
-CODES: dict[Kind, str] = {
+KIND_CODES: dict[Kind, str] = {
     "dead point": "dead-point",
     "change point": "change-point",
     "open": "does-not-close",
 }
-SNAPS = 1e-2  # of the fastest: a body this slow near a dead point is still at it
-MOST_NAMES = 6  # in a message
+SNAP_SPEED_RATIO = 1e-2  # of the fastest: a body this slow near a dead point is still at it
+MAX_LISTED_NAMES = 6  # in a message
 Show = Callable[[float, bool], str]
 
 
@@ -36,12 +36,14 @@ def in_si(value: float, slides: bool) -> str:
 
 def _some(names: tuple[str, ...]) -> str:
     """The names, or the first of many."""
-    if len(names) <= MOST_NAMES:
+    if len(names) <= MAX_LISTED_NAMES:
         return ", ".join(names)
-    return f"{', '.join(names[: MOST_NAMES - 1])} and {len(names) - MOST_NAMES + 1} more"
+    return (
+        f"{', '.join(names[: MAX_LISTED_NAMES - 1])} and {len(names) - MAX_LISTED_NAMES + 1} more"
+    )
 
 
-class Impasse(LinkageError):
+class MotionBlocked(LinkageError):
     """The linkage cannot follow its drives.
 
     kind: what prevents it. reached, wanted: (D,) values of the drives, m or rad. bodies: those
@@ -61,7 +63,7 @@ class Impasse(LinkageError):
         self.linkage, self.kind = linkage, kind
         self.reached, self.wanted = reached, wanted
         self.bodies, self.connections = bodies, connections
-        super().__init__(self.message(), CODES[kind])
+        super().__init__(self.message(), KIND_CODES[kind])
 
     def message(self, show: Show = in_si) -> str:
         """What is wrong and what to do; `show` formats a drive's value."""
@@ -97,7 +99,7 @@ class Impasse(LinkageError):
 
 def impasse(
     loops: Loops, q: Floats, reached: Floats, wanted: Floats, opened: Floats | None = None
-) -> Impasse:
+) -> MotionBlocked:
     """What prevents the motion near coordinates q (n,). opened: coordinates with open loops."""
     if opened is not None:
         pose = loops.pose(opened[None])
@@ -110,7 +112,7 @@ def impasse(
         ]
         members += [t.name for t in teeth]
         names = tuple(n for n, g in zip(members, gap, strict=True) if g > 0.1 * gap.max())
-        return Impasse(loops.linkage, "open", reached, wanted, (), names)
+        return MotionBlocked(loops.linkage, "open", reached, wanted, (), names)
     pose = loops.pose(q[None])
     left, _, right = np.linalg.svd(loops.jacobian(pose)[0])
     last = loops.columns - 1
@@ -119,11 +121,11 @@ def impasse(
     # At a dead point the drive force is unbounded too; at a change point it is not.
     blocked = float(np.abs(force[len(force) - drives :]).max()) > 1e-3
     kind: Kind = "dead point" if blocked else "change point"
-    return Impasse(
+    return MotionBlocked(
         loops.linkage,
         kind,
         reached,
         wanted,
-        moving_bodies(loops, pose, motion[None] / loops.scale, SNAPS),
+        moving_bodies(loops, pose, motion[None] / loops.scale, SNAP_SPEED_RATIO),
         stressed_connections(loops, pose, force[:, None]),
     )

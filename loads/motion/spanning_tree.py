@@ -11,7 +11,7 @@ import numpy as np
 from loads.linkage.linkage import GROUND, Linkage, LinkageError
 from pinbase.arrays import Complex, Floats, Ints
 
-ROUNDING = 1e-14  # of a length: what is left where equal lengths cancel
+LENGTH_ROUND_OFF = 1e-14  # of a length: what is left where equal lengths cancel
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def shortest(gaps: Complex) -> Floats:
         for k in np.argsort(-(gaps != 0.0).sum(axis=0), kind="stable"):
             for sign in (1.0, -1.0):
                 new = gaps[:, k, None] - sign * gaps
-                new[np.abs(new) < ROUNDING * size] = 0.0
+                new[np.abs(new) < LENGTH_ROUND_OFF * size] = 0.0
                 entries = (new != 0.0).sum(axis=0)
                 entries[k] = len(gaps) + 1
                 j = int(entries.argmin())

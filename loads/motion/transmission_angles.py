@@ -14,7 +14,7 @@ from loads.motion.mobility import is_particle
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
-STANDS = 1e-9  # of the fastest body: what moves less does not
+MIN_BODY_SPEED = 1e-9  # of the fastest body: what moves less does not
 
 
 def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
@@ -48,7 +48,7 @@ def _standing(motion: Motion, rates: Floats) -> set[str]:
     for i in range(len(linkage.bodies)):
         if f := loops.frame[i]:
             speed[i] += linkage.length_scale * np.abs(rates[:, f - 1]).max()
-    least = STANDS * speed.max(initial=0.0)
+    least = MIN_BODY_SPEED * speed.max(initial=0.0)
     return {GROUND} | {b.name for b, v in zip(linkage.bodies, speed, strict=False) if v <= least}
 
 
@@ -91,7 +91,7 @@ def _turns_at(motion: Motion, rates: Floats, link: Body, joint: Joint) -> bool:
         if b.name in _bodies(joint) and b != link and not is_particle(linkage, b.name)
     ]
     mine = _spin(motion, rates, link.name)
-    least = STANDS * np.abs(rates * motion.loops.scale).max() / linkage.length_scale
+    least = MIN_BODY_SPEED * np.abs(rates * motion.loops.scale).max() / linkage.length_scale
     return any(float(np.abs(spin - mine).max()) > least for spin in spins)
 
 

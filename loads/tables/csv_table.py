@@ -13,22 +13,22 @@ from pathlib import Path
 from typing import TextIO
 
 from loads.tables.regular_file import MB, FileError, read_regular
-from pinbase.errors import Coded
+from pinbase.errors import CodedError
 
-LARGEST_TABLE = 64 * MB
-MOST_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
-MOST_COLUMNS = 1_000
-LONGEST_LINE = 1_000_000  # characters
+MAX_TABLE_BYTES = 64 * MB
+MAX_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
+MAX_COLUMNS = 1_000
+MAX_LINE_CHARACTERS = 1_000_000  # characters
 SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # that other programs write
-DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
-THOUSANDS = re.compile(r"[-+]?\d{1,3},\d{3}")
-WITH_UNIT = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?\s*(?:[^\W\d_]|[/^*·. ])+\d?")
+DECIMAL_COMMA_PATTERN = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
+THOUSANDS_PATTERN = re.compile(r"[-+]?\d{1,3},\d{3}")
+WITH_UNIT_PATTERN = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?\s*(?:[^\W\d_]|[/^*·. ])+\d?")
 MINUS = "\N{MINUS SIGN}"  # which reports print
-LONGEST_SHOWN = 40  # characters of a cell
-LARGEST = 1e18  # the fourth power is still a number; as for quantities of a study
+MAX_SHOWN_CHARACTERS = 40  # characters of a cell
+MAX_CELL_VALUE = 1e18  # the fourth power is still a number; as for quantities of a study
 
 
-class TableError(Coded, ValueError):
+class TableError(CodedError, ValueError):
     """An unusable table; the message names the file, the line and what would be right."""
 
 
@@ -41,35 +41,37 @@ class Row:
     comma: bool = False  # whether decimals are written with one
 
     def number(self, column: str) -> float:
-        """A cell's number. Raises: TableError unless it is finite and at most LARGEST."""
+        """A cell's number. Raises: TableError unless it is finite and at most MAX_CELL_VALUE."""
         text = self.cells[column]
-        if self.comma and DECIMAL_COMMA.fullmatch(text):
+        if self.comma and DECIMAL_COMMA_PATTERN.fullmatch(text):
             text = text.replace(",", ".")
         what = f"{self.where}: {column} = {text[:40]}"
         try:
             value = float(text)
         except ValueError:
-            what = f"{self.where}: {column} = {text[:LONGEST_SHOWN]!r} is not a number"
-            code = "decimal-comma" if DECIMAL_COMMA.fullmatch(text) else "not-a-number"
+            what = f"{self.where}: {column} = {text[:MAX_SHOWN_CHARACTERS]!r} is not a number"
+            code = "decimal-comma" if DECIMAL_COMMA_PATTERN.fullmatch(text) else "not-a-number"
             raise TableError(f"{what}{_remedy(text)}", code) from None
         if not math.isfinite(value):
             raise TableError(f"{what} is not finite", "not-finite")
-        if abs(value) > LARGEST:
-            raise TableError(f"{what} exceeds the limit of {LARGEST:g}", "too-large")
+        if abs(value) > MAX_CELL_VALUE:
+            raise TableError(f"{what} exceeds the limit of {MAX_CELL_VALUE:g}", "too-large")
         return value
 
 
 def _remedy(text: str) -> str:
     """What would be right instead of a cell that is not a number, if that can be told."""
     point = text.replace(",", ".")
-    if THOUSANDS.fullmatch(text):
+    if THOUSANDS_PATTERN.fullmatch(text):
         return f"; write {text.replace(',', '')}, or {point} with a point"
-    if DECIMAL_COMMA.fullmatch(text):
+    if DECIMAL_COMMA_PATTERN.fullmatch(text):
         return f"; write {point}, with a point"
     if text.startswith(MINUS):
-        return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:LONGEST_SHOWN]}"
-    short = len(text) <= LONGEST_SHOWN  # the pattern takes the square of a hostile cell's length
-    return "; cells have no units" if short and WITH_UNIT.fullmatch(text) else ""
+        return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:MAX_SHOWN_CHARACTERS]}"
+    short = (
+        len(text) <= MAX_SHOWN_CHARACTERS
+    )  # the pattern takes the square of a hostile cell's length
+    return "; cells have no units" if short and WITH_UNIT_PATTERN.fullmatch(text) else ""
 
 
 def read_table(
@@ -86,7 +88,7 @@ def read_table(
     Raises: TableError for a file that is not such a table.
     """
     try:
-        text = io.StringIO(read_regular(path, LARGEST_TABLE).decode("utf-8-sig"), newline="")
+        text = io.StringIO(read_regular(path, MAX_TABLE_BYTES).decode("utf-8-sig"), newline="")
         lines = _lines(path, text)
         separator = ","
         if free:
@@ -114,11 +116,12 @@ def read_table(
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
     count = 0
-    while line := file.readline(LONGEST_LINE + 1):
+    while line := file.readline(MAX_LINE_CHARACTERS + 1):
         count += 1
-        if len(line) > LONGEST_LINE:
+        if len(line) > MAX_LINE_CHARACTERS:
             raise TableError(
-                f"{path}, line {count}: has more than {LONGEST_LINE:,} characters; is it a table?",
+                f"{path}, line {count}: has more than {MAX_LINE_CHARACTERS:,} characters; is it "
+                f"a table?",
                 "not-csv",
             )
         yield line
@@ -167,9 +170,9 @@ def _rows(
         where = f"{path}, line {line}"
         if len(cells) != len(columns):
             raise _cell_count(where, cells, columns)
-        if count > MOST_ROWS:
+        if count > MAX_ROWS:
             raise TableError(
-                f"{where}: the table has more than {MOST_ROWS:,} rows, the limit; give fewer",
+                f"{where}: the table has more than {MAX_ROWS:,} rows, the limit; give fewer",
                 "too-many-rows",
             )
         yield Row(where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)}, comma)
@@ -182,9 +185,9 @@ def _require(
 ) -> None:
     head = ",".join(needed)
     expected = f"needed: {head}" + (f"; optional: {', '.join(optional)}" if optional else "")
-    if len(columns) > MOST_COLUMNS:
+    if len(columns) > MAX_COLUMNS:
         raise TableError(
-            f"{path}: has {len(columns):,} columns; the limit is {MOST_COLUMNS:,}",
+            f"{path}: has {len(columns):,} columns; the limit is {MAX_COLUMNS:,}",
             "too-many-columns",
         )
     for column in needed:

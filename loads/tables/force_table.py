@@ -13,11 +13,11 @@ from pathlib import Path
 from loads.tables.csv_table import Row, TableError, read_table
 from loads.tables.sent_files import stamp
 
-COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
-DIMENSIONS = {"f": "force", "m": "moment", "t": "time"}  # by a column's first letter
-HEADER = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<unit>[^\]]*)\]|\((?P<bracket>[^)]*)\))?\s*$")
-WIDE = re.compile(r"(?P<connection>.+?)[. ](?P<component>[fm][xyz])$")
-OURS = {"case", "body"}  # a table with these columns is one of our own outputs
+FORCE_COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
+COMPONENT_DIMENSIONS = {"f": "force", "m": "moment", "t": "time"}  # by a column's first letter
+HEADER_PATTERN = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<unit>[^\]]*)\]|\((?P<bracket>[^)]*)\))?\s*$")
+WIDE_COLUMN_PATTERN = re.compile(r"(?P<connection>.+?)[. ](?P<component>[fm][xyz])$")
+OWN_TABLE_COLUMNS = {"case", "body"}  # a table with these columns is one of our own outputs
 
 Unit = Callable[[str, str], float]  # SI value of a unit, "" for the table's own, of a dimension
 
@@ -84,7 +84,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
         if columns is None:
             columns = _columns(path, list(row.cells), layout, unit)
         text = {c.meaning: row.cells[c.header] for c in columns if c.connection is None}
-        own = set(row.cells) >= OURS
+        own = set(row.cells) >= OWN_TABLE_COLUMNS
         for name, own_columns in _by_connection(row, columns, text, names):
             if name not in known and (own or layout.labels):
                 continue
@@ -143,20 +143,21 @@ def _columns(path: Path, headers: list[str], layout: Layout, unit: Unit) -> list
         chosen[meaning] = (header, sign)
     out = []
     for meaning, (header, sign) in (chosen or {h: (h, 1.0) for h in headers}).items():
-        parts, original = HEADER.fullmatch(meaning), HEADER.fullmatch(header)
+        parts, original = HEADER_PATTERN.fullmatch(meaning), HEADER_PATTERN.fullmatch(header)
         assert parts is not None
         assert original is not None
         name, of_unit = parts["name"], original["unit"] or original["bracket"] or ""
-        wide = WIDE.fullmatch(name)
+        wide = WIDE_COLUMN_PATTERN.fullmatch(name)
         what = wide["component"] if wide else name
-        if what not in (*COMPONENTS, "time", "case", "connection", "body"):
+        if what not in (*FORCE_COMPONENTS, "time", "case", "connection", "body"):
             raise TableError(
                 f"{path}: unknown column {name[:40]!r}; allowed: connection, "
-                f"{', '.join(COMPONENTS)}, time, case, body; or B.fx for the force on connection B",
+                f"{', '.join(FORCE_COMPONENTS)}, time, case, body; or B.fx for the force on "
+                f"connection B",
                 "unknown-column",
             )
-        known = what in (*COMPONENTS, "time")
-        factor = sign * unit(of_unit, DIMENSIONS[what[0]]) if known else 1.0
+        known = what in (*FORCE_COMPONENTS, "time")
+        factor = sign * unit(of_unit, COMPONENT_DIMENSIONS[what[0]]) if known else 1.0
         out.append(_Column(header, factor, wide["connection"] if wide else None, what))
     _require(path, out)
     return out
@@ -191,7 +192,7 @@ def _by_connection(
     """The connections of a row, each with the columns of its components."""
     if "connection" in text:
         label = text["connection"]
-        yield names.get(label, label), [c for c in columns if c.meaning in COMPONENTS]
+        yield names.get(label, label), [c for c in columns if c.meaning in FORCE_COMPONENTS]
         return
     for name in dict.fromkeys(c.connection for c in columns if c.connection is not None):
         yield name, [c for c in columns if c.connection == name]
@@ -211,5 +212,5 @@ def _values(row: Row, columns: list[_Column]) -> list[float]:
     by_name = {c.meaning: c for c in columns}
     return [
         row.number(by_name[c].header) * by_name[c].factor if c in by_name else 0.0
-        for c in COMPONENTS
+        for c in FORCE_COMPONENTS
     ]

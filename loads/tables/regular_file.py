@@ -9,15 +9,15 @@ import stat
 from pathlib import Path
 
 from loads.tables.sent_files import content_sent
-from pinbase.errors import Coded
+from pinbase.errors import CodedError
 
 MB = 2**20
 # So that nothing waits, and no byte is changed, where the system knows of such a thing.
-FLAGS = "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY", "O_NOINHERIT"
-READ = os.O_RDONLY | sum(getattr(os, name, 0) for name in FLAGS)
+OPEN_FLAG_NAMES = "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY", "O_NOINHERIT"
+READ_FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in OPEN_FLAG_NAMES)
 
 
-class FileError(Coded, ValueError):
+class FileError(CodedError, ValueError):
     """A file that must not be read; the message says why, without its name."""
 
 
@@ -28,7 +28,7 @@ def read_regular(path: Path, most: int) -> bytes:
         _require_size(len(given), most)
         return given
     require_regular(path, most)  # before it is opened: opening alone starts some devices
-    descriptor = os.open(path, READ)
+    descriptor = os.open(path, READ_FLAGS)
     with open(descriptor, "rb") as file:
         _require(os.fstat(descriptor), most)  # it may be another one by now
         content = file.read(most + 1)

@@ -12,11 +12,11 @@ from typing import Generic, TypeVar
 
 from pinbase.errors import Damaged
 from pinbase.processes.limits import Limits
-from pinbase.processes.pool import Died, Job, Tell, Watch, can_fork, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Tell, Watch, can_fork, in_parallel
 
 T = TypeVar("T")
 
-NO_MEMORY = "there was not enough memory"
+NO_MEMORY_REASON = "there was not enough memory"
 
 
 @dataclass(frozen=True)
@@ -46,26 +46,26 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T |
 def guarded(
     jobs: Sequence[Job[T]], anew: bool = False, watch: Watch | None = None
 ) -> list[T | Failed]:
-    """The same of jobs, which may report progress; anew, watch: as `side_by_side` has them."""
+    """The same of jobs, which may report progress; anew, watch: as `in_parallel` has them."""
     inner: list[Job[_Made[T] | Failed]] = [
         Job(job.name, partial(_guarded, job.work), job.limits) for job in jobs
     ]
     try:
         # Two at a time: one would be this process.
-        found = side_by_side(inner, 2, anew=anew or not can_fork(), watch=watch)
+        found = in_parallel(inner, 2, anew=anew or not can_fork(), watch=watch)
     except (OSError, MemoryError) as error:  # no further process can be started
-        why = NO_MEMORY if isinstance(error, MemoryError) else str(error.strerror)
+        why = NO_MEMORY_REASON if isinstance(error, MemoryError) else str(error.strerror)
         return [Failed(f"no process could be started for it ({why})") for _ in jobs]
     told: list[T | Failed] = []
     for one in found:
-        if isinstance(one, Died):
+        if isinstance(one, ProcessDied):
             told.append(Failed(_reason(one)))
         else:
             told.append(one.value if isinstance(one, _Made) else one)
     return told
 
 
-def _reason(died: Died) -> str:
+def _reason(died: ProcessDied) -> str:
     hint = "; it may have run out of memory"
     known = died.limited or died.status == 0 or died.reason.endswith(hint)
     return died.reason if known else died.reason + hint
@@ -83,7 +83,7 @@ def _guarded(work: Callable[[Tell], T], tell: Tell) -> _Made[T] | Failed:
     except (KeyboardInterrupt, SystemExit):
         raise
     except MemoryError:
-        return Failed(NO_MEMORY)
+        return Failed(NO_MEMORY_REASON)
     except Damaged as error:
         return Failed(str(error), damaged=True)
     except BaseException as error:  # also a panic of Rust, which is no Exception

@@ -13,15 +13,17 @@ from contextlib import chdir, contextmanager
 
 from pinbase.processes.system import portable
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-HOME = os.path.dirname(os.path.dirname(HERE))  # that we are imported from
+PROCESSES_FOLDER = os.path.dirname(os.path.abspath(__file__))
+IMPORT_FOLDER = os.path.dirname(os.path.dirname(PROCESSES_FOLDER))  # that we are imported from
 
 
 def trusted_path() -> list[str]:
     """Where this process imports from, less the current folder, unless that is where pinstress is
     imported from: a checkout.
     """
-    return [p for p in sys.path if os.path.isabs(p) and (_same(p, HOME) or not _same(p, "."))]
+    return [
+        p for p in sys.path if os.path.isabs(p) and (_same(p, IMPORT_FOLDER) or not _same(p, "."))
+    ]
 
 
 def leave_out_current_folder() -> None:
@@ -37,12 +39,12 @@ def elsewhere() -> Iterator[None]:
     `matplotlibrc` in the current one. For a process without other threads.
     """
     if portable():
-        with chdir(HERE):
+        with chdir(PROCESSES_FOLDER):
             yield
         return
     here = os.open(".", os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     try:
-        os.chdir(HERE)
+        os.chdir(PROCESSES_FOLDER)
         yield
     finally:
         os.fchdir(here)

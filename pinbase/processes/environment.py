@@ -8,8 +8,8 @@ import click
 
 from pinbase.processes.threads import hold_threads
 
-LAST_TIME = 253_402_300_799  # the end of the year 9999, the last that Python supports
-EPOCH = "SOURCE_DATE_EPOCH"
+MAX_TIMESTAMP = 253_402_300_799  # the end of the year 9999, the last that Python supports
+EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 
 
 def settle_surroundings() -> None:
@@ -20,7 +20,7 @@ def settle_surroundings() -> None:
     hold_threads()
     os.environ["MPLBACKEND"] = "agg"
     os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
-    stated = os.environ.get(EPOCH)
-    if stated is not None and not (stated.isdecimal() and int(stated[:20]) <= LAST_TIME):
-        del os.environ[EPOCH]
-        click.echo(f"Warning: {EPOCH} is not a time in seconds and is ignored.", err=True)
+    stated = os.environ.get(EPOCH_VARIABLE)
+    if stated is not None and not (stated.isdecimal() and int(stated[:20]) <= MAX_TIMESTAMP):
+        del os.environ[EPOCH_VARIABLE]
+        click.echo(f"Warning: {EPOCH_VARIABLE} is not a time in seconds and is ignored.", err=True)

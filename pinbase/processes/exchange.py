@@ -8,9 +8,9 @@ from pathlib import Path
 
 from pinbase.processes.system import portable
 
-EXCHANGE = 2  # RENAME_EXCHANGE of Linux's renameat2
-HERE = -100  # AT_FDCWD
-WITHOUT_EXCHANGE = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)  # some network file systems
+RENAME_EXCHANGE = 2  # RENAME_EXCHANGE of Linux's renameat2
+AT_FDCWD = -100  # AT_FDCWD
+NO_EXCHANGE_ERRORS = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)  # some network file systems
 
 
 def exchange(one: Path, other: Path) -> bool:
@@ -20,8 +20,11 @@ def exchange(one: Path, other: Path) -> bool:
     import ctypes
 
     libc = ctypes.CDLL(None, use_errno=True)
-    if libc.renameat2(HERE, os.fsencode(one), HERE, os.fsencode(other), EXCHANGE) == 0:
+    if (
+        libc.renameat2(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE)
+        == 0
+    ):
         return True
-    if ctypes.get_errno() not in WITHOUT_EXCHANGE:
+    if ctypes.get_errno() not in NO_EXCHANGE_ERRORS:
         raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()), str(other))
     return False

@@ -9,9 +9,9 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-NAMES = "SIGINT", "SIGTERM", "SIGHUP"  # the last is not on Windows
-INTERRUPTS = tuple(getattr(signal, name) for name in NAMES if hasattr(signal, name))
-INTERRUPTED = 130  # the exit status
+SIGNAL_NAMES = "SIGINT", "SIGTERM", "SIGHUP"  # the last is not on Windows
+INTERRUPT_SIGNALS = tuple(getattr(signal, name) for name in SIGNAL_NAMES if hasattr(signal, name))
+EXIT_INTERRUPTED = 130  # the exit status
 
 _came = False
 _deferred = False
@@ -24,7 +24,7 @@ class Unfinished(KeyboardInterrupt):
 def listen() -> None:
     """From now on interrupts raise KeyboardInterrupt, the first of them; forget earlier ones."""
     forget()
-    for each in INTERRUPTS:
+    for each in INTERRUPT_SIGNALS:
         if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
             signal.signal(each, _interrupt)
 
@@ -37,7 +37,7 @@ def forget() -> None:
 
 def ignore() -> None:
     """From now on no interrupt changes anything."""
-    for each in INTERRUPTS:
+    for each in INTERRUPT_SIGNALS:
         signal.signal(each, signal.SIG_IGN)
 
 
@@ -69,7 +69,7 @@ def blocked() -> Iterator[None]:
     """Around a fork: interrupts of this process wait meanwhile, those of the child until it has
     handlers of its own and calls `unblock`.
     """
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPT_SIGNALS)
     try:
         yield
     finally:
@@ -79,7 +79,7 @@ def blocked() -> Iterator[None]:
 def unblock() -> None:
     """Let interrupts through again, where they can be blocked."""
     if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, INTERRUPTS)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, INTERRUPT_SIGNALS)
 
 
 def _interrupt(*_: object) -> None:

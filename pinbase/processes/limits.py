@@ -15,8 +15,11 @@ from pathlib import Path
 from pinbase.processes.system import portable
 
 MB = 2**20
-TICK = 0.1  # s between two looks at the time
-SECONDS_PASSED, CLOCK_PASSED = 124, 125  # exit statuses of a process that a thread has ended
+TIME_CHECK_INTERVAL = 0.1  # s between two looks at the time
+EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = (
+    124,
+    125,
+)  # exit statuses of a process that a thread has ended
 
 
 @dataclass(frozen=True)
@@ -80,16 +83,16 @@ def _by_thread(limits: Limits) -> Iterator[None]:
 
 def _watch(limits: Limits, done: threading.Event) -> None:
     spent, began = time.process_time(), time.monotonic()
-    while not done.wait(TICK):
+    while not done.wait(TIME_CHECK_INTERVAL):
         if time.process_time() - spent > limits.seconds:
-            os._exit(SECONDS_PASSED)
+            os._exit(EXIT_SECONDS_PASSED)
         if time.monotonic() - began > limits.clock:
-            os._exit(CLOCK_PASSED)
+            os._exit(EXIT_CLOCK_PASSED)
 
 
 def passed(status: int, limits: Limits) -> str:
     """Which limit a process passed that ended with this status; empty if none."""
-    seconds, clock = SECONDS_PASSED, CLOCK_PASSED
+    seconds, clock = EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED
     if not portable():
         seconds, clock = -signal.SIGPROF, -signal.SIGALRM
     if status == seconds:

@@ -37,11 +37,11 @@ Progress = Callable[[str, float], None]
 Watch = Callable[[int, str], str]
 Item = TypeVar("Item")
 
-TICK = 0.2  # s between two calls of progress at most, for its clock
-WATCH_TICK = 0.02  # s between two looks at processes that are watched
-GRACE = 0.5  # s for a process to clean up once asked to end
+PROGRESS_INTERVAL = 0.2  # s between two calls of progress at most, for its clock
+WATCH_INTERVAL = 0.02  # s between two looks at processes that are watched
+GRACE_SECONDS = 0.5  # s for a process to clean up once asked to end
 
-KILLED = 9  # SIGKILL, which Windows has not
+KILL_SIGNAL = 9  # SIGKILL, which Windows has not
 
 _preloaded: list[str] = []
 
@@ -58,7 +58,7 @@ class Job(Generic[T_co]):
 
 
 @dataclass(frozen=True)
-class Died:
+class ProcessDied:
     """What comes of a job during which its process ended by itself, and why. status: as
     subprocess has it, negative for a signal. limited: whether it passed a limit.
     """
@@ -97,13 +97,13 @@ def preload(*modules: str) -> None:
     load(modules)
 
 
-def side_by_side(
+def in_parallel(
     jobs: Sequence[Job[T]],
     most: int,
     progress: Progress = lambda _, __: None,
     anew: bool = False,
     watch: Watch | None = None,
-) -> list[T | Died]:
+) -> list[T | ProcessDied]:
     """What the jobs return, in their order; they start in that order, at most so many at a time.
 
     With `most` 1 they are done in this process. progress: called with what is being done and the
@@ -115,7 +115,7 @@ def side_by_side(
     if most == 1:
         return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
     waiting = list(reversed(range(len(jobs))))
-    found: dict[int, T | Died] = {}
+    found: dict[int, T | ProcessDied] = {}
     sends = anew or portable()
 
     def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
@@ -124,11 +124,11 @@ def side_by_side(
         number = waiting.pop()
         return jobs[number].name, (number, jobs[number]) if sends else number
 
-    def give(item: int | tuple[int, Job[T]], value: T | Died) -> None:
+    def give(item: int | tuple[int, Job[T]], value: T | ProcessDied) -> None:
         number = item if isinstance(item, int) else item[0]
         limits = jobs[number].limits
-        if isinstance(value, Died) and limits and (limit := passed(value.status, limits)):
-            value = Died(limit, value.status, limited=True)
+        if isinstance(value, ProcessDied) and limits and (limit := passed(value.status, limits)):
+            value = ProcessDied(limit, value.status, limited=True)
         found[number] = value
 
     serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
@@ -143,7 +143,7 @@ def side_by_side(
 def served(
     serve: Serve[Item, T],
     take: Callable[[], tuple[str, Item] | None],
-    give: Callable[[Item, T | Died], None],
+    give: Callable[[Item, T | ProcessDied], None],
     most: int,
     progress: Callable[[str], None] = lambda _: None,
     forks: Callable[[], bool] = can_fork,
@@ -168,7 +168,7 @@ def served(
                 child.take(*item)
             if not running:
                 return
-            for pipe in wait(list(running), TICK if watch is None else WATCH_TICK):
+            for pipe in wait(list(running), PROGRESS_INTERVAL if watch is None else WATCH_INTERVAL):
                 assert isinstance(pipe, Connection)
                 child = running[pipe]
                 kind, value = child.next()
@@ -182,10 +182,11 @@ def served(
                     child.take(*item)
                 else:
                     running.pop(pipe).close()
-            for child in list(running.values()) if watch else ():
-                if watch and (reason := watch(child.process.pid or 0, child.doing)):
-                    _end([running.pop(child.pipe)])
-                    give(child.item, Died(reason, -KILLED, limited=True))
+            if watch is not None:
+                for child in list(running.values()):
+                    if reason := watch(child.process.pid or 0, child.doing):
+                        _end([running.pop(child.pipe)])
+                        give(child.item, ProcessDied(reason, -KILL_SIGNAL, limited=True))
             interrupts.require_none()
             progress("; ".join(child.doing for child in running.values()))
     finally:
@@ -231,7 +232,7 @@ class _Child:
         except (EOFError, OSError):  # OSError: in the middle of a message
             self.process.join()
             status = self.process.exitcode or 0
-            return "dies", Died(ended(status), status)
+            return "dies", ProcessDied(ended(status), status)
 
     def send(self, number: int) -> None:
         """Send a signal, also to the programs that it runs, where it leads a group of its own."""
@@ -239,7 +240,7 @@ class _Child:
         with suppress(OSError):
             if pid and not portable() and os.getpgid(pid) == pid:
                 os.killpg(pid, number)
-        self.process.kill() if number == KILLED else self.process.terminate()
+        self.process.kill() if number == KILL_SIGNAL else self.process.terminate()
 
     def close(self) -> None:
         """Have it end, and wait for that."""
@@ -255,7 +256,7 @@ def ended(status: int) -> str:
     if status >= 0:
         return f"its process ended with status {status}"
     text = f"its process was ended by signal {-status} ({signal.strsignal(-status)})"
-    return text + "; it may have run out of memory" * (status == -KILLED)
+    return text + "; it may have run out of memory" * (status == -KILL_SIGNAL)
 
 
 def _end(children: list[_Child]) -> None:
@@ -263,6 +264,6 @@ def _end(children: list[_Child]) -> None:
     for child in children:
         child.send(signal.SIGTERM)
     for child in children:
-        child.process.join(GRACE / len(children))
-        child.send(KILLED)
+        child.process.join(GRACE_SECONDS / len(children))
+        child.send(KILL_SIGNAL)
         child.close()

@@ -7,9 +7,13 @@ from __future__ import annotations
 import os
 import sys
 
-VARIABLE = "PINSTRESS_PORTABLE"
+PORTABLE_VARIABLE = "PINSTRESS_PORTABLE"
 
 
 def portable() -> bool:
     """Whether to use nothing but what Windows and macOS have, too."""
-    return sys.platform != "linux" or not hasattr(os, "fork") or os.environ.get(VARIABLE) == "1"
+    return (
+        sys.platform != "linux"
+        or not hasattr(os, "fork")
+        or os.environ.get(PORTABLE_VARIABLE) == "1"
+    )

@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import replace
 
 from assess.opinion.calculix_compare import second_opinions
-from assess.opinion.calculix_in_lugs import Seated, opinion_in_lugs
+from assess.opinion.calculix_in_lugs import PinInLugs, opinion_in_lugs
 from assess.opinion.calculix_plastic import limit_opinion
 from assess.opinion.opinions import LimitOpinion, Opinion
-from fea.core.peak import Peak
-from fea.support.contact.solve_joint import JointModel
+from fea.core.peak import Maximum
+from fea.support.contact.solve_joint import ContactModel
 from geometry import Pin
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
-from pinstress.analysis.stored import Solved
+from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.tasks import Task
 
 
-def ask_calculix(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Opinion, ...]:
+def ask_calculix(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
     """Solve the rows of a task once more; for the task's own process."""
     limits = {
         peak.case: _limit(task, peak, tell)
@@ -28,20 +28,20 @@ def ask_calculix(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Op
     return tuple(replace(opinion, limit=limits.get(opinion.case)) for opinion in found)
 
 
-def _limit(task: Task, peak: Peak, tell: Tell) -> LimitOpinion:
+def _limit(task: Task, peak: Maximum, tell: Tell) -> LimitOpinion:
     """Of a limit load; contact with lugs is found again for it."""
     tell(f"pin {task.pin.name}, {peak.case}: CalculiX, limit load")
     pin, loads = task.pin, peak.governing
     assert isinstance(pin, Pin)
     assert loads is not None
     if task.lugs:
-        contact = JointModel(pin, task.material, task.lugs).solve(loads)
+        contact = ContactModel(pin, task.material, task.lugs).solve(loads)
         pin, loads = contact.pin, contact.loads
     clamps = tuple(pin.surface(name) for name in task.clamps)
     return limit_opinion(pin, task.material, clamps, loads)
 
 
-def _alone(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Opinion, ...]:
+def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
     """Of a pin with prescribed clamps and loads."""
     distance = plan.asked.distance
     try:
@@ -56,14 +56,14 @@ def _alone(plan: Plan, task: Task, solved: Solved, tell: Tell) -> tuple[Opinion,
         )
 
 
-def _in_lugs(task: Task, solved: Solved, tell: Tell) -> tuple[Opinion, ...]:
+def _in_lugs(task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
     """Of the rows that something loads."""
     if not isinstance(task.pin, Pin):
         why = "contact of a pin with holes is not compared with CalculiX"
         return tuple(
             Opinion(p.pin, p.case, p.max_von_mises, p.own_error, failure=why) for p in solved.peaks
         )
-    seated = Seated(task.pin, task.material, task.lugs)
+    seated = PinInLugs(task.pin, task.material, task.lugs)
     return tuple(
         opinion_in_lugs(seated, peak, joint, tell)
         for peak, joint in zip(solved.peaks, solved.joints, strict=True)

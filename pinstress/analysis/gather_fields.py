@@ -7,11 +7,11 @@ from typing import Literal
 
 import numpy as np
 
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.core.solution import Answer
+from fea.core.solution import StressField
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.revolve import revolve_solid
 from fea.solve.solve_pin import Solution
 from fea.support.contact.cell_pressure import CellPressure
@@ -19,24 +19,24 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data import results as plain
 
-Also = Literal["motion", "solid"] | None
-STILLS = 50  # of a motion, besides the governing instant
+ExtraFields = Literal["motion", "solid"] | None
+MAX_STILLS = 50  # of a motion, besides the governing instant
 
 
 def field(
     task: Task,
     solution: Solution,
     case: CaseLoads,
-    also: Also = None,
+    also: ExtraFields = None,
     pressure: CellPressure | None = None,
 ) -> plain.Field | None:
     """A pin's field at its governing instant; None if not solved, or if the model has none.
 
-    also: with the other instants, at most STILLS of them, or with all of a revolved pin. pressure:
-    of contact with its lugs.
+    also: with the other instants, at most MAX_STILLS of them, or with all of a revolved pin.
+    pressure: of contact with its lugs.
     """
     peak = solution.peak
-    solution = shown_at(solution, case)
+    solution = at_samples(solution, case)
     loads, governing = solution.loads, solution.instant
     shown = solution.answer.picture(loads, governing) if solution.answer else None
     if solution.answer is None or shown is None:
@@ -73,9 +73,9 @@ def field(
     )
 
 
-def _volume(answer: Answer, loads: PinLoads, instant: int) -> plain.Volume | None:
+def _volume(answer: StressField, loads: PinLoads, instant: int) -> plain.Volume | None:
     """All of a revolved pin; a solid model's field has it already."""
-    if not isinstance(answer, HarmonicAnswer):
+    if not isinstance(answer, HarmonicField):
         return None
     shown = revolve_solid(answer.fields, loads, instant, answer.solution.nu)
     return plain.Volume(
@@ -90,12 +90,12 @@ def _volume(answer: Answer, loads: PinLoads, instant: int) -> plain.Volume | Non
 
 
 def instants(count: int, governing: int) -> list[int]:
-    """At most STILLS of `count` instants, evenly, and the governing one."""
-    even = np.linspace(0, count - 1, min(count, STILLS)).round().astype(int)
+    """At most MAX_STILLS of `count` instants, evenly, and the governing one."""
+    even = np.linspace(0, count - 1, min(count, MAX_STILLS)).round().astype(int)
     return sorted({*even.tolist(), governing})
 
 
-def shown_at(solution: Solution, case: CaseLoads) -> Solution:
+def at_samples(solution: Solution, case: CaseLoads) -> Solution:
     """With its loads at the case's samples and the governing instant alone."""
     if solution.loads.times is None or case.reactions.times is None:
         return solution
@@ -105,7 +105,9 @@ def shown_at(solution: Solution, case: CaseLoads) -> Solution:
     return replace(solution, loads=solution.loads.at(shown), instant=instant)
 
 
-def _still(task: Task, answer: Answer, loads: PinLoads, instant: int, time: float) -> plain.Still:
+def _still(
+    task: Task, answer: StressField, loads: PinLoads, instant: int, time: float
+) -> plain.Still:
     shown = answer.picture(
         loads.at(np.array([instant])), 0
     )  # whose envelope is then of this instant only
@@ -135,7 +137,7 @@ def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, .
     return tuple(out)
 
 
-def _outside(peak: Peak) -> tuple[float, tuple[float, float, float]] | None:
+def _outside(peak: Maximum) -> tuple[float, tuple[float, float, float]] | None:
     """Where stress at singularities is left out, whether or not they govern, and what lugs press
     on: the largest of the surface.
     """

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import partial
 
 from fea.core.memory import allowed_memory
-from fea.solve.solve_pin import Asked, Model
+from fea.solve.solve_pin import Model, Requirement
 from pinstress.analysis import checks
-from pinstress.analysis.gather_fields import Also
+from pinstress.analysis.gather_fields import ExtraFields
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.mechanism.linkage import determined, linkage
@@ -25,7 +25,7 @@ from pinstress.study.reading.choices import (
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
-from pinstress.study.schema.shown import shown
+from pinstress.study.schema.shown import as_text
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -52,12 +52,12 @@ class Plan:
     """
 
     study: Study
-    asked: Asked
+    asked: Requirement
     loads: dict[str, CaseLoads]
     tasks: list[Task]
     published: Published
     checked: Task | None
-    also: Also = None
+    also: ExtraFields = None
     sensitive: bool = False
     limit_load: bool = False
 
@@ -70,7 +70,7 @@ def prepare(
     model: Model | None = None,
     tolerance: float | None = None,
     memory: float | None = None,
-    also: Also = None,
+    also: ExtraFields = None,
     limit_load: bool = False,
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
@@ -84,12 +84,12 @@ def prepare(
     """
     if not isinstance(study, Study):
         raise InputError(
-            f"{shown(study)} is not a study; pinstress.load_study reads one from a file",
+            f"{as_text(study)} is not a study; pinstress.load_study reads one from a file",
             code="not-a-study",
         )
     names = select(study.table.pin, pins, "pin")
     chosen = chosen_cases(study, cases)
-    asked = asked_of(study, require_model(model), require_tolerance(tolerance), memory)
+    asked = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
     loads = wrong.attempt(lambda: all_loads(study, chosen))
@@ -132,15 +132,15 @@ def _require_model(study: Study, model: Model, pin: str) -> None:
         )
 
 
-def asked_of(
+def requirement_of(
     study: Study,
     model: Model | None = None,
     tolerance: float | None = None,
     memory: float | None = None,
-) -> Asked:
+) -> Requirement:
     """What a study requests of a solution. model, tolerance, memory: as of `prepare`."""
     table = study.table.analysis
-    return Asked(
+    return Requirement(
         tolerance or table.tolerance,
         model or table.model,
         table.goal,

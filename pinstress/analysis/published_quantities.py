@@ -15,7 +15,7 @@ from pinstress.study.reading.published_tables import Published, PublishedRow
 from reports.data import results as plain
 
 # quantity: what it is of, and its dimension
-QUANTITIES = {
+PUBLISHED_QUANTITIES = {
     "force_x": ("connection", "force"),
     "force_y": ("connection", "force"),
     "force": ("connection", "force"),
@@ -45,12 +45,12 @@ def published_values(
 
 
 def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.PublishedValue:
-    if row.quantity not in QUANTITIES:
-        known = ", ".join(QUANTITIES)
+    if row.quantity not in PUBLISHED_QUANTITIES:
+        known = ", ".join(PUBLISHED_QUANTITIES)
         raise InputError(
             f"{row.where}: no quantity {row.quantity!r}; there are {known}", code="unknown-quantity"
         )
-    of, dimension = QUANTITIES[row.quantity]
+    of, dimension = PUBLISHED_QUANTITIES[row.quantity]
     if row.time is not None:
         there = at_time(case, row.time * study.system.factor("time"))
         if there is None:

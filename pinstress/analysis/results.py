@@ -39,7 +39,7 @@ class Png:
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
-class Found(Results):
+class RunResults(Results):
     """Results in the study's units, with tables, frames, and fields by pin and case.
 
     fields: those that were kept. plan: from which pins without a kept field are solved again.
@@ -150,7 +150,7 @@ def run(
     limit_load: bool = False,
     fields: bool = False,
     jobs: int | None = 1,
-) -> Found:
+) -> RunResults:
     """Analyse a study.
 
     pins, cases: names; all by default. model, tolerance: override those of the study. memory_limit:
@@ -178,7 +178,7 @@ def run(
     return solve(plan, fields=fields, jobs=most)
 
 
-def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> Found:
+def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResults:
     """Solve what `prepare` returned; fields, jobs: as in `run`.
 
     Raises: InputError where the study has [fatigue] and its extra is not installed.
@@ -193,4 +193,4 @@ def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> Found:
     with one_thread():
         results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
-    return Found(**plain, fields=kept, plan=plan)
+    return RunResults(**plain, fields=kept, plan=plan)

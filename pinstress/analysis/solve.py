@@ -11,16 +11,16 @@ from assess.fatigue.critical_points import stress_histories
 from assess.fatigue.records import PointHistory
 from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.harmonic.kept_fields import FirstMesh
-from fea.solve.refine import MOST_UNKNOWNS
-from fea.solve.solve_pin import Asked, Solution, solve_pin
+from fea.solve.refine import MAX_UNKNOWNS
+from fea.solve.solve_pin import Requirement, Solution, solve_pin
 from fea.support.contact.records import JointResult
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
 from fea.support.foundation.solve_on_foundations import solve_joints
 from fea.support.foundation.variations import prescribed_ranges
 from geometry import CutPin, Pin
-from pinbase.processes.pool import Died, Job, Progress, Tell, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.checked import checked
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
@@ -30,7 +30,7 @@ from pinstress.analysis.gather.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.remedies.changes import change
 from pinstress.analysis.remedies.sensitivities import sensitivities
-from pinstress.analysis.stored import Entry, Solved, lasting, question
+from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_of_memory
 from pinstress.study.model.pins import shape_notes
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
@@ -38,17 +38,17 @@ from reports.data.in_units import Unit, in_units
 from reports.data.results import Field
 
 # Of a dimension, m, whose effect is found.
-STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
+DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
 
 Keep = Callable[[Field], None]
-Ask = Callable[[Plan, Task, Solved, Tell], tuple[Opinion, ...]]
+Ask = Callable[[Plan, Task, PinOutcome, Tell], tuple[Opinion, ...]]
 
 
 def keep_none(_: Field) -> None:
     """Keep no field. Not a lambda: it is sent to processes that are started anew."""
 
 
-def _ask_none(_: Plan, __: Task, ___: Solved, ____: Tell) -> tuple[Opinion, ...]:
+def _ask_none(_: Plan, __: Task, ___: PinOutcome, ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
@@ -59,7 +59,7 @@ def solve_tasks(
     ask: Ask = _ask_none,
     jobs: int = 1,
     cache: Cache | None = None,
-) -> list[Solved]:
+) -> list[PinOutcome]:
     """What is found of every task of a plan, in their order, `jobs` of them at a time, each in its
     own process (pinbase.processes.pool); with 1, in this one. The answers are the same to the
     last bit.
@@ -77,9 +77,11 @@ def solve_tasks(
         Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
         for task in (plan.tasks[i] for i in order)
     ]
-    found: dict[int, Solved] = {}
-    for i, made in zip(order, side_by_side(work, _together(plan, jobs), progress), strict=True):
-        found[i] = _failed(plan, plan.tasks[i], made.reason) if isinstance(made, Died) else made
+    found: dict[int, PinOutcome] = {}
+    for i, made in zip(order, in_parallel(work, _together(plan, jobs), progress), strict=True):
+        found[i] = (
+            _failed(plan, plan.tasks[i], made.reason) if isinstance(made, ProcessDied) else made
+        )
     return [found[i] for i in range(len(plan.tasks))]
 
 
@@ -91,7 +93,7 @@ def _together(plan: Plan, jobs: int) -> int:
     """So many of the jobs as there is memory for, if they are solids as large as they may get."""
     if not any(_effort(plan, task)[0] for task in plan.tasks):
         return jobs
-    room = allowed_memory(plan.asked.memory) / solid_memory(MOST_UNKNOWNS["solid"])
+    room = allowed_memory(plan.asked.memory) / solid_memory(MAX_UNKNOWNS["solid"])
     return max(1, min(jobs, int(room)))
 
 
@@ -106,7 +108,7 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
 def _attempt(
     plan: Plan, task: Task, keep: Keep, ask: Ask, cache: Cache | None, tell: Tell
-) -> Solved:
+) -> PinOutcome:
     try:
         if cache is None:
             solved = _solve(plan, task, keep, tell)
@@ -119,13 +121,13 @@ def _attempt(
         return _failed(plan, task, str(error))
 
 
-def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> Solved:
+def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> PinOutcome:
     """From the cache; else solved, and kept there. What lacks a limit load for want of time has a
     key of its own: it is no answer where that limit load is requested.
     """
-    key, seconds = cache.key(question(plan, task)), limit_seconds(plan)
+    key, seconds = cache.key(cache_key(plan, task)), limit_seconds(plan)
     entry = cache.read(key, Entry)
-    lacking = None if seconds == inf else cache.key(question(plan, task, seconds))
+    lacking = None if seconds == inf else cache.key(cache_key(plan, task, seconds))
     if lacking is not None and (entry is None or not entry.answers(task)):
         entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
@@ -140,26 +142,26 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) ->
         fields.append(field)
 
     solved = _solve(plan, task, keep_both, tell)
-    if lasting(plan, task, solved.peaks):
+    if independent_of_memory(plan, task, solved.peaks):
         stopped = any(limit is not None and limit.stopped for limit in solved.limits)
         cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
     return solved
 
 
-def _failed(plan: Plan, task: Task, reason: str) -> Solved:
+def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
     name, model = task.pin.name, plan.asked.model
-    peaks = tuple(Peak(name, case.case, model, "failed", reason) for case in task.loads)
-    return _checked(plan, task, Solved(peaks))
+    peaks = tuple(Maximum(name, case.case, model, "failed", reason) for case in task.loads)
+    return _checked(plan, task, PinOutcome(peaks))
 
 
-def _checked(plan: Plan, task: Task, solved: Solved) -> Solved:
+def _checked(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
     none = (None,) * len(solved.peaks)
     rows = zip(solved.peaks, solved.joints or none, solved.limits or none, strict=True)
     return replace(solved, strength=tuple(checked(plan.study, task, *row) for row in rows))
 
 
 def solutions(
-    study: Study, task: Task, asked: Asked, tell: Tell, first: FirstMesh | None = None
+    study: Study, task: Task, asked: Requirement, tell: Tell, first: FirstMesh | None = None
 ) -> tuple[Solution | LugSolution, ...]:
     """Of a task's cases, in contact with lugs if these hold the pin. first: what was solved before
     of pins that are clamped, as solve_pin takes it.
@@ -171,7 +173,7 @@ def solutions(
     )
 
 
-def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
+def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     study = plan.study
     every = solutions(study, task, plan.asked, tell)
     joined = tuple(s for s in every if isinstance(s, LugSolution))
@@ -199,10 +201,10 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> Solved:
     tell(f"pin {task.pin.name}, what to change")
     to_do = change(plan.asked, task, found)
     tell(f"pin {task.pin.name}, sensitivities")
-    step = STEPS[study.table.units]
+    step = DIMENSION_STEPS[study.table.units]
     sensitive = sensitivities(study, plan.asked, task, every, step, plan.sensitive)
     limits = limit_loads(plan, task, every, tell)
-    return Solved(
+    return PinOutcome(
         peaks,
         landing,
         beam,
@@ -226,14 +228,14 @@ def _histories(task: Task, found: tuple[Solution, ...]) -> tuple[tuple[PointHist
         return (), f"{type(error).__name__}: {error}"
 
 
-def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSolution, ...]:
+def _in_lugs(study: Study, task: Task, asked: Requirement, tell: Tell) -> tuple[LugSolution, ...]:
     """Solutions of a pin that its lugs support; none of any other."""
     if not task.lugs:
         return ()
     cut = task.pin if isinstance(task.pin, CutPin) else None
     pin = task.pin if cut is None else cut.profile
     assert isinstance(pin, Pin)
-    given = InLugs(pin, task.material, task.lugs, task.loads, task.between, task.ranges, cut)
+    given = PinProblem(pin, task.material, task.lugs, task.loads, task.between, task.ranges, cut)
     joints = study.table.analysis.joints
     if joints == "prescribed":
         joints = "auto"
@@ -242,7 +244,7 @@ def _in_lugs(study: Study, task: Task, asked: Asked, tell: Tell) -> tuple[LugSol
     return solve_joints(given, asked, joints, tell)
 
 
-def _around(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> tuple[JointResult | None, ...]:
+def _around(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> tuple[JointResult | None, ...]:
     """Of a pin with prescribed clamps and loads, the range over lugs around it."""
     around, loads = task.surroundings, [peak.governing for peak in peaks]
     if around is None:

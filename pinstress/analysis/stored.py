@@ -11,8 +11,8 @@ from assess.opinion.opinions import Opinion
 from assess.plastic.records import LimitLoad
 from assess.strength.records import BeamCheck
 from fea.core.memory import too_much
-from fea.core.peak import Peak
-from fea.solve.refine import MESHES, MOST_UNKNOWNS
+from fea.core.peak import Maximum
+from fea.solve.refine import MAX_MESHES, MAX_UNKNOWNS
 from fea.solve.solve_pin import count_loads, unknowns_after
 from fea.support.contact.records import JointResult
 from geometry import CutPin, Pin, PinLike
@@ -21,16 +21,16 @@ from pinstress.analysis.assessed.checked import Checked
 from pinstress.analysis.assessed.limits import rung_of
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
-from reports.data.changes import Change
+from reports.data.changes import Remedy
 from reports.data.results import Field, LandingRange
 from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
 
-DRAWN = "profile", "meridian", "bore_meridian", "band"  # whose keys sensitivities have
+SHAPE_TABLES = "profile", "meridian", "bore_meridian", "band"  # whose keys sensitivities have
 
 
 @dataclass(frozen=True)
-class Solved:
+class PinOutcome:
     """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
     joints: in the same order, empty where nothing is in contact. change: what would make the pin
     reach its factor, if it does not. histories: of stress at its critical points. before: whether
@@ -40,13 +40,13 @@ class Solved:
     and depends on more of the study.
     """
 
-    peaks: tuple[Peak, ...]
+    peaks: tuple[Maximum, ...]
     landing: tuple[LandingRange, ...] = ()
     beam: BeamCheck | None = None
     surfaces: tuple[Surface, ...] = ()
     opinions: tuple[Opinion, ...] = ()
     joints: tuple[JointResult | None, ...] = ()
-    change: Change | None = None
+    change: Remedy | None = None
     histories: tuple[PointHistory, ...] = ()
     before: bool = False
     limits: tuple[LimitLoad | None, ...] = ()
@@ -59,7 +59,7 @@ class Solved:
 class Entry:
     """What the cache has of a task."""
 
-    solved: Solved
+    solved: PinOutcome
     fields: tuple[Field, ...]
 
     def answers(self, task: Task) -> bool:
@@ -69,7 +69,7 @@ class Entry:
         return own == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
 
 
-def question(plan: Plan, task: Task, seconds: float | None = None) -> object:
+def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
     """All that the answer to a task depends on, but for versions and memory, as what
     pinstress.analysis.cache.serialise takes. seconds: of an answer without some limit load, which
     would have taken longer.
@@ -78,7 +78,7 @@ def question(plan: Plan, task: Task, seconds: float | None = None) -> object:
     check = study.table.beam_check if task is plan.checked else None
     return (
         shape_of(task.pin),
-        study.table.pin[task.pin.name].model_dump(include=set(DRAWN)),
+        study.table.pin[task.pin.name].model_dump(include=set(SHAPE_TABLES)),
         task.clamps,
         task.lugs,
         task.surroundings,
@@ -107,11 +107,11 @@ def shape_of(pin: PinLike) -> object:
         return pin
     from geometry.imported.imported_pin import SolidBody
     from geometry.mesh.solid_mesh import MeshSize
-    from pinstress.study.model.imported_pin import LARGEST_BODY
+    from pinstress.study.model.imported_pin import MAX_BODY_SIZE
 
     assert isinstance(pin, SolidBody)
     file = pin.file
-    content = hashlib.sha256(read_regular(file.path, LARGEST_BODY)).hexdigest()
+    content = hashlib.sha256(read_regular(file.path, MAX_BODY_SIZE)).hexdigest()
     mesh = None
     if pin.meshed:  # some formats have other files beside them: what was read counts
         read = pin.mesh(MeshSize()).mesh
@@ -119,20 +119,20 @@ def shape_of(pin: PinLike) -> object:
     return file.name, file.path.suffix, file.unit, file.places, content, mesh
 
 
-def lasting(plan: Plan, task: Task, peaks: tuple[Peak, ...]) -> bool:
+def independent_of_memory(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> bool:
     """Whether more memory would not have given another answer (fea.solve.solve_pin stops there)."""
     open_ = [
         p
         for p in peaks
-        if p.model in MESHES
+        if p.model in MAX_MESHES
         and p.max_von_mises is not None
         and (p.own_error or inf) > plan.asked.tolerance * p.max_von_mises
     ]
     if not open_:
         return True
     model = open_[0].model
-    if len(open_[0].history) >= (plan.asked.meshes or MESHES[model]):
+    if len(open_[0].history) >= (plan.asked.meshes or MAX_MESHES[model]):
         return True
     finer = unknowns_after(task.pin, model, max(p.dofs for p in open_))
     loads = count_loads(task.loads) if model == "harmonic" else 0
-    return finer > MOST_UNKNOWNS[model] or not too_much(finer, plan.asked.memory, loads)
+    return finer > MAX_UNKNOWNS[model] or not too_much(finer, plan.asked.memory, loads)

@@ -12,17 +12,24 @@ from fea.solve.surface_fields import UnitSurface
 from geometry.shape.chords import needed
 from reports.data.surface import Mask, SurfaceCase
 
-STRESS = 8e-3  # of the stress at a point, or of LEAST of the largest one at the instant
-LEAST = 0.1
-ANGLES = 16
-STRESSES, MOTIONS = slice(0, 5), slice(5, 8)  # of the eight numbers of a surface
-INSTANTS = 8  # of a motion, about, besides the governing one
-MOVED = 5e-3  # of the largest displacement
-PLACE = 2e-4  # of the length
-FIELD = 1e-2  # of the largest stress of a case: what a unit load must add at some instant
-GOVERNING = 5.0
-SHARP = 0.94  # cosine of the turn at a corner, at most
-CLOSE = 1e-9  # of the length: points that are one
+STRESS_TOLERANCE = (
+    8e-3  # of the stress at a point, or of MIN_STRESS_SHARE of the largest one at the instant
+)
+MIN_STRESS_SHARE = 0.1
+SAMPLE_ANGLES = 16
+STRESS_COMPONENTS, DISPLACEMENT_COMPONENTS = (
+    slice(0, 5),
+    slice(5, 8),
+)  # of the eight numbers of a surface
+SAMPLE_INSTANTS = 8  # of a motion, about, besides the governing one
+DISPLACEMENT_TOLERANCE = 5e-3  # of the largest displacement
+OUTLINE_TOLERANCE = 2e-4  # of the length
+MIN_UNIT_LOAD_SHARE = (
+    1e-2  # of the largest stress of a case: what a unit load must add at some instant
+)
+GOVERNING_WEIGHT = 5.0
+MAX_CORNER_COSINE = 0.94  # cosine of the turn at a corner, at most
+COINCIDENCE_DISTANCE = 1e-9  # of the length: points that are one
 
 
 def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Mask) -> Mask:
@@ -33,18 +40,22 @@ def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Ma
     x, excluded = surface.points, np.all([c.excluded for c in cases], axis=0)
     size = float(np.ptp(x, axis=0).max())
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
-    values, allowed = [x[:, [0, 2]]], [np.full((len(x), 2), PLACE * size)]
+    values, allowed = [x[:, [0, 2]]], [np.full((len(x), 2), OUTLINE_TOLERANCE * size)]
     for case in cases:
         for instant in sorted({case.instant, *range(0, len(case.amounts), _step(case))}):
-            stress = np.linalg.norm(_around(surface, case.amounts[instant], STRESSES), axis=1)
-            top = max(stress[~excluded].max(initial=0.0), LEAST * case.maxima.max())
+            stress = np.linalg.norm(
+                _around(surface, case.amounts[instant], STRESS_COMPONENTS), axis=1
+            )
+            top = max(stress[~excluded].max(initial=0.0), MIN_STRESS_SHARE * case.maxima.max())
             values.append(stress)
-            allowed.append(STRESS * np.maximum(stress, LEAST * top))
+            allowed.append(STRESS_TOLERANCE * np.maximum(stress, MIN_STRESS_SHARE * top))
             allowed[-1][excluded] = np.inf
-        moved = _around(surface, case.amounts[case.instant], MOTIONS).reshape(len(x), -1)
+        moved = _around(surface, case.amounts[case.instant], DISPLACEMENT_COMPONENTS).reshape(
+            len(x), -1
+        )
         values.append(moved)
-        allowed.append(np.full(moved.shape, MOVED * float(np.abs(moved).max())))
-    keep = kept | _corners(x, CLOSE * size) | _ends(excluded)
+        allowed.append(np.full(moved.shape, DISPLACEMENT_TOLERANCE * float(np.abs(moved).max())))
+    keep = kept | _corners(x, COINCIDENCE_DISTANCE * size) | _ends(excluded)
     # What never acts allows nothing, and misses nothing.
     within = np.concatenate(allowed, axis=1) + np.finfo(float).tiny
     return needed(along, np.concatenate(values, axis=1), within, keep)
@@ -69,7 +80,7 @@ def fewer_loads(
         )
         vectors, size, times = np.linalg.svd(root @ together, full_matrices=False)
         most = np.abs(size[:, None] * times).max(axis=1, initial=0.0)
-        vectors = vectors[:, most > FIELD]
+        vectors = vectors[:, most > MIN_UNIT_LOAD_SHARE]
         mix = np.zeros((len(surface.n), vectors.shape[1]))
         mix[own] = np.linalg.lstsq(root, vectors)[0]
         made.append(mix)
@@ -91,7 +102,7 @@ def fewer_loads(
 def _weighed(case: SurfaceCase) -> Floats:
     """Amounts for a largest stress of one, the governing instant's so many times as large."""
     weight = np.ones(len(case.amounts))
-    weight[case.instant] = GOVERNING
+    weight[case.instant] = GOVERNING_WEIGHT
     return np.asarray(case.amounts * weight[:, None, None] / (case.maxima.max() or 1.0))
 
 
@@ -100,7 +111,7 @@ def _scale(surface: UnitSurface, cases: Sequence[SurfaceCase]) -> float:
     for case in cases:
         stress, moved = (
             float(np.abs(_around(surface, case.amounts[case.instant], x)).max())
-            for x in (STRESSES, MOTIONS)
+            for x in (STRESS_COMPONENTS, DISPLACEMENT_COMPONENTS)
         )
         if moved:
             return stress / moved
@@ -108,12 +119,12 @@ def _scale(surface: UnitSurface, cases: Sequence[SurfaceCase]) -> float:
 
 
 def _step(case: SurfaceCase) -> int:
-    return max(1, len(case.amounts) // INSTANTS)
+    return max(1, len(case.amounts) // SAMPLE_INSTANTS)
 
 
 def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
-    """Those of the eight numbers of the surface, (P, C, ANGLES), under amounts (K, 2)."""
-    turns = surface.n * np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)[:, None]
+    """Those of the eight numbers of the surface, (P, C, SAMPLE_ANGLES), under amounts (K, 2)."""
+    turns = surface.n * np.linspace(0.0, 2.0 * np.pi, SAMPLE_ANGLES, endpoint=False)[:, None]
     c, s = np.cos(turns), np.sin(turns)
     first, second = amount.T
     eight = np.concatenate([surface.stress, surface.displacement], axis=1)[:, which]
@@ -135,6 +146,6 @@ def _corners(x: Floats, close: float) -> Mask:
     found = np.zeros(len(x), dtype=bool)
     for k in np.flatnonzero(length[1:-1] < close) + 1:
         turn = step[k - 1] @ step[k + 1]
-        if turn < SHARP * length[k - 1] * length[k + 1]:
+        if turn < MAX_CORNER_COSINE * length[k - 1] * length[k + 1]:
             found[[k, k + 1]] = True
     return found

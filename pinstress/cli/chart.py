@@ -16,7 +16,7 @@ from pinstress.explore.chart.measured_process import MeasureLimits, measure
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from reports.data.chart import NAME, Chart
+from reports.data.chart import CHART_NAME, Chart
 from reports.format.file_names import plot_name
 from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
@@ -24,7 +24,7 @@ from reports.tables.chart import write_chart_csv
 from reports.text.chart import print_chart
 from reports.text.chart_summary import percent
 
-MARK = f"{NAME}.csv"
+CHART_CSV = f"{CHART_NAME}.csv"
 
 
 def chart_and_write(
@@ -46,21 +46,21 @@ def chart_and_write(
         raise InputError(
             "chart measures the memory of processes, which works on Linux only", code="linux-only"
         )
-    directory = out or Path("out") / plot_name(f"{study.name}-{NAME}", pin, case)
-    require_replaceable(directory, MARK)
+    directory = out or Path("out") / plot_name(f"{study.name}-{CHART_NAME}", pin, case)
+    require_replaceable(directory, CHART_CSV)
     require_positive("time_limit", limits.seconds, endless=True)
     require_positive("memory_limit", limits.memory, endless=True)
     plan = plan_chart(study, pin, case, tolerance)
     if calculix:
         _announce_calculix(plan)
-    with replacing(directory, MARK) as staging:
+    with replacing(directory, CHART_CSV) as staging:
         with progress_bar() as progress:
             found = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         write_chart_csv(found, staging)
         draw([chart_plot(found)], staging)
     with unneeded(directory):
         print_chart(found, console())
-    click.echo(f"Chart: {directory / NAME}.svg", err=True)
+    click.echo(f"Chart: {directory / CHART_NAME}.svg", err=True)
     return _report_missed(found)
 
 

@@ -10,16 +10,16 @@ from typing import TypeVar
 import click
 
 from pinstress.analysis.plan import Plan
-from pinstress.analysis.stored import Solved
+from pinstress.analysis.stored import PinOutcome
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS, as_described, outcome
 from reports.data.headline import judged_checks
 from reports.data.results import PinResult, Results, SingularZone
 from reports.format.numbers import engineering
 from reports.format.words import but_words, undecided_because
 
-NUMERICS_FAILED, REQUIREMENT_MISSED = 3, 4  # exit statuses
+EXIT_NUMERICS_FAILED, EXIT_REQUIREMENT_MISSED = 3, 4  # exit statuses
 Reason = TypeVar("Reason", bound=Hashable)
-DESCRIBED = {
+VERDICT_WORDS = {
     "singular": "singular",
     "unconverged": "not converged",
     "rigid": "rigid",
@@ -40,7 +40,7 @@ def report_left_out(results: Results) -> None:
         )
 
 
-def report_reused(plan: Plan, found: list[Solved]) -> None:
+def report_reused(plan: Plan, found: list[PinOutcome]) -> None:
     """How many pins were taken from the cache."""
     pins = {task.pin.name for task in plan.tasks}
     anew = {t.pin.name for t, made in zip(plan.tasks, found, strict=True) if not made.before}
@@ -89,7 +89,7 @@ def report_violations(results: Results) -> int:
         case = f" ({c.case})" if c.case else ""
         spare = engineering(1.0 / c.used - 1.0, 3)
         click.echo(f"Negative margin of safety: {c.pin}{case}: {c.check}, {spare}.", err=True)
-    return REQUIREMENT_MISSED if short or depending or negative else 0
+    return EXIT_REQUIREMENT_MISSED if short or depending or negative else 0
 
 
 def report_status_zero(results: Results) -> None:
@@ -130,7 +130,7 @@ def report_missed(results: Results, decide: bool) -> int:
         )
     for which, reason in _together((p, p.note) for p in failed):
         click.echo(f"Error: the numerics failed: {_listed(which)}: {reason}", err=True)
-    return NUMERICS_FAILED if failed else int(bool(missed or near))
+    return EXIT_NUMERICS_FAILED if failed else int(bool(missed or near))
 
 
 def _lines(rows: Iterable[PinResult]) -> list[str]:
@@ -139,7 +139,7 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
     for which, (result, verdict, reason) in _together(
         (p, (outcome(p), p.verdict, _reason(p))) for p in rows
     ):
-        head = f"{result.capitalize()}, {DESCRIBED[verdict]}"
+        head = f"{result.capitalize()}, {VERDICT_WORDS[verdict]}"
         if verdict == "singular":
             lines.append(f"{head}{reason}{_between(which)}: {_listed(which)}.")
         else:

@@ -12,7 +12,7 @@ import click
 
 from pinbase.processes import interrupts
 from pinbase.processes.environment import settle_surroundings
-from pinbase.processes.interrupts import INTERRUPTED, Unfinished
+from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinstress.cli.designs.commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
@@ -25,15 +25,15 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import ONLY_CASES, Commands, choices, example, read_study
+from pinstress.cli.shared import CASES_OPTION, Commands, choices, example, read_study
 from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, clipped
 
 if TYPE_CHECKING:
     from fea.solve.solve_pin import Model
 
-PLOTS = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
-REACHED, NOT_REACHED, BAD_INPUT, NUMERICS_FAILED = 0, 1, 2, 3
+PLOTS_HELP = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
+EXIT_REACHED, EXIT_NOT_REACHED, EXIT_BAD_INPUT, EXIT_NUMERICS_FAILED = 0, 1, 2, 3
 
 
 def run_command_line(arguments: list[str]) -> int:
@@ -43,12 +43,12 @@ def run_command_line(arguments: list[str]) -> int:
     interrupts.listen()
     try:
         status = commands.main(arguments, prog_name="pinstress", standalone_mode=False)
-        return int(status or REACHED)
+        return int(status or EXIT_REACHED)
     except BaseException as error:
-        ended = INTERRUPTED if interrupts.came() else _status(error)
+        ended = EXIT_INTERRUPTED if interrupts.came() else _status(error)
         if ended is None:
             raise
-        if ended == INTERRUPTED:
+        if ended == EXIT_INTERRUPTED:
             why = error.__cause__ or error  # click raises its own
             left = str(why) if isinstance(why, Unfinished) else "nothing was written"
             click.echo(f"Interrupted; {left}.", err=True)
@@ -62,26 +62,26 @@ def _status(error: BaseException) -> int | None:
     match error:
         case click.exceptions.NoArgsIsHelpError():
             error.show()  # the help itself, whole
-            return BAD_INPUT
+            return EXIT_BAD_INPUT
         case click.ClickException():
             short = clipped(message := error.format_message())
             (error if message == short else click.ClickException(short)).show()
-            return BAD_INPUT
+            return EXIT_BAD_INPUT
         case InputError():
             about = error.of_option if isinstance(error, ChoiceError) else error
             click.echo(f"Error: {about}", err=True)
-            return BAD_INPUT
+            return EXIT_BAD_INPUT
         case ArithmeticError():  # MeshError, SolveError and what numpy raises
             click.echo(f"Error: the numerics failed: {error}", err=True)
-            return NUMERICS_FAILED
+            return EXIT_NUMERICS_FAILED
         case MemoryError():
             click.echo(
                 "Error: the numerics failed: out of memory; a larger --tolerance needs less",
                 err=True,
             )
-            return NUMERICS_FAILED
+            return EXIT_NUMERICS_FAILED
         case KeyboardInterrupt() | click.Abort():
-            return INTERRUPTED
+            return EXIT_INTERRUPTED
     return None
 
 
@@ -118,7 +118,7 @@ def commands() -> None:
     type=click.FloatRange(0.0, 1.0, min_open=True, max_open=True),
     help="Override the study's tolerance on the maximum stress.",
 )
-@click.option("--plots", is_flag=True, help=PLOTS)
+@click.option("--plots", is_flag=True, help=PLOTS_HELP)
 @click.option("--pdf", is_flag=True, help="Also write report.pdf, as `pinstress pdf` does.")
 @click.option("--no-pictures", is_flag=True, hidden=True)  # the default, which it was not
 @click.option(
@@ -188,11 +188,11 @@ def run(
         _require_calculix()
     loaded = read_study(study)
     directory = out or Path("out") / loaded.name
-    from pinstress.cli.run import Wanted, run_and_write
+    from pinstress.cli.run import OutputOptions, run_and_write
 
     second, cached = second_opinion is not None, not no_cache
     drawn = plots and not no_pictures
-    wanted = Wanted(
+    wanted = OutputOptions(
         drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss
     )
     return run_and_write(
@@ -229,8 +229,8 @@ def _require_calculix() -> None:
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-loads]."
 )
-@ONLY_CASES
-@click.option("--plots", is_flag=True, help=PLOTS)
+@CASES_OPTION
+@click.option("--plots", is_flag=True, help=PLOTS_HELP)
 @click.option("--no-pictures", is_flag=True, hidden=True)
 @click.option("--quiet", is_flag=True, help="No notes; errors are still reported.")
 def loads(
@@ -342,7 +342,7 @@ def check(study: Path) -> int:
         click.echo(f"Warning: {line}", err=True)
     for line in unheld:
         click.echo(f"Not decided: {line}.", err=True)
-    return NOT_REACHED if unheld else REACHED
+    return EXIT_NOT_REACHED if unheld else EXIT_REACHED
 
 
 for _command in (

@@ -11,13 +11,13 @@ import click
 from pinbase.processes.apart import Failed, apart
 from pinbase.processes.pool import preload
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS, draw_pin
+from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS, draw_pin
 from pinstress.cli.run import console
 from pinstress.cli.streams import unneeded
 from pinstress.cli.view import opened_results
 from pinstress.study.reading.errors import InputError
-from pinstress.study.schema.units import SYSTEMS, UnitSystem
-from reports.data.comparison import DECISION, UNCHANGED, RowPair, RunComparison, compared
+from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
+from reports.data.comparison import DECISION_CHANGED, UNCHANGED, RowPair, RunComparison, compared
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
 from reports.plots.draw import svg
@@ -26,8 +26,8 @@ from reports.text.comparison import print_comparison, write_markdown
 from reports.vtk.read_back import Opened
 from reports.vtk.renderer import renderer_problem
 
-MARK = "comparison.html"
-MOST = 6  # pictures
+COMPARISON_PAGE = "comparison.html"
+MAX_PICTURES = 6  # pictures
 
 
 def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
@@ -41,17 +41,17 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
         raise InputError("--pictures: give a folder for them with --out", code="no-folder")
     found = _compared(*opened)
     if out is not None:
-        require_replaceable(out, MARK)
+        require_replaceable(out, COMPARISON_PAGE)
     with unneeded(out or first):
         print_comparison(found, console())
     if out is None:
         return 0
     failed: dict[str, Failed] = {}
-    with replacing(out, MARK) as staging:
+    with replacing(out, COMPARISON_PAGE) as staging:
         write_markdown(found, staging / "comparison.md")
         drawn = _pictures(found, opened, staging, failed) if pictures else ()
-        write_comparison(found, staging / MARK, _plot(found, failed), drawn)
-    click.echo(f"Comparison: {out / MARK}", err=True)
+        write_comparison(found, staging / COMPARISON_PAGE, _plot(found, failed), drawn)
+    click.echo(f"Comparison: {out / COMPARISON_PAGE}", err=True)
     if failed:
         said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
         click.echo(f"Error: missing in it: {said}", err=True)
@@ -81,12 +81,12 @@ def _compared(a: Opened, b: Opened) -> RunComparison:
 def _system(opened: Opened) -> UnitSystem:
     """Raises: InputError."""
     units = opened.units
-    for system in SYSTEMS.values():
+    for system in UNIT_SYSTEMS.values():
         if all(getattr(system, name) == value for name, value in vars(units).items()):
             return system
     raise InputError(
         f"{opened.directory}: results.json is damaged: units: not those of any of "
-        f"{', '.join(SYSTEMS)}",
+        f"{', '.join(UNIT_SYSTEMS)}",
         code="unreadable-results",
     )
 
@@ -102,8 +102,8 @@ def _pictures(
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
         return ()
-    preload(*PAINTERS)
-    rows = [row for row in found.rows if row.kind != UNCHANGED][:MOST]
+    preload(*PICTURE_MODULES)
+    rows = [row for row in found.rows if row.kind != UNCHANGED][:MAX_PICTURES]
     units = 1.0, _system(opened[1]).factor("stress") / _system(opened[0]).factor("stress")
     drawings = [
         (
@@ -129,7 +129,7 @@ def _pictures(
         files.setdefault((pair.pin, pair.case), []).append(one[0] if one else None)
     return tuple(
         PicturePair(
-            f"Pin {row.pin}, {row.case}" + f": {row.kind}" * (row.kind == DECISION),
+            f"Pin {row.pin}, {row.case}" + f": {row.kind}" * (row.kind == DECISION_CHANGED),
             (files[row.pin, row.case][0], files[row.pin, row.case][1]),
         )
         for row in rows

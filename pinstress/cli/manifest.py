@@ -13,13 +13,13 @@ from contextlib import suppress
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from reports.folder.inside import PARTIAL as SUFFIX
+from reports.folder.inside import PARTIAL_SUFFIX as SUFFIX
 from reports.folder.inside import read_inside
 
-NAME = ".pinstress.json"
-PARTIAL = f"{NAME}.partial"
-SCHEMA = "pinstress-output/1"
-LARGEST = 10_000_000  # bytes
+MANIFEST_FILE = ".pinstress.json"
+PARTIAL_MANIFEST = f"{MANIFEST_FILE}.partial"
+MANIFEST_SCHEMA = "pinstress-output/1"
+MAX_MANIFEST_SIZE = 10_000_000  # bytes
 
 
 def begin(folder: Path) -> None:
@@ -29,17 +29,17 @@ def begin(folder: Path) -> None:
 
 def complete(folder: Path) -> None:
     """Write the list of all files in a folder."""
-    _write(folder, sorted(entries(folder) - {NAME}))
+    _write(folder, sorted(entries(folder) - {MANIFEST_FILE}))
 
 
 def add(folder: Path, names: list[str]) -> None:
     """Add entries, before they are written, to the list of a folder that has one."""
-    _write(folder, sorted(((listed(folder) or set()) | set(names)) - {NAME}))
+    _write(folder, sorted(((listed(folder) or set()) | set(names)) - {MANIFEST_FILE}))
 
 
 def drop(folder: Path, names: list[str]) -> None:
     """Take entries, which are gone, from the list of a folder that has one."""
-    _write(folder, sorted((listed(folder) or set()) - set(names) - {NAME}))
+    _write(folder, sorted((listed(folder) or set()) - set(names) - {MANIFEST_FILE}))
 
 
 def partial_names(names: Iterable[str]) -> list[str]:
@@ -52,7 +52,7 @@ def ours(folder: Path) -> set[str] | None:
     while writing. None if the folder is not empty and has no list of ours.
     """
     there, known = entries(folder), listed(folder)
-    if known == {NAME} or there <= {PARTIAL}:
+    if known == {MANIFEST_FILE} or there <= {PARTIAL_MANIFEST}:
         return there
     return known
 
@@ -60,13 +60,13 @@ def ours(folder: Path) -> set[str] | None:
 def listed(folder: Path) -> set[str] | None:
     """The files that we wrote into a folder, with the list itself; None without a list of ours."""
     try:
-        content: Any = json.loads(read_inside(folder, NAME, LARGEST))
-        if content["schema"] != SCHEMA:
+        content: Any = json.loads(read_inside(folder, MANIFEST_FILE, MAX_MANIFEST_SIZE))
+        if content["schema"] != MANIFEST_SCHEMA:
             return None
         names = {str(name) for name in content["files"]}
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
-    return {NAME} | {n for n in names if _is_below(n)}
+    return {MANIFEST_FILE} | {n for n in names if _is_below(n)}
 
 
 def _is_below(name: str) -> bool:
@@ -111,12 +111,12 @@ def remove(folder: Path, names: set[str]) -> None:
 
 
 def _write(folder: Path, names: list[str]) -> None:
-    text = json.dumps({"schema": SCHEMA, "files": names}, indent=1, ensure_ascii=False)
-    partial = folder / PARTIAL
+    text = json.dumps({"schema": MANIFEST_SCHEMA, "files": names}, indent=1, ensure_ascii=False)
+    partial = folder / PARTIAL_MANIFEST
     try:
         with partial.open("x", encoding="utf-8") as file:
             file.write(text + "\n")
-        partial.replace(folder / NAME)
+        partial.replace(folder / MANIFEST_FILE)
     except BaseException:
         partial.unlink(missing_ok=True)
         raise

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from pinstress.cli.shared import JOBS, ONLY_PINS, QUIET, example, names, read_study
+from pinstress.cli.shared import JOBS_OPTION, PINS_OPTION, QUIET_OPTION, example, names, read_study
 from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError
 
@@ -37,10 +37,10 @@ def init(directory: Path, opens: bool) -> int:
     if not opens:
         click.echo(f"Next: pinstress run {target}  (writes {out / 'report.html'})", err=True)
         return 0
-    from pinstress.cli.run import Wanted, run_and_write
+    from pinstress.cli.run import OutputOptions, run_and_write
     from pinstress.study.reading.file import load_study
 
-    return run_and_write(load_study(target), out, Wanted(opens=True))
+    return run_and_write(load_study(target), out, OutputOptions(opens=True))
 
 
 @click.command(
@@ -206,7 +206,7 @@ def completion(context: click.Context, shell: str) -> None:
     type=click.FloatRange(0.0, min_open=True),
     help="Safety factor to reach; overrides the study's required_safety_factor.",
 )
-@ONLY_PINS
+@PINS_OPTION
 @click.option(
     "--step",
     metavar="LENGTH",
@@ -218,8 +218,8 @@ def completion(context: click.Context, shell: str) -> None:
     metavar="FILE",
     help="The new study [<study name>_sized.toml, next to the study].",
 )
-@QUIET
-@JOBS
+@QUIET_OPTION
+@JOBS_OPTION
 @click.option("--least-weight", is_flag=True, help="Every dimension for itself: the lightest pins.")
 @click.option(
     "--vary",

@@ -20,11 +20,11 @@ from pinbase.processes.folder_lock import Release, lock
 from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError
 
-MARK = "results.json"  # what a run and the loads alone write
+RESULTS_JSON = "results.json"  # what a run and the loads alone write
 
 
 def require_replaceable(
-    directory: Path, mark: str = MARK, also: Callable[[str], bool] = lambda _: False
+    directory: Path, mark: str = RESULTS_JSON, also: Callable[[str], bool] = lambda _: False
 ) -> None:
     """Raises: InputError if replacing `directory` would destroy files that are not ours, or results
     of another command, which has no file `mark`. also: which entries are ours in addition to those
@@ -46,7 +46,8 @@ def require_replaceable(
     if there and known is None:
         raise InputError(
             f"--out: {directory} contains {_some(there)}, but no list of what pinstress wrote "
-            f"({manifest.NAME}): it was written by another program or an earlier version, or "
+            f"({manifest.MANIFEST_FILE}): it was written by another program or an earlier "
+            f"version, or "
             "copied without that file; choose another folder, or delete this one",
             code="not-ours",
         )
@@ -59,7 +60,7 @@ def require_replaceable(
 
 
 @contextmanager
-def replacing(directory: Path, mark: str = MARK) -> Iterator[Path]:
+def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
     """A folder to write into that becomes `directory` when the block ends without an error; an
     existing one is replaced if it contains `mark` and only files of ours.
 
@@ -118,7 +119,7 @@ def _resolved(directory: Path) -> Path:
 
 def _some(names: set[str]) -> str:
     """The first few names, top level first."""
-    names = names - {manifest.NAME} or names
+    names = names - {manifest.MANIFEST_FILE} or names
     first = sorted(names, key=lambda name: (name.count("/") - name.endswith("/"), name))
     more = f" and {len(first) - 3} more" if len(first) > 3 else ""
     return ", ".join(first[:3]) + more

@@ -16,7 +16,7 @@ import click
 
 from pinbase.errors import Damaged
 from pinbase.processes import interrupts
-from pinbase.processes.apart import NO_MEMORY, Failed, apart
+from pinbase.processes.apart import NO_MEMORY_REASON, Failed, apart
 from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload
 from pinstress.cli import manifest
@@ -24,18 +24,18 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file_names import field_name
 from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
-from reports.folder.results_json import LARGEST
-from reports.page.scripts import PAGE, document_of, plots_of
+from reports.folder.results_json import MAX_RESULTS_SIZE
+from reports.page.scripts import REPORT_PAGE, document_of, plots_of
 from reports.pdf.typeset import Content, shown_plots, typeset
 from reports.plots.draw import draw_plot
 from reports.plots.spec import Plot
 from reports.vtk.read_back import Opened, open_results
 from reports.vtk.renderer import renderer_problem
 
-FOLDER, PDF = "plots", "report.pdf"
-PAINTERS = ("pyvista.plotting",)
-NO_PAGE = "no report.html of this version of pinstress to print; run it again"
-MAX_NAMED = 3
+PLOTS_FOLDER, PDF_FILE = "plots", "report.pdf"
+PICTURE_MODULES = ("pyvista.plotting",)
+NO_PAGE_MESSAGE = "no report.html of this version of pinstress to print; run it again"
+MAX_NAMED_FILES = 3
 PICTURE_SECONDS, PDF_SECONDS = 120, 600  # of processor time; the largest take a tenth
 
 
@@ -54,13 +54,13 @@ def plots(directory: Path, quiet: bool = False) -> int:
     Raises: InputError.
     """
     known = require_results(directory)
-    own = f"{FOLDER}/"
+    own = f"{PLOTS_FOLDER}/"
     strange = {n for n in _entries(directory) - known - {own} if n.startswith(own)}
-    if strange or FOLDER in _entries(directory):
-        raise _strange(directory, min(strange, default=FOLDER))
+    if strange or PLOTS_FOLDER in _entries(directory):
+        raise _strange(directory, min(strange, default=PLOTS_FOLDER))
     drawn = add_plots(directory, quiet)
     if drawn.paths:
-        click.echo(f"Written: {directory / FOLDER}", err=True)
+        click.echo(f"Written: {directory / PLOTS_FOLDER}", err=True)
     return report_failed(directory, drawn.failed)
 
 
@@ -71,11 +71,11 @@ def pdf(directory: Path) -> int:
     """
     require_package("typst", "pdf")
     known = require_results(directory)
-    if PDF in _entries(directory) - known:
-        raise _strange(directory, PDF)
+    if PDF_FILE in _entries(directory) - known:
+        raise _strange(directory, PDF_FILE)
     failed = add_pdf(directory)
     if not failed:
-        click.echo(f"Written: {directory / PDF}", err=True)
+        click.echo(f"Written: {directory / PDF_FILE}", err=True)
     return report_failed(directory, failed)
 
 
@@ -86,9 +86,9 @@ def draw_and_print(directory: Path, plots: bool, pdf: bool, quiet: bool = False)
     failed: dict[str, Failed] = {}
     try:
         if plots:
-            failed |= _attempted(f"{FOLDER}/", lambda: add_plots(directory, quiet).failed)
+            failed |= _attempted(f"{PLOTS_FOLDER}/", lambda: add_plots(directory, quiet).failed)
         if pdf:
-            failed |= _attempted(PDF, lambda: add_pdf(directory))
+            failed |= _attempted(PDF_FILE, lambda: add_pdf(directory))
     except BaseException as error:
         if isinstance(error, KeyboardInterrupt) or interrupts.came():
             raise Unfinished(f"the results in {directory} are complete but for pictures") from None
@@ -102,7 +102,7 @@ def _attempted(name: str, add: Callable[[], dict[str, Failed]]) -> dict[str, Fai
     except (InputError, OSError, ImportError) as error:
         return {name: Failed(str(error))}
     except MemoryError:
-        return {name: Failed(NO_MEMORY)}
+        return {name: Failed(NO_MEMORY_REASON)}
 
 
 def require_results(directory: Path) -> set[str]:
@@ -122,10 +122,12 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
     if not failed:
         return 0
     by_reason: dict[str, list[str]] = {}
-    for name, failure in sorted(failed.items(), key=lambda item: item[0] != PDF):
+    for name, failure in sorted(failed.items(), key=lambda item: item[0] != PDF_FILE):
         by_reason.setdefault(failure.reason, []).append(name)
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
-    ways = [w for w, own in (("pdf", PDF in failed), ("plots", set(failed) - {PDF})) if own]
+    ways = [
+        w for w, own in (("pdf", PDF_FILE in failed), ("plots", set(failed) - {PDF_FILE})) if own
+    ]
     again = " and ".join(f"`pinstress {way} {directory}`" for way in ways)
     click.echo(
         f"Error: not drawn: {said}. All other results in {directory} are complete; {again} "
@@ -145,7 +147,7 @@ def add_plots(directory: Path, quiet: bool = False) -> Drawn:
         for failure in drawn.failed.values():
             if failure.damaged:
                 raise _unreadable(directory, failure.reason)
-        _add(directory, {f"{FOLDER}/{path.name}": path for path in drawn.paths})
+        _add(directory, {f"{PLOTS_FOLDER}/{path.name}": path for path in drawn.paths})
         return drawn
 
 
@@ -155,7 +157,7 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
     Raises: InputError, where the folder is damaged or cannot be written.
     """
     try:
-        is_inside(directory, PDF)  # a link is refused before the work
+        is_inside(directory, PDF_FILE)  # a link is refused before the work
         page = _page(directory)
         open_results(directory)  # those of another version have other words
         content = document_of(page)
@@ -166,16 +168,16 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
     except (OSError, Damaged) as error:
         raise _unreadable(directory, error) from None
     if content is None:
-        raise InputError(f"{directory}: {NO_PAGE}", code="no-results")
+        raise InputError(f"{directory}: {NO_PAGE_MESSAGE}", code="no-results")
     with TemporaryDirectory(prefix="pinstress-") as made:
-        path = Path(made, PDF)
-        (printed,) = apart([(PDF, partial(_print, content, found, path))], PDF_SECONDS)
+        path = Path(made, PDF_FILE)
+        (printed,) = apart([(PDF_FILE, partial(_print, content, found, path))], PDF_SECONDS)
         if printed is None:
-            _add(directory, {PDF: path})
+            _add(directory, {PDF_FILE: path})
             return {}
         if printed.damaged:
             raise _unreadable(directory, printed.reason)
-        return {PDF: printed}
+        return {PDF_FILE: printed}
 
 
 def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
@@ -189,18 +191,18 @@ def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
     except (OSError, Damaged) as error:
         raise _unreadable(directory, error) from None
     work: list[tuple[str, Callable[[], Sequence[Path]]]] = [
-        (f"{FOLDER}/{plot.name}.svg", partial(draw_plot, plot, into)) for plot in shown
+        (f"{PLOTS_FOLDER}/{plot.name}.svg", partial(draw_plot, plot, into)) for plot in shown
     ]
     rows = opened.content["pins"] if solid else []
     problem = renderer_problem() if rows else None
     if problem is not None and not quiet:
         click.echo(f"No pictures of the pins: {problem}", err=True)
     if rows and problem is None:
-        preload(*PAINTERS)
+        preload(*PICTURE_MODULES)
         for row in rows:
             name = f"pin_{field_name(row['pin'], row['case'])}.png"
             picture = partial(draw_pin, opened.only(row), into / name)
-            work.append((f"{FOLDER}/{name}", picture))
+            work.append((f"{PLOTS_FOLDER}/{name}", picture))
     made = apart(work, PICTURE_SECONDS)
     found = list(zip((name for name, _ in work), made, strict=True))
     paths = [path for _, one in found if not isinstance(one, Failed) for path in one]
@@ -229,16 +231,16 @@ def _print(content: Content, shown: dict[str, Plot], path: Path) -> None:
 def _page(directory: Path) -> str:
     """Raises: Damaged, OSError."""
     try:
-        return read_inside(directory, PAGE, LARGEST).decode("utf-8")
+        return read_inside(directory, REPORT_PAGE, MAX_RESULTS_SIZE).decode("utf-8")
     except UnicodeDecodeError as error:
-        raise Damaged(f"{PAGE} is damaged: no UTF-8 from byte {error.start:,} on") from None
+        raise Damaged(f"{REPORT_PAGE} is damaged: no UTF-8 from byte {error.start:,} on") from None
 
 
 def _add(directory: Path, made: dict[str, Path]) -> None:
     """Files into a folder and its list; first they are listed, so that a process that is killed
     leaves nothing that is not ours.
     """
-    names = [*made, *({f"{FOLDER}/"} if any("/" in name for name in made) else ())]
+    names = [*made, *({f"{PLOTS_FOLDER}/"} if any("/" in name for name in made) else ())]
     partial_names = manifest.partial_names(made)
     try:
         manifest.add(directory, [*names, *partial_names])
@@ -269,5 +271,5 @@ def _strange(directory: Path, name: str) -> InputError:
 
 def _listed(names: Iterable[str]) -> str:
     found = list(names)
-    more = len(found) - MAX_NAMED
-    return ", ".join(found[:MAX_NAMED]) + (f" and {more} more" if more > 0 else "")
+    more = len(found) - MAX_NAMED_FILES
+    return ", ".join(found[:MAX_NAMED_FILES]) + (f" and {more} more" if more > 0 else "")

@@ -13,14 +13,14 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
-from pinbase.processes.pool import Died, Job, Progress, Tell, preload, processes, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
 from pinbase.processes.system import portable
 from pinstress.analysis.cache.store import user_cache
 from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
 from pinstress.cli.closing import (
-    NUMERICS_FAILED,
+    EXIT_NUMERICS_FAILED,
     report_disagreements,
     report_left_out,
     report_missed,
@@ -34,20 +34,20 @@ from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
-from pinstress.study.reading.choices import Chosen
+from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.file_names import field_name
 from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
-from reports.page.scripts import PAGE
-from reports.tables.table import MOST_IN_CSV
+from reports.page.scripts import REPORT_PAGE
+from reports.tables.table import MAX_CSV_ROWS
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
-SOLVERS = (
+RUN_MODULES = (
     "gmsh",
     "pymetis",
     "cvxopt.cholmod",
@@ -56,7 +56,7 @@ SOLVERS = (
 
 
 @dataclass(frozen=True)
-class Wanted:
+class OutputOptions:
     """The output of a run: plots and pictures as files; report.pdf; CalculiX's second
     opinion; fields (vtk, as --vtk names them); results.json on stdout instead of the table; no
     progress and no notes; the report opened.
@@ -78,7 +78,9 @@ class Wanted:
     strict: bool = False
 
 
-def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpack[Chosen]) -> int:
+def run_and_write(
+    study: Study, directory: Path, wanted: OutputOptions, **chosen: Unpack[Selection]
+) -> int:
     """Run a study into a folder; returns the exit status.
 
     chosen: what pinstress.analysis.plan.prepare takes. Raises: InputError.
@@ -99,7 +101,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
             (staging / "vtk").mkdir()
         keep = partial(_keep, staging, _units(study), wanted.vtk)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
-            preload(*SOLVERS)
+            preload(*RUN_MODULES)
             found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, found)
             if wanted.vtk != "none":
@@ -118,7 +120,7 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
     if not wanted.quiet:
         report_left_out(results)
         report_reused(plan, found)
-        click.echo(f"Report: {directory / PAGE}", err=True)
+        click.echo(f"Report: {directory / REPORT_PAGE}", err=True)
         _large_tables(directory)
     status = report_missed(results, study.table.analysis.goal == "decide")
     status = max(status, report_disagreements(results))
@@ -127,8 +129,8 @@ def run_and_write(study: Study, directory: Path, wanted: Wanted, **chosen: Unpac
         report_status_zero(results)
     drawn = draw_and_print(directory, wanted.plots, wanted.pdf, wanted.quiet)
     if wanted.opens:
-        open_page(directory / PAGE)
-    return status if status == NUMERICS_FAILED else max(status, violated, drawn)
+        open_page(directory / REPORT_PAGE)
+    return status if status == EXIT_NUMERICS_FAILED else max(status, violated, drawn)
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
@@ -151,9 +153,9 @@ def _write(results: Results, staging: Path, most: int) -> None:
     jobs: list[Job[None]] = [
         Job(name, partial(_written, write, results, staging)) for name, write in writers.items()
     ]
-    made = side_by_side(jobs, most)
+    made = in_parallel(jobs, most)
     for job, nothing in zip(jobs, made, strict=True):
-        if isinstance(nothing, Died):
+        if isinstance(nothing, ProcessDied):
             job.work(_silent)
 
 
@@ -211,7 +213,7 @@ def _large_tables(directory: Path) -> None:
     """Print which tables are too long for CSV."""
     if names := sorted(path.name for path in directory.glob("*.parquet")):
         click.echo(
-            f"More than {MOST_IN_CSV:,} rows, so in Parquet (for pandas, polars, DuckDB): "
+            f"More than {MAX_CSV_ROWS:,} rows, so in Parquet (for pandas, polars, DuckDB): "
             f"{', '.join(names)}",
             err=True,
         )

@@ -30,22 +30,22 @@ def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str]
     return found
 
 
-ONLY_PINS = click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
-ONLY_CASES = click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
-JOBS = click.option(
+PINS_OPTION = click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
+CASES_OPTION = click.option("--cases", callback=names, metavar="X,Y", help="Only these cases.")
+JOBS_OPTION = click.option(
     "--jobs",
     type=click.IntRange(1),
     metavar="N",
     help="Number of parallel processes [number of cores]; does not affect the results.",
 )
-QUIET = click.option(
+QUIET_OPTION = click.option(
     "--quiet", is_flag=True, help="No progress bar, no notes; errors are still reported."
 )
 
 
 def choices(command: Command) -> Command:
     """The options --pins, --cases, --jobs and --quiet of a command that solves pins."""
-    return ONLY_PINS(ONLY_CASES(JOBS(QUIET(command))))
+    return PINS_OPTION(CASES_OPTION(JOBS_OPTION(QUIET_OPTION(command))))
 
 
 def read_study(path: Path) -> Study:
@@ -71,7 +71,7 @@ def open_page(page: Path) -> None:
 
 
 # Commands by what they are for.
-SECTIONS = {
+COMMAND_SECTIONS = {
     "Studies": ("init", "check", "import", "schema"),
     "Analysis": ("run", "loads", "chart"),
     "Designs": ("size", "sweep", "reliability"),
@@ -85,9 +85,12 @@ class Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the sections, then what is in none of them."""
         names = self.list_commands(ctx)
-        wide, placed = max(map(len, names)), {name for each in SECTIONS.values() for name in each}
+        wide, placed = (
+            max(map(len, names)),
+            {name for each in COMMAND_SECTIONS.values() for name in each},
+        )
         rest = tuple(name for name in names if name not in placed)
-        for title, members in {**SECTIONS, "Other": rest}.items():
+        for title, members in {**COMMAND_SECTIONS, "Other": rest}.items():
             found = [
                 (f"{n:{wide}}", self.commands[n].short_help or "") for n in members if n in names
             ]

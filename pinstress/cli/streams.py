@@ -17,7 +17,7 @@ from typing import TextIO, TypeGuard
 
 from pinbase.processes.system import portable
 
-PLAIN = {
+ASCII_REPLACEMENTS = {
     "–": "-",
     "−": "-",
     "×": "x",
@@ -29,9 +29,9 @@ PLAIN = {
     "”": '"',
     "’": "'",
 }
-WAIT = 0.005  # s
+RETRY_INTERVAL = 0.005  # s
 # Errors of a pipe whose reader went away, on Windows the second.
-GONE = (errno.EPIPE, errno.EINVAL) if os.name == "nt" else (errno.EPIPE,)
+BROKEN_PIPE_ERRORS = (errno.EPIPE, errno.EINVAL) if os.name == "nt" else (errno.EPIPE,)
 
 
 class Outlet(io.FileIO):
@@ -55,7 +55,7 @@ class Outlet(io.FileIO):
                 break
             if written is not None:
                 return written
-            time.sleep(WAIT)  # a non-blocking pipe
+            time.sleep(RETRY_INTERVAL)  # a non-blocking pipe
         self.lost = True
         return size
 
@@ -100,7 +100,7 @@ def _text(outlet: Outlet, old: TextIO | None, errors: str) -> TextIO:
 def _plain(error: UnicodeError) -> tuple[str, int]:
     assert isinstance(error, UnicodeEncodeError)
     bad = error.object[error.start : error.end]
-    return "".join(PLAIN.get(c, "?") for c in bad), error.end
+    return "".join(ASCII_REPLACEMENTS.get(c, "?") for c in bad), error.end
 
 
 @contextmanager
@@ -121,7 +121,7 @@ def lost() -> str | None:
 
 def reason(outlet: Outlet) -> str:
     """The error as text; empty if the reader closed the pipe."""
-    if outlet.why is None or outlet.why.errno in GONE:
+    if outlet.why is None or outlet.why.errno in BROKEN_PIPE_ERRORS:
         return ""
     return f"cannot write to standard output ({outlet.why.strerror})"
 

@@ -13,13 +13,13 @@ import click
 from pinbase.processes.apart import apart
 from pinbase.processes.pool import preload
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.plots import PAINTERS, PICTURE_SECONDS
+from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS
 from pinstress.study.reading.errors import InputError
 from reports.vtk.read_back import Opened, open_results
 from reports.vtk.render import render_pin, show_pin
 from reports.vtk.renderer import renderer_problem
 
-OVERWRITE = "choose another file, or overwrite it with --force"
+OVERWRITE_REMEDY = "choose another file, or overwrite it with --force"
 
 
 def view(
@@ -48,7 +48,7 @@ def view(
     except (OSError, ValueError) as error:
         raise InputError(f"{directory}: {error}", code="unreadable-results") from None
     title = opened.title(row)
-    preload(*PAINTERS)
+    preload(*PICTURE_MODULES)
     if screenshot is None:
         _require_display()
         show_pin(field, opened.units, title)
@@ -59,7 +59,7 @@ def view(
             code="not-a-picture",
         )
     if not force:
-        require_new(screenshot, OVERWRITE)
+        require_new(screenshot, OVERWRITE_REMEDY)
     problem = renderer_problem()
     if problem is not None:
         raise InputError(
@@ -74,7 +74,7 @@ def view(
             return 1
         if force and os.path.lexists(screenshot):
             _remove(screenshot)
-        write_new(screenshot, picture.read_bytes(), OVERWRITE)
+        write_new(screenshot, picture.read_bytes(), OVERWRITE_REMEDY)
     return 0
 
 

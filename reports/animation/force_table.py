@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.animation.frames import nice
-from reports.animation.scene import LONGEST, Scene
+from reports.animation.scene import MAX_ARROW_LENGTH, Scene
 from reports.data.results import DriveTable, Units
 from reports.format.fixed_decimals import Fixed
 from reports.format.numbers import short
 
-HEAD = 10.0  # length of an arrow's head
-KEY = 0.45  # of the largest force, about: the arrow that explains the scale
+ARROW_HEAD_LENGTH = 10.0  # length of an arrow's head
+KEY_ARROW_SHARE = 0.45  # of the largest force, about: the arrow that explains the scale
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Arrow:
     @property
     def head(self) -> float:
         """Length of the head, which shrinks with a short arrow."""
-        return min(HEAD, 0.6 * self.length)
+        return min(ARROW_HEAD_LENGTH, 0.6 * self.length)
 
 
 def arrows(scene: Scene) -> list[Arrow]:
@@ -36,7 +36,7 @@ def arrows(scene: Scene) -> list[Arrow]:
     found = []
     for c, ((fx, fy), joint) in enumerate(zip(scene.forces[0].tolist(), scene.tails, strict=True)):
         x, y = scene.joints[0, joint].tolist()
-        length = LONGEST * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
+        length = MAX_ARROW_LENGTH * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
         colour = scene.colour(scene.motion.connections[c][1])
         found.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
     return found
@@ -46,8 +46,8 @@ def key(scene: Scene) -> tuple[float, Arrow] | None:
     """A round force and its arrow; None without forces."""
     if not scene.largest > 0.0:
         return None
-    force = nice(KEY * scene.largest)
-    return force, Arrow("plain", (0.0, -24.0), LONGEST * force / scene.largest, 0.0)
+    force = nice(KEY_ARROW_SHARE * scene.largest)
+    return force, Arrow("plain", (0.0, -24.0), MAX_ARROW_LENGTH * force / scene.largest, 0.0)
 
 
 @dataclass(frozen=True)

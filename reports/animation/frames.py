@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from reports.data.results import DriveTable, Floats, LinkageMotion, ReactionTable
 
-MOST = 240  # frames: 4 s at 60 per second
-WIDTH, TALLEST, SHORTEST = 960.0, 560.0, 300.0
-MARGIN = 36.0  # room for names and for what is drawn around a joint
+MAX_FRAMES = 240  # frames: 4 s at 60 per second
+PICTURE_WIDTH, MAX_PICTURE_HEIGHT, MIN_PICTURE_HEIGHT = 960.0, 560.0, 300.0
+PICTURE_MARGIN = 36.0  # room for names and for what is drawn around a joint
 
 
 def frames(
@@ -19,13 +19,13 @@ def frames(
 ) -> NDArray[np.int64]:
     """Indices of at most 240 instants: evenly spaced, and those of the peaks."""
     count = len(motion.joint_position)
-    if count <= MOST:
+    if count <= MAX_FRAMES:
         return np.arange(count)
     peaks = [int(np.argmax(np.abs(d.force))) for d in drives if len(d.force) == count]
     if table is not None:
         peaks += table.magnitudes.argmax(axis=0).tolist()
-    kept = np.unique(peaks)[: MOST // 2]
-    even = np.linspace(0, count - 1, MOST - len(kept)).round().astype(int)
+    kept = np.unique(peaks)[: MAX_FRAMES // 2]
+    even = np.linspace(0, count - 1, MAX_FRAMES - len(kept)).round().astype(int)
     return np.union1d(even, kept)
 
 
@@ -45,7 +45,7 @@ class Viewport:
         """
         all_points = np.concatenate([points, tails])
         offsets = np.concatenate([np.zeros_like(points), arrows])
-        room = np.array([WIDTH, TALLEST]) - 2.0 * MARGIN
+        room = np.array([PICTURE_WIDTH, MAX_PICTURE_HEIGHT]) - 2.0 * PICTURE_MARGIN
         size = np.ptp(all_points, axis=0)
         if not size.any():
             size = np.ones(2)
@@ -56,8 +56,8 @@ class Viewport:
             low, high = (middle, high) if fits else (low, middle)
         drawn = low * all_points + offsets
         corner, size = drawn.min(axis=0), np.ptp(drawn, axis=0)
-        height = float(max(size[1] + 2.0 * MARGIN, SHORTEST))
-        left = 0.5 * (WIDTH - size[0]) - corner[0]
+        height = float(max(size[1] + 2.0 * PICTURE_MARGIN, MIN_PICTURE_HEIGHT))
+        left = 0.5 * (PICTURE_WIDTH - size[0]) - corner[0]
         top = 0.5 * (height + size[1]) + corner[1]
         return Viewport(low, float(left), float(top), height)
 

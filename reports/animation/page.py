@@ -16,7 +16,7 @@ from reports.format.numbers import short
 from reports.format.script_json import script_json
 from reports.format.template import environment
 
-BAR = 0.2  # of the linkage's size, about: the bar that shows a length
+SCALE_BAR_SHARE = 0.2  # of the linkage's size, about: the bar that shows a length
 
 
 def write_animations(results: Results, directory: Path) -> list[Path]:
@@ -84,7 +84,7 @@ def _matched(table: ReactionTable, motion: LinkageMotion) -> ReactionTable | Non
 
 def _bar(scene: Scene, units: Units) -> tuple[float, str]:
     """A bar's length on the picture, and the round length for which it stands."""
-    length = nice(BAR * scene.size)
+    length = nice(SCALE_BAR_SHARE * scene.size)
     return length * scene.view.scale, f"{short(length)} {units.length}"
 
 

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from reports.animation.frames import nice
-from reports.animation.scene import LONGEST, Scene
+from reports.animation.scene import MAX_ARROW_LENGTH, Scene
 from reports.data.results import DriveTable, Floats, Units
 from reports.format.numbers import short
 
-SECONDS = 6.0  # that a motion takes to play, about
-WATCHABLE = (2.0, 12.0)  # seconds that need no other speed
+PLAYING_SECONDS = 6.0  # that a motion takes to play, about
+WATCHABLE_SECONDS = (2.0, 12.0)  # seconds that need no other speed
 
 
 def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[str, Any]:
@@ -41,7 +41,7 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
         "drives": [
             {"position": digits(d.position[at]), "force": digits(d.force[at])} for d in drives
         ],
-        "arrow": {"longest": LONGEST, "largest": scene.largest},
+        "arrow": {"longest": MAX_ARROW_LENGTH, "largest": scene.largest},
     }
 
 
@@ -70,8 +70,8 @@ def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:
     if time is None or len(time) < 2:
         return []
     duration = float(np.ptp(time)) or 1.0
-    middle = nice(1.5 * duration / SECONDS)
-    if WATCHABLE[0] <= duration <= WATCHABLE[1]:
+    middle = nice(1.5 * duration / PLAYING_SECONDS)
+    if WATCHABLE_SECONDS[0] <= duration <= WATCHABLE_SECONDS[1]:
         middle = 1.0
     choices = sorted({float(f"{middle * m:.6g}") for m in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0)} | {1.0})
     return [

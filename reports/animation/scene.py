@@ -10,16 +10,19 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from reports.animation.frames import WIDTH, Viewport
+from reports.animation.frames import PICTURE_WIDTH, Viewport
 from reports.data.results import Floats, LinkageMotion, ReactionTable
 from reports.format.drawing.svg_labels import label_offsets
 
-LONGEST = 120.0  # arrow
-COLOURS = 10  # in animation.css
-LETTER, LINE, GAP = 7.6, 15.0, 13.0  # of joints' names
-LETTERS = 14  # of a name on the picture
-LONG, SHORT = 0.85, 0.3  # of a slider's shortest and longest length: its cylinder
-BEYOND = 30.0  # that a rail goes on past the block
+MAX_ARROW_LENGTH = 120.0  # arrow
+BODY_COLOUR_COUNT = 10  # in animation.css
+JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of joints' names
+MAX_NAME_LETTERS = 14  # of a name on the picture
+CYLINDER_SHARE_OF_SHORTEST, CYLINDER_SHARE_OF_LONGEST = (
+    0.85,
+    0.3,
+)  # of a slider's shortest and longest length: its cylinder
+RAIL_OVERHANG = 30.0  # that a rail goes on past the block
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,7 @@ class Scene:
         # With square-root arrows, which are the longer ones.
         size = np.linalg.norm(self.forces, axis=2, keepdims=True)
         longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
-        arrows = LONGEST * longer * self.forces / (self.largest or 1.0)
+        arrows = MAX_ARROW_LENGTH * longer * self.forces / (self.largest or 1.0)
         tails = self.motion.joint_position[self.instants][:, self.tails]
         return Viewport.of(self.points, tails.reshape(-1, 2), arrows.reshape(-1, 2))
 
@@ -157,13 +160,13 @@ class Scene:
 
         pairs = [list(pair) for pair in combinations(members, 2)]
         best = max(pairs, key=clear, default=None)
-        return best if best and 2.0 * clear(best) > LETTER * len(body) else None
+        return best if best and 2.0 * clear(best) > JOINT_LETTER_WIDTH * len(body) else None
 
     def colour(self, body: str) -> str:
         """The class of a body; anything that is not a body of the linkage is ground."""
         if body not in self.motion.bodies:
             return "ground"
-        return f"b{self.motion.bodies.index(body) % COLOURS}"
+        return f"b{self.motion.bodies.index(body) % BODY_COLOUR_COUNT}"
 
     @cached_property
     def slides(self) -> list[Slide]:
@@ -175,14 +178,16 @@ class Scene:
         along = ends[:, 1] - ends[:, 0]
         length = np.linalg.norm(along, axis=1)
         longest = float(length.max())
-        cylinder = max(LONG * float(length.min()), SHORT * longest)
+        cylinder = max(
+            CYLINDER_SHARE_OF_SHORTEST * float(length.min()), CYLINDER_SHARE_OF_LONGEST * longest
+        )
         straight = along[int(np.argmax(length))] / (longest or 1.0)
         still = len(ends) > 1 and np.ptp(ends[:, 0], axis=0).max() < 0.01
         across = along[:, 0] * straight[1] - along[:, 1] * straight[0]
         rail = None
         if still and np.abs(across).max() < 0.01:
             run = along @ straight
-            reach = np.array([run.min() - BEYOND, run.max() + BEYOND])
+            reach = np.array([run.min() - RAIL_OVERHANG, run.max() + RAIL_OVERHANG])
             rail = ends[0, 0] + reach[:, None] * straight
         angle = float(np.degrees(np.arctan2(straight[1], straight[0])))
         return Slide(name, ends, cylinder, rail, angle, *owners)
@@ -199,7 +204,7 @@ class Scene:
     @cached_property
     def names(self) -> Floats:
         """(J, 2) from each joint to the middle of its name."""
-        wide = [LETTER * len(clipped(name)) + 4.0 for name in self.motion.joints]
+        wide = [JOINT_LETTER_WIDTH * len(clipped(name)) + 4.0 for name in self.motion.joints]
         few = np.unique(np.linspace(0, len(self.instants) - 1, 12).round().astype(int))
         pairs = [
             (a, b)
@@ -210,11 +215,11 @@ class Scene:
         lines = [self.joints[few][:, list(pair)] for pair in pairs]
         lines += [slide.ends[few] for slide in self.slides]
         inked = np.stack(lines, axis=1) if lines else np.zeros((len(few), 0, 2, 2))
-        sizes = np.column_stack([wide, np.full(len(wide), LINE)])
-        picture = (WIDTH, self.view.height)
-        return label_offsets(self.joints[few], sizes, inked, GAP, picture)
+        sizes = np.column_stack([wide, np.full(len(wide), JOINT_LINE_HEIGHT)])
+        picture = (PICTURE_WIDTH, self.view.height)
+        return label_offsets(self.joints[few], sizes, inked, JOINT_LABEL_GAP, picture)
 
 
 def clipped(name: str) -> str:
     """A name that is short enough for the picture."""
-    return name if len(name) <= LETTERS else name[: LETTERS - 1] + "…"
+    return name if len(name) <= MAX_NAME_LETTERS else name[: MAX_NAME_LETTERS - 1] + "…"

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reports.animation.frames import WIDTH, nice
+from reports.animation.frames import PICTURE_WIDTH, nice
 from reports.data.results import Floats
 from reports.format.numbers import short
 
-LEFT, RIGHT = 70.0, WIDTH - 14.0
-TOP, FOOT = 24.0, 22.0
-LOW = 100.0  # a strip too low for a scale: it shows zero and the extremes
+STRIP_LEFT, STRIP_RIGHT = 70.0, PICTURE_WIDTH - 14.0
+STRIP_TOP_MARGIN, STRIP_BOTTOM_MARGIN = 24.0, 22.0
+LOW_STRIP_HEIGHT = 100.0  # a strip too low for a scale: it shows zero and the extremes
 
 
 @dataclass(frozen=True)
@@ -45,11 +45,11 @@ class Strip:
     zero: float
     curves: list[Curve]
 
-    left, right, top, width = LEFT, RIGHT, TOP, WIDTH
+    left, right, top, width = STRIP_LEFT, STRIP_RIGHT, STRIP_TOP_MARGIN, PICTURE_WIDTH
 
     @property
     def foot(self) -> float:
-        return self.height - FOOT
+        return self.height - STRIP_BOTTOM_MARGIN
 
 
 def strip(
@@ -66,10 +66,10 @@ def strip(
     high = max(0.0, *(float(np.max(c)) for c in curves))
     if high == low:
         high = low + 1.0
-    bottom = height - FOOT
+    bottom = height - STRIP_BOTTOM_MARGIN
     start, span = float(time[0]), float(np.ptp(time)) or 1.0
-    x = LEFT + (RIGHT - LEFT) * (time - start) / span
-    scale = (bottom - TOP) / (high - low)
+    x = STRIP_LEFT + (STRIP_RIGHT - STRIP_LEFT) * (time - start) / span
+    scale = (bottom - STRIP_TOP_MARGIN) / (high - low)
 
     def up(value: float) -> float:
         return bottom - scale * (value - low)
@@ -81,10 +81,10 @@ def strip(
         places = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
         lines.append(Curve(f"M{places}", colour, (float(x[peak]), float(y[peak]))))
     times = [
-        Tick(LEFT + (RIGHT - LEFT) * (t - start) / span, short(t))
+        Tick(STRIP_LEFT + (STRIP_RIGHT - STRIP_LEFT) * (t - start) / span, short(t))
         for t in ticks(start, start + span, 8)
     ]
-    levels = ticks(low, high, 4) if height > LOW else extremes(low, high)
+    levels = ticks(low, high, 4) if height > LOW_STRIP_HEIGHT else extremes(low, high)
     marks = [Tick(up(v), short(float(f"{v / factor:.4g}"))) for v in levels]
     return Strip(title, note, height, times, marks, up(0.0), lines)
 

@@ -9,7 +9,7 @@ from pinbase.dimensions import Stress, Time
 
 
 @dataclass(frozen=True)
-class Change:
+class Remedy:
     """Each alone makes a pin reach the required factor in the worst of its cases: a yield strength;
     a factor on all loads, exact where stress is `proportional` to them, as it is not in contact;
     a factor on all diameters, bores and fillets, None where `diameter_note` says why; the time of
@@ -31,7 +31,7 @@ class Change:
     singular: bool
 
 
-def command(changes: tuple[Change, ...], study: str, required: float | None) -> str:
+def command(changes: tuple[Remedy, ...], study: str, required: float | None) -> str:
     """The command that finds the diameters of the pins that have any; empty if none has."""
     pins = [c.pin for c in changes if c.diameter_factor or "pinstress size" in c.diameter_note]
     if not pins:

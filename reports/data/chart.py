@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-NAME = "chart"
-LIMIT_LOADS = "hinges", "elastic-plastic"  # models of the limit load
+CHART_NAME = "chart"
+LIMIT_LOAD_MODELS = "hinges", "elastic-plastic"  # models of the limit load
 
 
 @dataclass(frozen=True)

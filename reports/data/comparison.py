@@ -11,14 +11,21 @@ from typing import Any
 
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 
-SAME = 1e-9  # relative: what differs by less has not changed
-DECISION = "decision changed"
-BEYOND = "changed beyond the errors"
-WITHIN = "within the errors"
+UNCHANGED_TOLERANCE = 1e-9  # relative: what differs by less has not changed
+DECISION_CHANGED = "decision changed"
+BEYOND_ERRORS = "changed beyond the errors"
+WITHIN_ERRORS = "within the errors"
 UNCHANGED = "unchanged"
-NO_NUMBER = "not solved"
-ONLY = "only in A", "only in B"
-KINDS = DECISION, BEYOND, *ONLY, NO_NUMBER, WITHIN, UNCHANGED  # in the order of the table
+NOT_SOLVED = "not solved"
+ONLY_IN_ONE_RUN = "only in A", "only in B"
+CHANGE_KINDS = (
+    DECISION_CHANGED,
+    BEYOND_ERRORS,
+    *ONLY_IN_ONE_RUN,
+    NOT_SOLVED,
+    WITHIN_ERRORS,
+    UNCHANGED,
+)  # in the order of the table
 
 
 @dataclass(frozen=True)
@@ -46,18 +53,18 @@ class RowPair:
 
     @property
     def kind(self) -> str:
-        """One of KINDS."""
+        """One of CHANGE_KINDS."""
         a, b = self.first, self.second
         if a is None or b is None:
-            return ONLY[a is None]
+            return ONLY_IN_ONE_RUN[a is None]
         if a.outcome != b.outcome:
-            return DECISION
+            return DECISION_CHANGED
         if a.maximum is None or b.maximum is None:
-            return UNCHANGED if a.maximum == b.maximum else NO_NUMBER
+            return UNCHANGED if a.maximum == b.maximum else NOT_SOLVED
         if _same(a.maximum, b.maximum):
             return UNCHANGED
         apart = _above(a.low, b.high) or _above(b.low, a.high)
-        return BEYOND if apart else WITHIN
+        return BEYOND_ERRORS if apart else WITHIN_ERRORS
 
     @property
     def change(self) -> float | None:
@@ -147,7 +154,7 @@ def _side(row: Mapping[str, Any] | None, unit: float) -> Side | None:
 
 
 def _same(a: float, b: float) -> bool:
-    return math.isclose(a, b, rel_tol=SAME)
+    return math.isclose(a, b, rel_tol=UNCHANGED_TOLERANCE)
 
 
 def _above(low: float | None, high: float | None) -> bool:
@@ -159,7 +166,7 @@ def _place(row: RowPair) -> tuple[int, bool, float]:
     change = row.change
     worse = row.second is not None and row.second.outcome in (FAILS, YIELDS, NOT_DECIDED, DEPENDS)
     size = 0.0 if change is None else -abs(math.log(max(1.0 + change, 1e-300)))
-    return KINDS.index(row.kind), not worse, size
+    return CHANGE_KINDS.index(row.kind), not worse, size
 
 
 def _of_keys(

@@ -8,8 +8,8 @@ from reports.data.results import PinResult, Results
 
 SAFE, FAILS, NOT_DECIDED = "safe", "fails", "not decided"
 DEPENDS = "depends"  # safe as described, but not within a range that the study leaves open
-BELOW, YIELDS = "below yield", "yields"  # where no factor is required
-ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, DEPENDS: 2, SAFE: 3, BELOW: 3}
+BELOW_YIELD, YIELDS = "below yield", "yields"  # where no factor is required
+OUTCOME_ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, DEPENDS: 2, SAFE: 3, BELOW_YIELD: 3}
 
 Ends = tuple[float, float]
 
@@ -19,7 +19,7 @@ def outcome(pin: PinResult) -> str:
     study leaves open; without a required factor, whether it yields.
     """
     found = as_described(pin)
-    return DEPENDS if found in (SAFE, BELOW) and pin.depends_on else found
+    return DEPENDS if found in (SAFE, BELOW_YIELD) and pin.depends_on else found
 
 
 def as_described(pin: PinResult) -> str:
@@ -28,11 +28,11 @@ def as_described(pin: PinResult) -> str:
 
 
 def in_words(decided: bool | None, required: float | None) -> str:
-    """decided: whether a maximum stays below what is permitted (fea.core.peak.decides)."""
+    """decided: whether a maximum stays below what is permitted (fea.core.peak.meets_limit)."""
     if decided is None:
         return NOT_DECIDED
     if required is None:
-        return BELOW if decided else YIELDS
+        return BELOW_YIELD if decided else YIELDS
     return SAFE if decided else FAILS
 
 
@@ -70,6 +70,6 @@ def worst_first(results: Results) -> list[PinResult]:
 
     def place(pin: PinResult) -> tuple[int, float]:
         used = utilisation(pin, 1.0)
-        return ORDER[outcome(pin)], -inf if used is None else -used[1]
+        return OUTCOME_ORDER[outcome(pin)], -inf if used is None else -used[1]
 
     return sorted(results.pins, key=place)

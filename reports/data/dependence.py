@@ -17,12 +17,12 @@ import numpy as np
 
 from fea.core.places import ContactPlace
 from fea.support.contact.records import JointResult, Variation
-from reports.data.decision import BELOW, NOT_DECIDED, SAFE, as_described, factor_ends
+from reports.data.decision import BELOW_YIELD, NOT_DECIDED, SAFE, as_described, factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 
-BENEATH: Literal["beneath"] = "beneath"
+BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
-TOGETHER = "impulse time, velocity change and pulse together"
+IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence
     contact = pin.places.contact if pin.places else None
     high, low = (strength / end for end in factor_ends(pin))
     permitted = strength / (pin.required or 1.0)
-    judged = Judged(low, pin.max_von_mises, high, strength, permitted, found in (SAFE, BELOW))
+    judged = Judged(low, pin.max_von_mises, high, strength, permitted, found in (SAFE, BELOW_YIELD))
     return dependences(judged, contact, pin.joint, landing)
 
 
@@ -84,7 +84,7 @@ def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependenc
         return
     exceeds = contact.beneath > judged.permitted
     yield Dependence(
-        BENEATH, "" if exceeds else WITH_ERROR, BENEATH,
+        BENEATH_CONTACT, "" if exceeds else WITH_ERROR, BENEATH_CONTACT,
         judged.strength / (contact.beneath if exceeds else contact.upper_end),
         reach=contact.depth(judged.permitted),
     )  # fmt: skip
@@ -122,7 +122,7 @@ def _over_joint(
         end = _upper_end(contact, v)
         what = f"{v.what} {v.value}" if v.length is None else v.what
         yield Dependence(
-            BENEATH, what, "joint", judged.strength / end,
+            BENEATH_CONTACT, what, "joint", judged.strength / end,
             given=given if v.length is not None else None, at=v.length,
             flips_at=_on_the_way(judged, v, given, (contact.upper_end, end)), dimension="length",
         )  # fmt: skip
@@ -176,7 +176,7 @@ def _with_beneath(
     deep = replace(judged, low=contact.beneath, maximum=contact.beneath, high=contact.upper_end)
     scaled = replace(r, max_von_mises=r.max_von_mises * (contact.beneath / judged.maximum))
     return [
-        replace(d, what=BENEATH, value=f"{d.what} {d.value}".strip())
+        replace(d, what=BENEATH_CONTACT, value=f"{d.what} {d.value}".strip())
         for d in _over_landing(deep, scaled)
     ]
 
@@ -211,7 +211,7 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
     if not found and turned.any():
         extreme = np.max if judged.safe else np.min
         factor = judged.strength / float(extreme(r.max_von_mises))
-        yield Dependence(TOGETHER, "", "landing", factor)
+        yield Dependence(IMPULSE_RANGES_TOGETHER, "", "landing", factor)
 
 
 def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> int | None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pinbase.dimensions import Energies, Force, Forces, Lengths, Time, Times, Velocities, Velocity
 
-PEAKS = {  # what is reported of a drop, and its dimension
+PEAK_QUANTITIES = {  # what is reported of a drop, and its dimension
     "vertical": ("vertical force of the ground", "force"),
     "along": ("force along the strut", "force"),
     "stroke": ("stroke of the strut", "length"),
@@ -35,12 +35,13 @@ class DropPeak:
 @dataclass(frozen=True)
 class DropRecord:
     """A landing as a drop: (T,) over time; sink_velocity of the sprung mass, positive downwards;
-    strut: force along it; leg_drag: what the leg passes on of the drag. peaks: by name of PEAKS.
-    load_factor: vertical force over the weight. imbalance: largest, of the energies over the first
-    kinetic energy. impulse_force: m V over impulse_time; equal_impulse_time: that at which both
-    agree. spin_up: largest drag by appendix D to 14 CFR part 23; None without a wheel. drive: the
-    largest force of the strut's drive in the mechanism. closing, opening: (P,) vertical force over
-    the strokes (P,) of the first compression and extension.
+    strut: force along it; leg_drag: what the leg passes on of the drag. peaks: by name of
+    PEAK_QUANTITIES. load_factor: vertical force over the weight. imbalance: largest, of the
+    energies over the first kinetic energy. impulse_force: m V over impulse_time;
+    equal_impulse_time: that at which both agree. spin_up: largest drag by appendix D to 14 CFR
+    part 23; None without a wheel. drive: the largest force of the strut's drive in the mechanism.
+    closing, opening: (P,) vertical force over the strokes (P,) of the first compression and
+    extension.
     """
 
     case: str

@@ -8,7 +8,9 @@ from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
 from reports.data.results import PinResult, Results
 
-MOST_DETAILED = 8  # cases; of more, a report shows only the governing one of each pin in detail
+MAX_DETAILED_CASES = (
+    8  # cases; of more, a report shows only the governing one of each pin in detail
+)
 
 
 @dataclass(frozen=True)
@@ -53,9 +55,9 @@ def case_names(results: Results) -> list[str]:
     return list(dict.fromkeys(row.case for row in results.pins))
 
 
-def elsewhere(results: Results) -> str:
+def omitted_note(results: Results) -> str:
     """Where the cases are that are not shown in detail; empty if all are."""
-    if len(cases := case_names(results)) <= MOST_DETAILED:
+    if len(cases := case_names(results)) <= MAX_DETAILED_CASES:
         return ""
     return (
         f"Of the {len(cases)} cases, only the governing one of each pin is shown; the others are "
@@ -63,9 +65,9 @@ def elsewhere(results: Results) -> str:
     )
 
 
-def in_detail(results: Results) -> Results:
+def detailed_rows(results: Results) -> Results:
     """What is shown in detail: all, or of many cases the governing one of each pin."""
-    if len(case_names(results)) <= MOST_DETAILED:
+    if len(case_names(results)) <= MAX_DETAILED_CASES:
         return results
     governs = governing_cases(results)
     cases = set(governs.values())

@@ -5,7 +5,7 @@ with the least margin of safety.
 from __future__ import annotations
 
 from assess.strength.margin import PinMargin
-from assess.strength.model_stress import YIELD
+from assess.strength.model_stress import YIELD_METHOD
 from reports.data.results import Results
 
 
@@ -14,13 +14,13 @@ def governing(results: Results) -> list[PinMargin]:
     found: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:
         key = margin.pin, margin.case
-        may = margin.margin.governs and margin.used >= 0.0 and margin.margin.method != YIELD
+        may = margin.margin.governs and margin.used >= 0.0 and margin.margin.method != YIELD_METHOD
         if may and (key not in found or margin.used > found[key].used):
             found[key] = margin
     return sorted(found.values(), key=lambda margin: -margin.used)
 
 
-def not_made(results: Results) -> dict[str, list[PinMargin]]:
+def skipped(results: Results) -> dict[str, list[PinMargin]]:
     """The checks that were not made, by what they need."""
     found: dict[str, list[PinMargin]] = {}
     for margin in results.margins:

@@ -12,12 +12,12 @@ from math import inf
 from typing import Any
 
 from assess.strength.margin import PinMargin
-from assess.strength.model_stress import RUPTURE, YIELD
+from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from reports.data.decision import (
     DEPENDS,
     FAILS,
     NOT_DECIDED,
-    ORDER,
+    OUTCOME_ORDER,
     SAFE,
     YIELDS,
     factor_ends,
@@ -27,7 +27,7 @@ from reports.data.decision import (
 )
 from reports.data.results import PinResult, Results
 
-FATIGUE = "fatigue life"
+FATIGUE_LIFE = "fatigue life"
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class JudgedCheck:
     @property
     def rank(self) -> tuple[int, float]:
         """The worst first."""
-        return ORDER[self.outcome], -self.used
+        return OUTCOME_ORDER[self.outcome], -self.used
 
 
 def judged_checks(results: Results) -> list[JudgedCheck]:
@@ -61,11 +61,11 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
     found += (
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins
-        if m.margin.governs and m.margin.method != YIELD and m.used >= 0.0
+        if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0
     )
     open_ = results.fatigue.not_decided if results.fatigue else {}
     found += (
-        JudgedCheck(pin, "", FATIGUE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
+        JudgedCheck(pin, "", FATIGUE_LIFE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
         for pin, reason in open_.items()
     )
     return sorted(found, key=lambda check: check.rank)
@@ -110,7 +110,7 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
     used = utilisation(row, required)
     high = -inf if used is None else used[1]
     return JudgedCheck(
-        row.pin, row.case, YIELD, outcome(row), row.safety_factor, required, high, row
+        row.pin, row.case, YIELD_METHOD, outcome(row), row.safety_factor, required, high, row
     )
 
 
@@ -119,7 +119,7 @@ def _of_margin(found: PinMargin, row: PinResult | None) -> JudgedCheck:
     m = found.margin
     factor = m.allowable / m.demand if m.demand and m.allowable is not None else None
     state = SAFE if found.used <= 1.0 else FAILS
-    if m.method == RUPTURE and row is not None and row.safety_factor and state == FAILS:
+    if m.method == RUPTURE_METHOD and row is not None and row.safety_factor and state == FAILS:
         low, high = factor_ends(row)
         state = FAILS if found.used * low / high > 1.0 else NOT_DECIDED
     return JudgedCheck(found.pin, found.case, m.method, state, factor, m.factor, found.used)

@@ -13,7 +13,13 @@ import numpy as np
 T = TypeVar("T")
 Unit = Callable[[str], float]
 
-UNCHANGED = ("1", "degrees", "rad", "rad/s", "rad/s^2")  # the same in every system
+SYSTEM_INDEPENDENT_DIMENSIONS = (
+    "1",
+    "degrees",
+    "rad",
+    "rad/s",
+    "rad/s^2",
+)  # the same in every system
 
 
 def in_units(value: T, unit: Unit) -> T:
@@ -38,7 +44,7 @@ def in_units(value: T, unit: Unit) -> T:
 
 def _factor(dimension: str, unit: Unit) -> float:
     """Product of the units of "stress length^0.5"."""
-    if dimension in UNCHANGED:
+    if dimension in SYSTEM_INDEPENDENT_DIMENSIONS:
         return 1.0
     product = 1.0
     for part in dimension.split():

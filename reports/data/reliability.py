@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, SAFE
 
-SYSTEM = "all"  # the pin and the case of the row for the lowest factor of all rows
+SYSTEM_ROW = "all"  # the pin and the case of the row for the lowest factor of all rows
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class ByErrors:
 
 @dataclass(frozen=True)
 class Risk:
-    """A pin in a case, or SYSTEM for the lowest factor of all rows.
+    """A pin in a case, or SYSTEM_ROW for the lowest factor of all rows.
 
     verdict, factor: of the study as it is; None where it has no factor. sampled, weighted: the
     probability of failure by plain and by importance sampling, None without a design point.

@@ -31,7 +31,7 @@ from pinbase.dimensions import (
     Velocities,
     Velocity,
 )
-from reports.data.changes import Change
+from reports.data.changes import Remedy
 from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
 from reports.data.in_units import Unit, in_units
@@ -57,12 +57,45 @@ from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.data.surface import Surface
 
 __all__ = [
-    "BandLoad", "BeamCheck", "Change", "Dependence", "Dimensioned", "DriveEffort", "DriveTable",
-    "DropPeak", "DropRecord", "Extremes", "Fatigue", "Field", "Floats", "GoverningLoad",
-    "GuideForces", "HandCheck", "LandingRange", "LegTable", "LinkageMotion", "MotionCheck",
-    "PeakReaction", "PinResult", "PinSensitivities", "PinShape", "PitchCurve", "PointPath",
-    "PowerLedger", "Provenance", "PublishedValue", "ReactionTable", "Refinement", "Results",
-    "Sensitivity", "SingularZone", "Still", "Surface", "TitleBlock", "Units", "Volume",
+    "BandLoad",
+    "BeamCheck",
+    "Dependence",
+    "Dimensioned",
+    "DriveEffort",
+    "DriveTable",
+    "DropPeak",
+    "DropRecord",
+    "Extremes",
+    "Fatigue",
+    "Field",
+    "Floats",
+    "GoverningLoad",
+    "GuideForces",
+    "HandCheck",
+    "LandingRange",
+    "LegTable",
+    "LinkageMotion",
+    "MotionCheck",
+    "PeakReaction",
+    "PinResult",
+    "PinSensitivities",
+    "PinShape",
+    "PitchCurve",
+    "PointPath",
+    "PowerLedger",
+    "Provenance",
+    "PublishedValue",
+    "ReactionTable",
+    "Refinement",
+    "Remedy",
+    "Results",
+    "Sensitivity",
+    "SingularZone",
+    "Still",
+    "Surface",
+    "TitleBlock",
+    "Units",
+    "Volume",
 ]  # fmt: skip
 
 
@@ -317,7 +350,7 @@ class Results:
     landing: tuple[LandingRange, ...] = ()
     drops: tuple[DropRecord, ...] = ()
     surfaces: tuple[Surface, ...] = ()
-    changes: tuple[Change, ...] = ()
+    changes: tuple[Remedy, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
     margins: tuple[PinMargin, ...] = ()
     arms: tuple[BendingArms, ...] = ()

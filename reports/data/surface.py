@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pinbase.dimensions import Floats, Forces, Length, Lengths, Point, Stress, Stresses, Times
 
-SECTORS = 72  # into which a body of revolution is divided where it is drawn
+SURFACE_SECTORS = 72  # into which a body of revolution is divided where it is drawn
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
@@ -52,11 +52,11 @@ class SurfaceCase:
     what is excluded, as the analysis found it; `instant` governs. times: None without a motion.
     excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
     instant, of a meridian the maximum over the circumference of what is read. location: (x, y, z)
-    of the largest at that instant. unread: (T, P, SECTORS) where lugs press on the surface or
-    beside that, from the angle of this location on; None without lugs. pressure: (R, M) of contact
-    with lugs at that instant, on M sectors of R rings, the first at `first`, rad, from x; rings:
-    (P,) on which of them a point is, -1 on none; None without contact. zones: (Z, 3) of circles
-    that are excluded: r, z, distance. section: at that instant, of a body of revolution.
+    of the largest at that instant. unread: (T, P, SURFACE_SECTORS) where lugs press on the surface
+    or beside that, from the angle of this location on; None without lugs. pressure: (R, M) of
+    contact with lugs at that instant, on M sectors of R rings, the first at `first`, rad, from x;
+    rings: (P,) on which of them a point is, -1 on none; None without contact. zones: (Z, 3) of
+    circles that are excluded: r, z, distance. section: at that instant, of a body of revolution.
     """
 
     case: str

@@ -14,10 +14,12 @@ from loads import MB
 from pinbase.errors import Damaged
 
 Model = TypeVar("Model", bound=BaseModel)
-HALF = re.compile(r"\\u[dD][89a-fA-F]")  # of a character beyond the first 65,536
+SURROGATE_ESCAPE_PATTERN = re.compile(
+    r"\\u[dD][89a-fA-F]"
+)  # of a character beyond the first 65,536
 
-DEEPEST = 100  # parts in parts; pinstress writes no more than twenty
-WORDS = {  # of pydantic's errors, which speak of Python
+MAX_JSON_DEPTH = 100  # parts in parts; pinstress writes no more than twenty
+ERROR_WORDS = {  # of pydantic's errors, which speak of Python
     "missing": "is missing",
     "model_type": "is no object",
     "dict_type": "is no object",
@@ -41,7 +43,7 @@ def strict_json(content: bytes, name: str) -> Any:
         text = content.decode("utf-8")
         found = json.loads(text, parse_constant=_no_number)
         _require_shallow(found)
-        if HALF.search(text):  # may be lone, which no file can be written with
+        if SURROGATE_ESCAPE_PATTERN.search(text):  # may be lone, which no file can be written with
             json.dumps(found, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         raise Damaged(f"{name} is damaged: no UTF-8 from byte {error.start:,} on") from None
@@ -62,7 +64,7 @@ def strict_json(content: bytes, name: str) -> Any:
 def _require_shallow(found: Any) -> None:
     """Raises: RecursionError, as what walks or copies it later would."""
     level = [found]
-    for _ in range(DEEPEST):
+    for _ in range(MAX_JSON_DEPTH):
         holders = [x.values() if isinstance(x, dict) else x for x in level if x and _holds(x)]
         level = [below for holder in holders for below in holder if _holds(below)]
         if not level:
@@ -90,7 +92,7 @@ def validated(kind: type[Model], content: Any, name: str) -> Model:
         first = error.errors(include_url=False, include_context=False)[0]
         where = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in first["loc"])
         said = first["msg"].removeprefix("Value error, ")
-        what = WORDS.get(first["type"], f"is wrong: {said[:1].lower()}{said[1:]}")
+        what = ERROR_WORDS.get(first["type"], f"is wrong: {said[:1].lower()}{said[1:]}")
         more = error.error_count() - 1
         also = f", and {more:,} more" if more else ""
         where = where.lstrip(".") or "its content"

@@ -17,17 +17,17 @@ from pathlib import Path
 
 from loads import MB
 
-PARTIAL = ".partial"  # of a file that is being written
-RELATIVE = {os.open, os.stat, os.unlink, os.mkdir, os.rename} <= os.supports_dir_fd
+PARTIAL_SUFFIX = ".partial"  # of a file that is being written
+SUPPORTS_DIR_FD = {os.open, os.stat, os.unlink, os.mkdir, os.rename} <= os.supports_dir_fd
 
 
 def _flags(*names: str) -> int:
     return sum(getattr(os, name, 0) for name in names)
 
 
-READ = os.O_RDONLY | _flags("O_NOFOLLOW", "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")
-MAKE = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _flags("O_NOFOLLOW", "O_CLOEXEC", "O_BINARY")
-ENTER = os.O_RDONLY | _flags("O_DIRECTORY", "O_CLOEXEC")
+READ_FLAGS = os.O_RDONLY | _flags("O_NOFOLLOW", "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY")
+CREATE_FLAGS = os.O_WRONLY | os.O_CREAT | os.O_EXCL | _flags("O_NOFOLLOW", "O_CLOEXEC", "O_BINARY")
+DIRECTORY_FLAGS = os.O_RDONLY | _flags("O_DIRECTORY", "O_CLOEXEC")
 
 
 class NotPlain(OSError):
@@ -57,7 +57,7 @@ def read_inside(folder: Path, name: str, most: int) -> bytes:
     """
     with _place(folder, name) as (place, last):
         _require_file(place, last, name, most)
-        descriptor = os.open(place.of(last), READ, dir_fd=place.descriptor)
+        descriptor = os.open(place.of(last), READ_FLAGS, dir_fd=place.descriptor)
         with open(descriptor, "rb") as file:
             found = os.fstat(descriptor)
             if not stat.S_ISREG(found.st_mode):
@@ -73,14 +73,14 @@ def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
     made. One of that name that is no regular file is left alone. Raises: NotPlain, OSError.
     """
     with _place(folder, name, make=True) as (place, last):
-        for there in (last, last + PARTIAL):
+        for there in (last, last + PARTIAL_SUFFIX):
             with suppress(FileNotFoundError):
                 _require_file(place, there, name + there[len(last) :])
-        at, partial = place.descriptor, place.of(last + PARTIAL)
+        at, partial = place.descriptor, place.of(last + PARTIAL_SUFFIX)
         with suppress(FileNotFoundError):  # of a process that was killed
             os.unlink(partial, dir_fd=at)
         try:
-            with open(os.open(partial, MAKE, 0o666, dir_fd=at), "wb") as file:
+            with open(os.open(partial, CREATE_FLAGS, 0o666, dir_fd=at), "wb") as file:
                 file.write(content)
             os.replace(partial, place.of(last), src_dir_fd=at, dst_dir_fd=at)
         except BaseException:
@@ -105,10 +105,10 @@ def _place(folder: Path, name: str, make: bool = False) -> Iterator[tuple[_Place
     *between, last = name.split("/")
     if any(not part or part in (".", "..") or "\0" in part for part in (*between, last)):
         raise NotPlain(errno.EINVAL, f"{name!r} is no name of a file in a folder")
-    if not RELATIVE:
+    if not SUPPORTS_DIR_FD:
         yield _by_path(folder, between, make), last
         return
-    descriptor = os.open(folder, ENTER)
+    descriptor = os.open(folder, DIRECTORY_FLAGS)
     try:
         place = _Place(folder, descriptor)
         for k, part in enumerate(between):
@@ -116,7 +116,7 @@ def _place(folder: Path, name: str, make: bool = False) -> Iterator[tuple[_Place
                 with suppress(FileExistsError):
                     os.mkdir(part, dir_fd=descriptor)
             _require_folder(place, part, "/".join(between[: k + 1]))
-            below = os.open(part, ENTER | os.O_NOFOLLOW, dir_fd=descriptor)
+            below = os.open(part, DIRECTORY_FLAGS | os.O_NOFOLLOW, dir_fd=descriptor)
             os.close(descriptor)
             descriptor = below
             place = _Place(place.path / part, descriptor)

@@ -13,20 +13,20 @@ from loads import MB
 from pinbase.errors import Damaged
 from reports.folder.damaged import JsonPart, strict_json, validated
 from reports.folder.inside import read_inside
-from reports.tables.json_results import SCHEMA
+from reports.tables.json_results import RESULTS_SCHEMA
 
-NAME = "results.json"
-LARGEST = 1024 * MB
-EXTREME = 1e60  # in any unit; products of larger ones would not be numbers
-KIND, _, VERSION = SCHEMA.partition("/")
-SEPARATORS = "/\\\0"
+RESULTS_JSON = "results.json"
+MAX_RESULTS_SIZE = 1024 * MB
+MAX_MAGNITUDE = 1e60  # in any unit; products of larger ones would not be numbers
+SCHEMA_NAME, _, SCHEMA_VERSION = RESULTS_SCHEMA.partition("/")
+PATH_SEPARATORS = "/\\\0"
 
-Number = Annotated[float, Field(ge=-EXTREME, le=EXTREME, allow_inf_nan=False)]
-Positive = Annotated[float, Field(ge=0.0, le=EXTREME, allow_inf_nan=False)]
+Number = Annotated[float, Field(ge=-MAX_MAGNITUDE, le=MAX_MAGNITUDE, allow_inf_nan=False)]
+Positive = Annotated[float, Field(ge=0.0, le=MAX_MAGNITUDE, allow_inf_nan=False)]
 
 
 def _of_one_file(name: str) -> str:
-    if not name or any(c in name for c in SEPARATORS):
+    if not name or any(c in name for c in PATH_SEPARATORS):
         raise ValueError(f"{name!r} is no name of a pin or a case")
     return name
 
@@ -114,28 +114,33 @@ def read_results(directory: Path) -> dict[str, Any]:
 
     Raises: Damaged, FileNotFoundError, NotADirectoryError, OSError.
     """
-    content = strict_json(read_inside(directory, NAME, LARGEST), NAME)
+    content = strict_json(read_inside(directory, RESULTS_JSON, MAX_RESULTS_SIZE), RESULTS_JSON)
     _require_schema(content)
-    found = validated(_Results, content, NAME)
+    found = validated(_Results, content, RESULTS_JSON)
     rows = Counter((row.pin, row.case) for row in found.pins)
     if twice := next((row for row, count in rows.items() if count > 1), None):
-        raise Damaged(f"{NAME} is damaged: pin {twice[0]} in {twice[1]} is there more than once")
+        raise Damaged(
+            f"{RESULTS_JSON} is damaged: pin {twice[0]} in {twice[1]} is there more than once"
+        )
     printable: dict[str, Any] = _printable(content)
     return printable
 
 
 def _require_schema(content: Any) -> None:
     schema = content.get("schema") if isinstance(content, dict) else None
-    if schema == SCHEMA:
+    if schema == RESULTS_SCHEMA:
         return
-    found = re.fullmatch(rf"{KIND}/(\d{{1,9}})", str(schema))
+    found = re.fullmatch(rf"{SCHEMA_NAME}/(\d{{1,9}})", str(schema))
     if found is None:
-        raise Damaged(f"{NAME} was not written by pinstress (it has no schema {SCHEMA})")
-    newer = int(found[1]) > int(VERSION)
+        raise Damaged(
+            f"{RESULTS_JSON} was not written by pinstress (it has no schema {RESULTS_SCHEMA})"
+        )
+    newer = int(found[1]) > int(SCHEMA_VERSION)
     remedy = "use that version, or run the study again" if newer else "run the study again"
     raise Damaged(
-        f"{NAME} was written by {'a newer' if newer else 'an older'} version of pinstress (schema "
-        f"{schema}; this version reads {SCHEMA}): {remedy}"
+        f"{RESULTS_JSON} was written by {'a newer' if newer else 'an older'} version of "
+        f"pinstress (schema "
+        f"{schema}; this version reads {RESULTS_SCHEMA}): {remedy}"
     )
 
 

@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 from reports.data.results import DriveTable
 
-SVG, PNG = ".svg", ".png"
+SVG_SUFFIX, PNG_SUFFIX = ".svg", ".png"
 
 
 def plot_name(kind: str, *names: str) -> str:

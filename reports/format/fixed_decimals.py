@@ -10,7 +10,7 @@ import numpy as np
 from reports.data.results import Floats
 from reports.format.numbers import DASH, ten_to
 
-DIGITS = 4  # of the largest
+DIGITS_OF_LARGEST = 4  # of the largest
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Fixed:
         size = math.floor(math.log10(largest))
         power = 0 if -2 <= size < 6 else 3 * (size // 3)
         heading = unit if power == 0 else f"{ten_to(power)} {unit}"
-        return Fixed(heading, 10.0**power, max(DIGITS - 1 - (size - power), 0))
+        return Fixed(heading, 10.0**power, max(DIGITS_OF_LARGEST - 1 - (size - power), 0))
 
     def __call__(self, value: float) -> str:
         if not math.isfinite(value):

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 DASH = "–"
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-ROUNDING = 1e-9  # of the largest component; anything smaller is round-off
+SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
 
 
 def engineering(value: float | None, digits: int = 4) -> str:
@@ -30,7 +30,7 @@ def engineering(value: float | None, digits: int = 4) -> str:
 
 def ten_to(power: int) -> str:
     """Ten to a power, as text."""
-    return "10" + str(power).translate(SUPERSCRIPTS)
+    return "10" + str(power).translate(SUPERSCRIPT_DIGITS)
 
 
 def _plain(value: float, digits: int, size: int) -> str:
@@ -69,4 +69,4 @@ def ratio(ours: float | None, published: float | None) -> float | None:
 
 def components(values: Sequence[float], largest: float) -> list[str]:
     """Numbers of a vector as text; what is round-off compared with the largest is zero."""
-    return [engineering(v if abs(v) > ROUNDING * largest else 0.0) for v in values]
+    return [engineering(v if abs(v) > COMPONENT_ROUND_OFF * largest else 0.0) for v in values]

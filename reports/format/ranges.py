@@ -9,9 +9,9 @@ from reports.data.decision import utilisation
 from reports.data.results import PinResult
 from reports.format.numbers import DASH, engineering
 
-END = 3  # digits of factors and of an interval's ends
+END_DIGITS = 3  # digits of factors and of an interval's ends
 MAX_DIGITS = 9
-PARTS = {  # of an error, in words
+ERROR_PART_WORDS = {  # of an error, in words
     "mesh": "mesh",
     "time": "time",
     "series": "terms of the bearing pressure",
@@ -28,7 +28,7 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
     interval = pin.max_von_mises_interval
     if interval is None:
         return engineering(pin.error_estimate, 2)
-    return to.join(engineering(end, END) for end in interval)
+    return to.join(engineering(end, END_DIGITS) for end in interval)
 
 
 def factor_range(pin: PinResult, to: str = " to ") -> str:
@@ -37,14 +37,16 @@ def factor_range(pin: PinResult, to: str = " to ") -> str:
     if interval is None:
         return factor_text(pin.safety_factor, pin.required or 1.0)
     low, high = interval
-    return to.join([engineering(low, END), DASH if high is None else engineering(high, END)])
+    return to.join(
+        [engineering(low, END_DIGITS), DASH if high is None else engineering(high, END_DIGITS)]
+    )
 
 
 def factor_text(factor: float | None, required: float) -> str:
     """Three digits; more where these would show it on the other side of what is required."""
     if factor is None or not math.isfinite(factor):
         return DASH
-    for digits in range(END, MAX_DIGITS):
+    for digits in range(END_DIGITS, MAX_DIGITS):
         rounded = float(f"{factor:.{digits - 1}e}")
         if (rounded >= required) == (factor >= required):
             return engineering(factor, digits)
@@ -59,18 +61,20 @@ def utilisation_range(pin: PinResult, required: float, to: str = " to ") -> str:
 
 def _interval(ends: Iterable[float], to: str) -> str:
     """Numbers as a range; one where they are equal."""
-    return to.join(dict.fromkeys(engineering(end, END) for end in ends))
+    return to.join(dict.fromkeys(engineering(end, END_DIGITS) for end in ends))
 
 
 def joint_range(pin: PinResult, to: str = " to ") -> str:
     """The maximum over what is not known of the joint; a dash where that was not found."""
     over = pin.joint.range if pin.joint else None
-    return to.join(engineering(end, END) for end in over.max_von_mises) if over else DASH
+    return to.join(engineering(end, END_DIGITS) for end in over.max_von_mises) if over else DASH
 
 
 def part_words(pin: PinResult) -> str:
     """What the error of a maximum comes from, without what adds nothing."""
-    return ", ".join(PARTS[part] for part, value in pin.error_parts.items() if value > 0.0)
+    return ", ".join(
+        ERROR_PART_WORDS[part] for part, value in pin.error_parts.items() if value > 0.0
+    )
 
 
 def error_words(pin: PinResult) -> str:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-TEMPLATES = Path(__file__).parents[1] / "templates"
-VENDOR = TEMPLATES / "vendor"  # scripts of others
+TEMPLATE_FOLDER = Path(__file__).parents[1] / "templates"
+VENDOR_FOLDER = TEMPLATE_FOLDER / "vendor"  # scripts of others
 
 
 @cache
@@ -21,7 +21,7 @@ def environment() -> Environment:
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
     return Environment(
-        loader=FileSystemLoader(TEMPLATES),
+        loader=FileSystemLoader(TEMPLATE_FOLDER),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

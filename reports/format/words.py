@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import inf
 
 from reports.data.decision import (
-    BELOW,
+    BELOW_YIELD,
     DEPENDS,
     FAILS,
     NOT_DECIDED,
@@ -15,17 +15,17 @@ from reports.data.decision import (
     outcome,
     worst_first,
 )
-from reports.data.dependence import BENEATH
+from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
 from reports.format.numbers import engineering, short
 from reports.format.ranges import factor_range
 from reports.format.units import unit_name
 
-BEYOND = "beyond yield"
-MAX_NAMED = 4  # properties of a range; of more, their number is given
+BEYOND_YIELD = "beyond yield"
+MAX_NAMED_PROPERTIES = 4  # properties of a range; of more, their number is given
 
-READING = (
+RESULT_ROWS_NOTE = (
     "One row per pin and case, the worst first. The maximum is the larger von Mises stress of the "
     "pin's surface, except in excluded zones, and of its sections under axial force, bending, "
     "shear and torsion, at any instant; ± is its estimated error; the safety factor is the yield "
@@ -34,7 +34,7 @@ READING = (
     "model reports the mean over several rotations of the loads about the axis; pictures and VTU "
     "files show one orientation, so their maximum may differ by up to the ±."
 )
-JOINT = (
+JOINT_RANGE_NOTE = (
     "Joint is the range of the maximum over properties of the joint that are seldom known: other "
     "clearances, lugs of half and twice the stiffness, and lugs that are guided or free to tilt. "
     "It is not part of the ±; a pin that fails within it is not safe, its result depends on the "
@@ -42,13 +42,13 @@ JOINT = (
     "in contact, it is that of a beam on foundations in their lugs, or in assumed ones, with its "
     "error."
 )
-BELOW_CONTACT = (
+BENEATH_CONTACT_NOTE = (
     "Beneath is the largest von Mises stress farther than a tenth of the diameter from where lugs "
     "press on the pin. It is not part of the maximum; a pin is safe only if it meets the required "
     "factor there too, with its error. Contact stress at the edges of lugs is reported by itself "
     "(contact_edges.csv)."
 )
-RESULTS = {
+OUTCOME_MEANINGS = {
     SAFE: "the pin meets its required safety factor, with the error of its maximum and over all "
     "that the study leaves open.",
     DEPENDS: "the pin meets its required safety factor as the study describes it, but not within "
@@ -59,7 +59,7 @@ RESULTS = {
     "or the factor is within its error of the required one, or the material has no yield strength.",
 }
 # What each verdict means, one sentence each.
-MEANING = {
+VERDICT_MEANINGS = {
     "converged": "the estimated error is within the requested tolerance.",
     "unconverged": "the estimated error exceeds the requested tolerance; like any other, the "
     "result is decided only if the whole error range lies on one side of the required factor.",
@@ -70,14 +70,14 @@ MEANING = {
     "rigid": "the pin is not constrained and its loads are not in equilibrium, so it was not "
     "solved.",
     "failed": "the numerical solution failed; the note gives the reason.",
-    BEYOND: "the stress exceeds the yield strength, so linear elasticity is not valid and the real "
-    "stress is different.",
+    BEYOND_YIELD: "the stress exceeds the yield strength, so linear elasticity is not valid and "
+    "the real stress is different.",
 }
 
 
 def verdict_words(verdict: str, yields: bool | None) -> str:
     """A verdict, and whether the stress is beyond yield."""
-    return f"{verdict}, {BEYOND}" if yields else verdict
+    return f"{verdict}, {BEYOND_YIELD}" if yields else verdict
 
 
 def undecided_because(pin: PinResult) -> str:
@@ -112,7 +112,7 @@ def result_words(pin: PinResult) -> str:
 
 def over_words(depends_on: Sequence[Dependence]) -> str:
     """What an outcome depends on, briefly: "joint, beneath contact"."""
-    short_names = (f"{d.over} contact" if d.over == BENEATH else d.over for d in depends_on)
+    short_names = (f"{d.over} contact" if d.over == BENEATH_CONTACT else d.over for d in depends_on)
     return ", ".join(dict.fromkeys(short_names))
 
 
@@ -121,7 +121,7 @@ def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
     (clearance above 0.0031 in, tilt guided)", "stress beneath contact (FoS 1.08, too low to a depth
     of 0.31 in)".
     """
-    below = [_beneath(d, units) for d in depends_on if d.over == BENEATH]
+    below = [_beneath(d, units) for d in depends_on if d.over == BENEATH_CONTACT]
     ranges = _ranges(depends_on, units)
     return " and ".join([*(f"stress beneath contact ({x})" for x in below), *ranges])
 
@@ -130,7 +130,11 @@ def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fail
     """The same as a clause on a pin: "but not beneath contact (..), and fails within the range of
     the joint (..)". fails: the verb.
     """
-    below = [f"not beneath contact ({_beneath(d, units)})" for d in depends_on if d.over == BENEATH]
+    below = [
+        f"not beneath contact ({_beneath(d, units)})"
+        for d in depends_on
+        if d.over == BENEATH_CONTACT
+    ]
     ranges = [f"{fails} within {x}" for x in _ranges(depends_on, units)]
     return f"but {', and '.join([*below, *ranges])}"
 
@@ -138,10 +142,13 @@ def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fail
 def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
     """All ranges in words, as one; none where there are none."""
     parts = []
-    for over in dict.fromkeys(d.over for d in depends_on if d.over != BENEATH):
+    for over in dict.fromkeys(d.over for d in depends_on if d.over != BENEATH_CONTACT):
         each = list(dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over))
-        if len(each) > MAX_NAMED:
-            each = [*each[: MAX_NAMED - 1], f"and {len(each) - MAX_NAMED + 1} others"]
+        if len(each) > MAX_NAMED_PROPERTIES:
+            each = [
+                *each[: MAX_NAMED_PROPERTIES - 1],
+                f"and {len(each) - MAX_NAMED_PROPERTIES + 1} others",
+            ]
         parts.append(f"the {over} ({', '.join(each)})")
     return [f"the range of {' and of '.join(parts)}"] if parts else []
 
@@ -155,7 +162,9 @@ def _beneath(d: Dependence, units: Units) -> str:
 
 
 def _dependence(d: Dependence, units: Units) -> str:
-    what, value = (f"beneath contact at {d.value}", "") if d.what == BENEATH else (d.what, d.value)
+    what, value = (
+        (f"beneath contact at {d.value}", "") if d.what == BENEATH_CONTACT else (d.what, d.value)
+    )
     if d.at is None:
         return f"{what} {value}".strip()
     unit = unit_name(d.dimension, units)
@@ -172,7 +181,7 @@ def headline(results: Results) -> str:
     if not worst:
         return ""
     first = min(worst.values(), key=lambda check: check.rank)
-    if first.outcome in (SAFE, BELOW):
+    if first.outcome in (SAFE, BELOW_YIELD):
         return _all_safe(results, first, len(worst))
     if first.row is None:
         return _of_margin(first)

@@ -8,9 +8,9 @@ from math import hypot
 from reports.data.decision import worst_first
 from reports.data.results import Results
 
-SAME = 0.01  # of the pin's length: places so near are one
-MOST = 4  # places
-NAMED = 2  # cases of a place
+PLACE_TOLERANCE = 0.01  # of the pin's length: places so near are one
+MAX_DRAWN_PLACES = 4  # places
+MAX_NAMED_CASES = 2  # cases of a place
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class PlaceMark:
 
     @property
     def words(self) -> str:
-        few = len(self.cases) <= NAMED
+        few = len(self.cases) <= MAX_NAMED_CASES
         return f"max ({', '.join(self.cases) if few else f'{len(self.cases)} cases'})"
 
 
@@ -37,10 +37,10 @@ def place_marks(results: Results, pin: str, length: float) -> list[PlaceMark]:
         by_section = row.places is not None and row.places.governs == "section"
         r = None if by_section else hypot(x, y)
         for k, mark in enumerate(found):
-            near = abs(mark.z - z) <= SAME * length and (mark.r is None) == (r is None)
-            if near and abs((mark.r or 0.0) - (r or 0.0)) <= SAME * length:
+            near = abs(mark.z - z) <= PLACE_TOLERANCE * length and (mark.r is None) == (r is None)
+            if near and abs((mark.r or 0.0) - (r or 0.0)) <= PLACE_TOLERANCE * length:
                 found[k] = PlaceMark(mark.z, mark.r, (*mark.cases, row.case))
                 break
         else:
             found.append(PlaceMark(z, r, (row.case,)))
-    return found[:MOST]
+    return found[:MAX_DRAWN_PLACES]

@@ -14,12 +14,12 @@ from reports.format.drawing.svg import line, text, wide
 from reports.page.drawing_places import PlaceMark
 from reports.tables.stress.singular_zones import Zone
 
-RED = "#a8211b"
-RING = 4.0  # radius
-DOT = 3.5
-LINE = 14.0  # height of a row of words
-ABOVE = 10.0  # between the section and the first row
-STRIPES = (
+ZONE_COLOUR = "#a8211b"
+RING_RADIUS = 4.0  # radius
+DOT_RADIUS = 3.5
+LABEL_ROW_HEIGHT = 14.0  # height of a row of words
+FIRST_ROW_GAP = 10.0  # between the section and the first row
+STRIPE_PATTERN = (
     '<pattern id="excluded" width="5" height="5" patternUnits="userSpaceOnUse" '
     'patternTransform="rotate(-45)"><rect width="5" height="5" fill="#fff"/>'
     '<rect width="2" height="5" fill="#a8211b"/></pattern>'
@@ -79,7 +79,7 @@ class ZoneMarks:
     @property
     def height(self) -> float:
         """Height of the labels below the section."""
-        return ABOVE + LINE * (max(self.rows) + 1) if self.marks else 0.0
+        return FIRST_ROW_GAP + LABEL_ROW_HEIGHT * (max(self.rows) + 1) if self.marks else 0.0
 
     def stripes(self, axis: float, wall: tuple[float, float, float, float]) -> list[str]:
         """What is excluded of a wall of the section: x, y, width, height of its rectangle, outside
@@ -102,11 +102,20 @@ class ZoneMarks:
         """Rings above and below the axis, leaders, labels; foot: the section's lower edge."""
         parts = []
         for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
-            y = foot + ABOVE + LINE * (row + 1) - 3.0
-            parts.append(line(mark.x, axis + mark.r + RING, place, y - 10.0, 'opacity="0.7"', RED))
+            y = foot + FIRST_ROW_GAP + LABEL_ROW_HEIGHT * (row + 1) - 3.0
+            parts.append(
+                line(
+                    mark.x,
+                    axis + mark.r + RING_RADIUS,
+                    place,
+                    y - 10.0,
+                    'opacity="0.7"',
+                    ZONE_COLOUR,
+                )
+            )
         for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
             parts += _drawn(mark, axis)
-            y = foot + ABOVE + LINE * (row + 1) - 3.0
+            y = foot + FIRST_ROW_GAP + LABEL_ROW_HEIGHT * (row + 1) - 3.0
             parts.append(text(place, y, mark.words, halo=True))
         return parts
 
@@ -115,11 +124,13 @@ def _drawn(mark: _Mark, axis: float) -> list[str]:
     ends = [axis + side * mark.r for side in (-1.0, 1.0)]
     if mark.kind == "section":
         across = 'class="place" stroke-width="2"'
-        return [line(mark.x, ends[0] - RING, mark.x, ends[1] + RING, across, RED)]
+        return [
+            line(mark.x, ends[0] - RING_RADIUS, mark.x, ends[1] + RING_RADIUS, across, ZONE_COLOUR)
+        ]
     if mark.kind == "surface":
         return [
-            f'<circle class="place" cx="{mark.x:.2f}" cy="{y:.2f}" r="{DOT:.1f}" fill="{RED}" '
-            'stroke="#fff" stroke-width="1"/>'
+            f'<circle class="place" cx="{mark.x:.2f}" cy="{y:.2f}" r="{DOT_RADIUS:.1f}" '
+            f'fill="{ZONE_COLOUR}" stroke="#fff" stroke-width="1"/>'
             for y in ends
         ]
     return [_ring(mark.x, y, mark.governs) for y in ends]
@@ -144,8 +155,8 @@ def _within(mark: _Mark, width: float) -> float:
 
 def _ring(x: float, y: float, governs: bool) -> str:
     """A ring; filled where the zone governs."""
-    fill = RED if governs else "none"
+    fill = ZONE_COLOUR if governs else "none"
     return (
-        f'<circle class="zone" cx="{x:.2f}" cy="{y:.2f}" r="{RING:.1f}" fill="{fill}" '
-        f'fill-opacity="0.6" stroke="{RED}" stroke-width="1.6"/>'
+        f'<circle class="zone" cx="{x:.2f}" cy="{y:.2f}" r="{RING_RADIUS:.1f}" fill="{fill}" '
+        f'fill-opacity="0.6" stroke="{ZONE_COLOUR}" stroke-width="1.6"/>'
     )

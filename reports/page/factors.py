@@ -8,23 +8,23 @@ from typing import Any
 from reports.data.changes import command
 from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.results import PinResult, Results
-from reports.format.words import RESULTS
+from reports.format.words import OUTCOME_MEANINGS
 from reports.tables.published import published_maxima
-from reports.tables.strength.changes import INTRODUCTION, change_notes, changes_grid
-from reports.tables.strength.limit_load import INTRODUCTION as PAST_YIELD
-from reports.tables.strength.limit_load import LEFT_OUT, limit_grid, limit_notes
+from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_grid
+from reports.tables.strength.limit_load import LEFT_OUT_NOTE, limit_grid, limit_notes
+from reports.tables.strength.limit_load import LIMIT_LOAD_NOTE as PAST_YIELD
 from reports.tables.strength.safety_factors import (
-    TEXTS,
+    TEXT_COLUMNS,
+    display_rows,
+    display_text,
     reading,
     safety_factor_row,
-    shown,
     shown_columns,
-    shown_rows,
 )
-from reports.tables.strength.sensitivities import INTRODUCTION as SENSITIVE
+from reports.tables.strength.sensitivities import SENSITIVITIES_NOTE as SENSITIVE
 from reports.tables.strength.sensitivities import sensitivities_grid, sensitivity_notes
 
-FULL = 2.0  # utilisation at the end of a bar
+FULL_BAR_UTILISATION = 2.0  # utilisation at the end of a bar
 
 
 @dataclass(frozen=True)
@@ -48,25 +48,25 @@ class FactorRow:
 
 def factor_part(results: Results) -> dict[str, Any]:
     """The table of safety factors, and how to read it."""
-    rows = shown_rows(results)
+    rows = display_rows(results)
     columns = shown_columns(rows, results)
     for name in ("verdict", "model"):  # the result says what matters, each pin's section the rest
         columns.pop(name)
     return {
         "columns": columns,
         "reading": reading(columns),
-        "numeric": [name for name in columns if name not in TEXTS],
+        "numeric": [name for name in columns if name not in TEXT_COLUMNS],
         "rows": [
             FactorRow(
                 pin.pin,
                 outcome(pin),
-                {name: shown(name, row) for name in columns},
+                {name: display_text(name, row) for name in columns},
                 _keys(pin, results),
                 _bar(pin, limit(results)),
             )
             for pin, row in zip(worst_first(results), rows, strict=True)
         ],
-        "explained": RESULTS,
+        "explained": OUTCOME_MEANINGS,
         "maxima": published_maxima(results),
     }
 
@@ -77,7 +77,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
         return None
     return {
         "grid": changes_grid(results),
-        "introduction": INTRODUCTION,
+        "introduction": REMEDIES_NOTE,
         "notes": change_notes(results),
         "command": command(results.changes, results.study, results.required_safety_factor),
     }
@@ -100,7 +100,7 @@ def limit_part(results: Results) -> dict[str, Any] | None:
         "grid": grid,
         "introduction": PAST_YIELD,
         "notes": limit_notes(results),
-        "left_out": LEFT_OUT,
+        "left_out": LEFT_OUT_NOTE,
     }
 
 
@@ -114,5 +114,5 @@ def _bar(pin: PinResult, required: float) -> Bar | None:
     used = utilisation(pin, required)
     if used is None:
         return None
-    low, high = (100.0 * min(end, FULL) / FULL for end in used)
+    low, high = (100.0 * min(end, FULL_BAR_UTILISATION) / FULL_BAR_UTILISATION for end in used)
     return Bar(low, high)

@@ -8,10 +8,10 @@ from fea.support.contact.records import JointResult, Variation
 from reports.data.results import PinResult, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
-from reports.format.ranges import END, joint_range, part_words
+from reports.format.ranges import END_DIGITS, joint_range, part_words
 
-TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
-PLANE = (
+JOINT_TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
+FOUNDATION_NOTE = (
     "By a beam on foundations; contact angles are those of plane contact at the largest load per "
     "length."
 )
@@ -35,7 +35,7 @@ def joint_part(pin: PinResult, units: Units) -> JointPart | None:
     joint = pin.joint
     if joint is None:
         return None
-    title = TITLES.get(joint.model, "Range over the joint")
+    title = JOINT_TITLES.get(joint.model, "Range over the joint")
     bands = _bands(pin, joint, units) if joint.bands else None
     assumed = joint.range is not None and joint.range.assumed
     return JointPart(title, _sentence(pin, joint, units), bands, _range(joint, units), assumed)
@@ -54,7 +54,7 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
             over += f" (beam on foundations in {lugs}, its error included)"
     said = "; ".join(filter(None, (error, over)))
     why = f"{';' if joint.range else ':'} {joint.remark}" if joint.remark else ""
-    more = f" {PLANE}" if joint.model == "foundation" else ""
+    more = f" {FOUNDATION_NOTE}" if joint.model == "foundation" else ""
     text = f"{said[:1].upper()}{said[1:]}{why}."
     return f"{text}{more}".lstrip(".: ").strip()
 
@@ -104,7 +104,7 @@ def _maximum(variation: Variation) -> list[str]:
     size = engineering(variation.max_von_mises)
     if variation.interval is None:
         return [size, engineering(variation.beneath)]
-    return [size, " to ".join(engineering(end, END) for end in variation.interval)]
+    return [size, " to ".join(engineering(end, END_DIGITS) for end in variation.interval)]
 
 
 def value_words(variation: Variation, units: Units) -> str:

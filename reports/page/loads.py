@@ -10,12 +10,12 @@ import numpy as np
 from reports.data.results import PinResult, ReactionTable, Results, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, components, engineering
-from reports.plots.loads.reactions import WITHOUT
+from reports.plots.loads.reactions import NO_PIN_NAME
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.tables.published import published_reactions
-from reports.tables.strength.landing import NOTE, landing_blocks
+from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
 
-TIMINGS = (True, True, True, False, False, False)
+TIMING_TEXT_COLUMNS = (True, True, True, False, False, False)
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def load_part(results: Results) -> dict[str, Any]:
         "published": published_reactions(results),
         "timed": any(v.time is not None for v in results.published),
         "reactions": [(table, _rows(table)) for table in results.reactions],
-        "without": WITHOUT,
+        "without": NO_PIN_NAME,
         "drops": [
             DropPart(
                 d.case,
@@ -60,7 +60,7 @@ def load_part(results: Results) -> dict[str, Any]:
         ],
         "landing": landing_blocks(results),
         "landed": list(dict.fromkeys(r.case for r in results.landing)),
-        "landing_note": NOTE,
+        "landing_note": LANDING_NOTE,
     }
 
 
@@ -122,4 +122,4 @@ def timings(results: Results) -> Grid | None:
     total = sum(p.seconds for p in results.pins)
     body.append(["all", "", "", "", "", engineering(total, 2)])
     head = ["pin", "case", "model", "meshes", "unknowns, finest mesh", "seconds"]
-    return Grid(head, body, [not text for text in TIMINGS])
+    return Grid(head, body, [not text for text in TIMING_TEXT_COLUMNS])

@@ -13,7 +13,7 @@ from reports.format.packed import deflated
 from reports.plots.spec import Plot
 
 Find = Callable[..., Plot | None]
-LEG = ("leg-motion", "leg-momenta", "leg-hinge")
+LEG_PLOT_KINDS = ("leg-motion", "leg-momenta", "leg-hinge")
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ def motion_parts(results: Results, find: Find, directory: Path) -> list[MotionPa
     find: a plot by its kind and names, None if there is none.
     """
     kinds = {m.case: list(_linkage(m.case, find)) for m in results.motion}
-    kinds |= {leg.case: list(LEG) for leg in results.legs}
+    kinds |= {leg.case: list(LEG_PLOT_KINDS) for leg in results.legs}
     parts = [
         MotionPart(
             case,

@@ -5,35 +5,35 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from reports.data.envelope import in_detail
+from reports.data.envelope import detailed_rows
 from reports.data.results import PinShape, Results
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
-from reports.format.words import BEYOND, MEANING, headline, verdict_words
+from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, headline, verdict_words
 from reports.page.drawing_places import place_marks
 from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
 from reports.page.loads import load_part, timings
 from reports.page.motion import motion_parts
 from reports.page.paper import document
-from reports.page.pin_drawing import WIDTH, draw_pin
+from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
 from reports.page.pins import pin_parts
 from reports.page.scripts import script_part
 from reports.page.strength import envelope_part, fatigue_part, margin_part
 from reports.plots.all import all_plots
 from reports.plots.spec import Plot
 from reports.plots.theme import style_sheet
-from reports.tables.strength.hand_checks import HAND_CHECKS
+from reports.tables.strength.hand_checks import HAND_CHECKS_NOTE
 from reports.tables.stress.singular_zones import circles, pin_zones
-from reports.text.method import METHOD
+from reports.text.method import METHOD_NOTE
 from reports.text.summary import summary
 
 if TYPE_CHECKING:
     from jinja2 import Template
 
-ON_PAPER = 420.0  # width of a pin's drawing, of half a page
-AT_ONCE = 20  # pins; the parts of pages of more are made when they are opened
+PRINTED_DRAWING_WIDTH = 420.0  # width of a pin's drawing, of half a page
+MAX_PINS_AT_ONCE = 20  # pins; the parts of pages of more are made when they are opened
 
 
 def write_page(results: Results, directory: Path) -> Path:
@@ -47,9 +47,9 @@ def render(results: Results, directory: Path) -> str:
     """The page as text; directory: where it will be, with the animations."""
     from markupsafe import Markup
 
-    shown = in_detail(results)
+    shown = detailed_rows(results)
     drawings: dict[str, str] = {s.pin: Markup(_drawing(s, shown)) for s in shown.shapes}
-    printed = {s.pin: _drawing(s, shown, ON_PAPER) for s in shown.shapes}
+    printed = {s.pin: _drawing(s, shown, PRINTED_DRAWING_WIDTH) for s in shown.shapes}
     pins, plots = pin_parts(shown, drawings), all_plots(shown)
 
     def plot(kind: str, *names: str) -> Plot | None:
@@ -67,7 +67,7 @@ def render(results: Results, directory: Path) -> str:
         limits=limit_part(shown),
         fatigue=fatigue_part(shown),
         pins=pins,
-        deferred=len(pins) > AT_ONCE,
+        deferred=len(pins) > MAX_PINS_AT_ONCE,
         anchors={part.pin: part.anchor for part in pins},
         plot=plot,
         motion=motion_parts(shown, plot, directory),
@@ -90,17 +90,17 @@ def _template() -> Template:
         verdict=verdict_words,
     )
     templates.globals.update(
-        beyond=BEYOND,
-        meaning=MEANING,
-        hand_checks=HAND_CHECKS,
-        method=METHOD,
+        beyond=BEYOND_YIELD,
+        meaning=VERDICT_MEANINGS,
+        hand_checks=HAND_CHECKS_NOTE,
+        method=METHOD_NOTE,
         drive_names=drive_names,
         shades=style_sheet(),
     )
     return templates.get_template("report.html.j2")
 
 
-def _drawing(shape: PinShape, results: Results, width: float = WIDTH) -> str:
+def _drawing(shape: PinShape, results: Results, width: float = DRAWING_WIDTH) -> str:
     zones = pin_zones(results, shape.pin).values()
     every = circles(zone for case in zones for zone in case)
     places = place_marks(results, shape.pin, sum(s[0] for s in shape.segments))

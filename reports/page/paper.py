@@ -10,7 +10,7 @@ from typing import Any
 
 from reports.data.changes import command
 from reports.data.decision import outcome, worst_first
-from reports.data.envelope import EnvelopeCell, in_detail
+from reports.data.envelope import EnvelopeCell, detailed_rows
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
 from reports.format.grid import Grid
@@ -18,26 +18,32 @@ from reports.format.words import headline
 from reports.page.joint import joint_part
 from reports.page.places import places_part
 from reports.tables.published import published_maxima
-from reports.tables.strength.changes import INTRODUCTION, change_notes, changes_grid
-from reports.tables.strength.envelope import READING, cell_text, matrix
+from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_grid
+from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, matrix
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
 from reports.tables.strength.margins import governing_grid, not_made_words
-from reports.tables.strength.safety_factors import TEXTS, reading, shown, shown_columns, shown_rows
-from reports.tables.strength.sensitivities import INTRODUCTION as SENSITIVE
+from reports.tables.strength.safety_factors import (
+    TEXT_COLUMNS,
+    display_rows,
+    display_text,
+    reading,
+    shown_columns,
+)
+from reports.tables.strength.sensitivities import SENSITIVITIES_NOTE as SENSITIVE
 from reports.tables.strength.sensitivities import sensitivities_grid
 from reports.text.loads_summary import load_parts
-from reports.text.method import METHOD
+from reports.text.method import METHOD_NOTE
 from reports.text.pin_sentence import drawing_caption, pin_sentence
 from reports.text.summary import summary
 
 Content = dict[str, Any]
-ABREAST = 12  # pins of the matrix of cases
-MOST_DIMENSIONS = 5  # of a pin's sensitivities
+PINS_PER_MATRIX = 12  # pins of the matrix of cases
+MAX_DIMENSIONS = 5  # of a pin's sensitivities
 
 
 def document(results: Results, drawings: dict[str, str]) -> Content:
     """The content of report.typ. drawings: of the pins, as SVG."""
-    everything, results = results, in_detail(results)
+    everything, results = results, detailed_rows(results)
     maxima = published_maxima(results)
     return {
         "title": results.title,
@@ -49,7 +55,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "summary": summary(everything),
         "units": asdict(results.units),
         "factors": _factors(results),
-        "reading": reading(shown_columns(shown_rows(results), results)),
+        "reading": reading(shown_columns(display_rows(results), results)),
         "envelope": _envelope(everything),
         "margins": _margins(results),
         "changes": _changes(results),
@@ -64,19 +70,19 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         ],
         "provenance": asdict(_provenance(results.provenance)) if results.provenance else None,
         "assumptions": results.assumptions,
-        "method": METHOD,
+        "method": METHOD_NOTE,
     }
 
 
 def _factors(results: Results) -> Content | None:
     if not results.pins:
         return None
-    rows = shown_rows(results)
+    rows = display_rows(results)
     columns = shown_columns(rows, results)
     for name in ("verdict", "model"):
         columns.pop(name)
-    body = [[shown(name, row) for name in columns] for row in rows]
-    grid = Grid(list(columns.values()), body, [name not in TEXTS for name in columns])
+    body = [[display_text(name, row) for name in columns] for row in rows]
+    grid = Grid(list(columns.values()), body, [name not in TEXT_COLUMNS for name in columns])
     return asdict(grid) | {"outcomes": [outcome(pin) for pin in worst_first(results)]}
 
 
@@ -86,11 +92,11 @@ def _envelope(results: Results) -> Content | None:
     if found is None:
         return None
     blocks = []
-    for first in range(0, len(found.pins), ABREAST):
-        part = slice(first, first + ABREAST)
+    for first in range(0, len(found.pins), PINS_PER_MATRIX):
+        part = slice(first, first + PINS_PER_MATRIX)
         rows = [[case, *map(_used, cells[part])] for case, cells in found.rows]
         blocks.append({"head": ["case", *found.pins[part]], "body": rows})
-    return {"reading": READING, "note": found.note, "blocks": blocks}
+    return {"reading": ENVELOPE_NOTE, "note": found.note, "blocks": blocks}
 
 
 def _used(cell: EnvelopeCell | None) -> Content | None:
@@ -115,7 +121,7 @@ def _fatigue(results: Results) -> Content | None:
 def _changes(results: Results) -> Content | None:
     if not results.changes:
         return None
-    notes = [INTRODUCTION, *change_notes(results)]
+    notes = [REMEDIES_NOTE, *change_notes(results)]
     size = command(results.changes, results.study, results.required_safety_factor)
     return {"grid": asdict(changes_grid(results)), "notes": notes, "command": size or None}
 
@@ -126,7 +132,7 @@ def _sensitivities(results: Results) -> Content | None:
     for pin in worst_first(results):
         worst.setdefault(pin.pin, pin.case)
     governing = tuple(x for x in results.sensitivities if worst.get(x.pin) == x.case)
-    grid = sensitivities_grid(replace(results, sensitivities=governing), MOST_DIMENSIONS)
+    grid = sensitivities_grid(replace(results, sensitivities=governing), MAX_DIMENSIONS)
     if grid is None:
         return None
     return {"grid": asdict(grid), "introduction": f"{SENSITIVE} Each pin is in its worst case."}

@@ -8,16 +8,16 @@ from html import escape
 from reports.data.results import PinShape, Units
 from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
-from reports.format.drawing.svg import INK, line, text, wide
+from reports.format.drawing.svg import INK_COLOUR, line, text, wide
 from reports.format.numbers import short
 from reports.page.drawing_places import PlaceMark
-from reports.page.drawing_zones import STRIPES, ZoneMarks
+from reports.page.drawing_zones import STRIPE_PATTERN, ZoneMarks
 from reports.tables.stress.singular_zones import Zone
 
-WIDTH, MARGIN, TALLEST = 760.0, 45.0, 0.2  # the last in widths
-SOLID = 3.0  # what the box of a local solid stands off the pin
-LINE = 14.0  # height of the text
-FILLS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
+DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 760.0, 45.0, 0.2  # the last in widths
+LOCAL_SOLID_OFFSET = 3.0  # what the box of a local solid stands off the pin
+TEXT_LINE_HEIGHT = 14.0  # height of the text
+FILL_COLOURS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def draw_pin(
     shape: PinShape,
     units: Units,
     zones: list[Zone] | None = None,
-    width: float = WIDTH,
+    width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
 ) -> str:
     """The drawing as an <svg> element; zones: one per circle; places: of the rows' stress. All its
@@ -61,20 +61,20 @@ def draw_pin(
     tops = rows([p.middle for p in pieces], [_text_width(p) for p in pieces])
     feet = rows([p.middle for p in pieces], [wide(p.length) for p in pieces])
     radius = max(p.radius for p in pieces)
-    axis = 8.0 + 2.0 * LINE * (max(tops) + 1) + 12.0 + radius
+    axis = 8.0 + 2.0 * TEXT_LINE_HEIGHT * (max(tops) + 1) + 12.0 + radius
     left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
     scale = (right - left) / sum(s[0] for s in shape.segments)
     marks = ZoneMarks(zones or [], places or [], (left, scale, radius), width)
     chain = axis + radius + marks.height + 24.0
-    overall = chain + LINE * (max(feet) + 1) + 22.0
-    height = overall + 12.0 + LINE * len(shape.cuts)
+    overall = chain + TEXT_LINE_HEIGHT * (max(feet) + 1) + 22.0
+    height = overall + 12.0 + TEXT_LINE_HEIGHT * len(shape.cuts)
     parts = [
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
         f"<title>{escape(f'Profile of pin {shape.pin}')}</title>",
         '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
         'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
-        f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPES}</defs>',
+        f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}</defs>',
     ]
     parts += [_section(p, axis) for p in pieces]
     parts += [
@@ -87,14 +87,15 @@ def draw_pin(
     parts += [_label(p, tops[i]) for i, p in enumerate(pieces)]
     parts += [_dimension(p.x, p.x + p.width, chain, chain - 24.0) for p in pieces]
     parts += [
-        text(p.middle, chain + LINE * (feet[i] + 1) - 3.0, p.length) for i, p in enumerate(pieces)
+        text(p.middle, chain + TEXT_LINE_HEIGHT * (feet[i] + 1) - 3.0, p.length)
+        for i, p in enumerate(pieces)
     ]
     parts.append(_dimension(left, right, overall, chain))
     total = f"{short(sum(s[0] for s in shape.segments))} {units.length}"
     parts.append(text(0.5 * (left + right), overall + 3.0, total))
     parts += marks.draw(axis, axis + radius)
     parts += [
-        text(0.5 * width, overall + 8.0 + LINE * i, words(cut))
+        text(0.5 * width, overall + 8.0 + TEXT_LINE_HEIGHT * i, words(cut))
         for i, cut in enumerate(shape.cuts, 1)
     ]
     return "".join(parts) + "</svg>"
@@ -106,7 +107,7 @@ def _pieces(shape: PinShape, across: float) -> list[_Piece]:
     widest = max(widths, default=0.0)
     if length <= 0.0 or widest <= 0.0:
         return []
-    scale = min((across - 2 * MARGIN) / length, TALLEST * across / widest)
+    scale = min((across - 2 * DRAWING_MARGIN) / length, MAX_HEIGHT_RATIO * across / widest)
     x = 0.5 * (across - scale * length)
     pieces = []
     near_ends = [(diameter, bore) for _, diameter, bore, _, _ in shape.segments]
@@ -129,8 +130,8 @@ def _from_to(ends: tuple[float, float]) -> str:
 
 def _section(piece: _Piece, axis: float) -> str:
     """The section: the walls above and below the axis."""
-    fill = FILLS.get(piece.kind, FILLS["plain"])
-    paint = f'fill="{fill}" stroke="{INK}" stroke-width="1"/>'
+    fill = FILL_COLOURS.get(piece.kind, FILL_COLOURS["plain"])
+    paint = f'fill="{fill}" stroke="{INK_COLOUR}" stroke-width="1"/>'
     if piece.radii[0] != piece.radii[1] or piece.bores[0] != piece.bores[1]:
         return "".join(f'<polygon points="{_cone(piece, axis, s)}" {paint}' for s in (-1.0, 1.0))
     rectangles = [
@@ -157,7 +158,9 @@ def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]
 
 def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:
     """The boundary of a local solid."""
-    radius = max(p.radius for p in pieces if p.x < right and left < p.x + p.width) + SOLID
+    radius = (
+        max(p.radius for p in pieces if p.x < right and left < p.x + p.width) + LOCAL_SOLID_OFFSET
+    )
     return (
         f'<rect class="solid" x="{left:.2f}" y="{axis - radius:.2f}" width="{right - left:.2f}" '
         f'height="{2.0 * radius:.2f}" fill="none" stroke="#1a7f37" stroke-width="1.5" '
@@ -166,23 +169,25 @@ def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:
 
 
 def _leader(piece: _Piece, axis: float, row: int) -> str:
-    foot = 8.0 + 2.0 * LINE * (row + 1)
+    foot = 8.0 + 2.0 * TEXT_LINE_HEIGHT * (row + 1)
     return line(piece.middle, foot, piece.middle, axis - piece.radius, 'opacity="0.5"')
 
 
 def _label(piece: _Piece, row: int) -> str:
-    y = 8.0 + 2.0 * LINE * row + 11.0
+    y = 8.0 + 2.0 * TEXT_LINE_HEIGHT * row + 11.0
     return text(piece.middle, y, piece.label, halo=True) + text(
-        piece.middle, y + LINE - 1.0, piece.size, halo=True
+        piece.middle, y + TEXT_LINE_HEIGHT - 1.0, piece.size, halo=True
     )
 
 
 def _dimension(left: float, right: float, y: float, from_y: float) -> str:
     """A dimension line with ticks and extension lines."""
     ends = (left, right)
-    ticks = [line(x - 3, y - LINE + 5, x + 3, y - LINE - 1) for x in ends]
-    leads = [line(x, from_y + 2, x, y - LINE + 5, 'opacity="0.4"') for x in ends]
-    return line(left, y - LINE + 2, right, y - LINE + 2) + "".join(ticks + leads)
+    ticks = [line(x - 3, y - TEXT_LINE_HEIGHT + 5, x + 3, y - TEXT_LINE_HEIGHT - 1) for x in ends]
+    leads = [line(x, from_y + 2, x, y - TEXT_LINE_HEIGHT + 5, 'opacity="0.4"') for x in ends]
+    return line(left, y - TEXT_LINE_HEIGHT + 2, right, y - TEXT_LINE_HEIGHT + 2) + "".join(
+        ticks + leads
+    )
 
 
 def _text_width(piece: _Piece) -> float:

@@ -18,7 +18,7 @@ from reports.tables.strength.margins import margins_grid
 from reports.tables.stress.singular_zones import Zone, pin_zones, zone_table
 from reports.text.pin_sentence import drawing_caption, pin_sentence
 
-ZONE_NUMBERS = ("zone", "exponent")
+NUMERIC_ZONE_COLUMNS = ("zone", "exponent")
 
 
 @dataclass(frozen=True)
@@ -97,4 +97,4 @@ def _zones(zones: list[Zone], units: Units) -> Grid | None:
     if not zones:
         return None
     head, body = zone_table(zones, units.length, units.stress)
-    return Grid(head, body, [name in ZONE_NUMBERS or "[" in name for name in head])
+    return Grid(head, body, [name in NUMERIC_ZONE_COLUMNS or "[" in name for name in head])

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.core.places import BENEATH, ContactEdge, ContactPlace, SectionPlace
+from fea.core.places import BENEATH_DISTANCE, ContactEdge, ContactPlace, SectionPlace
 from reports.data.results import PinResult, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_text
 from reports.tables.stress.places import factor_at
 
-LEAST = 1e-6  # of the place of the largest stress: no distance is smaller
-INTRODUCTION = (
+MIN_RELATIVE_DISTANCE = 1e-6  # of the place of the largest stress: no distance is smaller
+PLACES_NOTE = (
     "The row's stress is the larger of surface and section. Beneath contact: the largest von Mises "
-    f"stress of the pin, inside or on its surface, farther than {BENEATH:g} diameters from where "
+    f"stress of the pin, inside or on its surface, farther than {BENEATH_DISTANCE:g} diameters "
+    f"from where "
     "lugs press on it; the pin is safe only if that meets the required factor, too."
 )
-EDGES = (
+CONTACT_EDGES_NOTE = (
     "At the distance d from the edge of a lug, pressure rises as K / d^exponent; the distance at "
     "which it falls to yield is given. Peak pressure, and von Mises stress of the pin under it by "
     "contact alone, follow from K and the radius of the edge; a sharp edge has no peak. Contact "
@@ -35,7 +36,7 @@ class PlacesPart:
     introduction: str
     notes: tuple[str, ...]
     edges: Grid | None
-    on_edges: str = EDGES
+    on_edges: str = CONTACT_EDGES_NOTE
 
 
 def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
@@ -46,12 +47,14 @@ def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
     section, contact = places.section, places.contact
     notes = (_acting(section, units), _reach(pin, contact, units))
     size = max(abs(x) for x in places.surface.location)
-    first, _, _ = INTRODUCTION.partition(". ")
+    first, _, _ = PLACES_NOTE.partition(". ")
     return PlacesPart(
         _grid(pin, units),
-        INTRODUCTION if contact else f"{first}.",
+        PLACES_NOTE if contact else f"{first}.",
         tuple(note for note in notes if note),
-        _edges(contact.edges, units, LEAST * size) if contact and contact.edges else None,
+        _edges(contact.edges, units, MIN_RELATIVE_DISTANCE * size)
+        if contact and contact.edges
+        else None,
     )
 
 

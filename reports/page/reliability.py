@@ -13,12 +13,14 @@ from reports.plots.theme import on_paper
 from reports.tables.reliability import drivers_grid, risks_grid, ways_grid
 from reports.text.reliability import remarks, sentence, solved, ways_title
 
-MOST = 12  # plots
+MAX_DISTRIBUTION_PLOTS = 12  # plots
 
 
 def write_reliability_page(found: Reliability, path: Path) -> None:
     """Write the page."""
-    plots = (distribution_plot(found, risk) for risk in _worst_first(found)[:MOST])
+    plots = (
+        distribution_plot(found, risk) for risk in _worst_first(found)[:MAX_DISTRIBUTION_PLOTS]
+    )
     laws = Grid(["number", "law"], [list(p) for p in found.parameters], [False, False])
     text = (
         environment()

@@ -15,23 +15,27 @@ from pinbase.errors import Damaged
 from reports.folder.damaged import JsonPart, inflated, strict_json, validated
 from reports.format.packed import deflated
 from reports.format.script_json import script_json
-from reports.format.template import VENDOR
+from reports.format.template import VENDOR_FOLDER
 from reports.plots.self_contained import require_no_address, require_self_contained
 from reports.plots.spec import Plot
 from reports.plots.theme import on_page
 
-LIBRARIES = ("vega.min.js", "vega-lite.min.js", "vega-interpreter.js")
-PAGE = "report.html"
-LARGEST = 512 * MB  # of what a page has packed
-PLOT_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_.~%-]*")  # as reports.format.file_names makes them
-MAX_NAME = 2000
-PACKED = r'<script type="text/plain" id="{}">([\w+/=]+)</script>'
+SCRIPT_FILES = ("vega.min.js", "vega-lite.min.js", "vega-interpreter.js")
+REPORT_PAGE = "report.html"
+MAX_UNPACKED_SIZE = 512 * MB  # of what a page has packed
+PLOT_NAME_PATTERN = re.compile(
+    r"[A-Za-z][A-Za-z0-9_.~%-]*"
+)  # as reports.format.file_names makes them
+MAX_PLOT_NAME_LENGTH = 2000
+PACKED_SCRIPT_PATTERN = r'<script type="text/plain" id="{}">([\w+/=]+)</script>'
 
 
 def script_part(plots: Mapping[str, Plot], document: Mapping[str, Any]) -> dict[str, str]:
     """Compressed texts, and the configuration of the plots as JSON. document: of the PDF."""
     return {
-        "libraries": deflated(b"\n".join((VENDOR / name).read_bytes() for name in LIBRARIES)),
+        "libraries": deflated(
+            b"\n".join((VENDOR_FOLDER / name).read_bytes() for name in SCRIPT_FILES)
+        ),
         "plots": _packed({name: [plot.caption, plot.spec] for name, plot in plots.items()}),
         "paper": _packed(document),
         "theme": script_json(on_page()),
@@ -45,12 +49,12 @@ def plots_of(page: str) -> list[Plot]:
     content = _read(page, "plots")
     if content is None:
         return []
-    parts = validated(_Plots, content, f"{PAGE}, plots").root
+    parts = validated(_Plots, content, f"{REPORT_PAGE}, plots").root
     plots = [Plot(name, caption, spec) for name, (caption, spec) in parts.items()]
     for plot in plots:
-        if len(plot.name) > MAX_NAME or not PLOT_NAME.fullmatch(plot.name):
-            raise Damaged(f"{PAGE} is damaged: {plot.name[:80]!r} is no name of a plot")
-        require_no_address(plot.spec, f"{PAGE} is damaged: its plot {plot.name}")
+        if len(plot.name) > MAX_PLOT_NAME_LENGTH or not PLOT_NAME_PATTERN.fullmatch(plot.name):
+            raise Damaged(f"{REPORT_PAGE} is damaged: {plot.name[:80]!r} is no name of a plot")
+        require_no_address(plot.spec, f"{REPORT_PAGE} is damaged: its plot {plot.name}")
     return plots
 
 
@@ -59,8 +63,8 @@ def document_of(page: str) -> dict[str, Any] | None:
     content: dict[str, Any] | None = _read(page, "paper")
     if content is None:
         return None
-    for k, pin in enumerate(validated(_Paper, content, f"{PAGE}, paper").pins):
-        require_self_contained(pin.drawing, f"{PAGE} is damaged: its drawing of pin {k + 1}")
+    for k, pin in enumerate(validated(_Paper, content, f"{REPORT_PAGE}, paper").pins):
+        require_self_contained(pin.drawing, f"{REPORT_PAGE} is damaged: its drawing of pin {k + 1}")
     return content
 
 
@@ -69,11 +73,11 @@ def _packed(content: Mapping[str, Any]) -> str:
 
 
 def _read(page: str, name: str) -> Any:
-    found = re.search(PACKED.format(name), page)
+    found = re.search(PACKED_SCRIPT_PATTERN.format(name), page)
     if found is None:
         return None
-    where = f"{PAGE}, {name}"
-    return strict_json(inflated(found[1], LARGEST, where), where)
+    where = f"{REPORT_PAGE}, {name}"
+    return strict_json(inflated(found[1], MAX_UNPACKED_SIZE, where), where)
 
 
 def _day(text: str) -> str:

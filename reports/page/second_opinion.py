@@ -14,7 +14,11 @@ from reports.format.numbers import engineering
 from reports.text.chart_summary import percent
 from reports.text.second_opinion import outcome_of, sentences
 
-PARTS = ("first quarter", 0.0, 0.25), ("middle half", 0.25, 0.75), ("last quarter", 0.75, 1.0)
+LENGTH_PARTS = (
+    ("first quarter", 0.0, 0.25),
+    ("middle half", 0.25, 0.75),
+    ("last quarter", 0.75, 1.0),
+)
 
 
 @dataclass(frozen=True)
@@ -39,7 +43,7 @@ def _loads(bands: tuple[BandOpinion, ...], units: Units) -> Grid:
     body = []
     for band in bands:
         elsewhere = [percent(band.elsewhere), "", ""]
-        for (name, low, high), part in zip(PARTS, elsewhere, strict=True):
+        for (name, low, high), part in zip(LENGTH_PARTS, elsewhere, strict=True):
             both = (_mean(band.ends, load, low, high) for load in (band.ours, band.theirs))
             body.append([band.name, name, *map(engineering, both), part])
     unit = f"[{units.force}/{units.length}]"

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from reports.data.results import Results
-from reports.tables.strength.envelope import READING, cell_text, heat, matrix
+from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, heat, matrix
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence, worst_points
 from reports.tables.strength.margins import (
-    READING_ARMS,
-    READING_MARGINS,
+    BENDING_ARMS_NOTE,
+    MARGINS_NOTE,
     arms_grid,
     governing_grid,
     not_made_words,
@@ -23,10 +23,10 @@ def margin_part(results: Results) -> dict[str, Any] | None:
         return None
     return {
         "grid": grid,
-        "reading": READING_MARGINS,
+        "reading": MARGINS_NOTE,
         "not_made": not_made_words(results),
         "arms": arms_grid(results),
-        "arms_reading": READING_ARMS,
+        "arms_reading": BENDING_ARMS_NOTE,
     }
 
 
@@ -36,7 +36,7 @@ def envelope_part(results: Results) -> dict[str, Any] | None:
     return (
         None
         if found is None
-        else {"matrix": found, "reading": READING, "heat": heat, "text": cell_text}
+        else {"matrix": found, "reading": ENVELOPE_NOTE, "heat": heat, "text": cell_text}
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from reports.data.results import Floats, PinResult, PinShape, Results
-from reports.data.surface import SECTORS, HalfSection, LoadCourse, Surface, SurfaceCase
+from reports.data.surface import SURFACE_SECTORS, HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.drawing.camera import View
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
@@ -19,12 +19,18 @@ from reports.format.ranges import error_words, factor_range
 from reports.format.script_json import script_json
 from reports.format.words import verdict_words
 
-WHOLE = 32767  # loads are integers up to this, scaled by the largest
-FINE = 4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
-COARSE = 127  # the same of displacements, which are shown by nothing but the shape
-PARTS = 4095  # stresses on a section are integers up to this, at the maximum
-MOSTLY = 90.0  # per cent of cells under pressure whose colours differ
-BENEATH = 0.999  # of the maximum; if the whole surface is below it, the maximum is inside
+MAX_LOAD_INTEGER = 32767  # loads are integers up to this, scaled by the largest
+MAX_STRESS_INTEGER = (
+    4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
+)
+MAX_DISPLACEMENT_INTEGER = (
+    127  # the same of displacements, which are shown by nothing but the shape
+)
+MAX_SECTION_INTEGER = 4095  # stresses on a section are integers up to this, at the maximum
+PRESSURE_PERCENTILE = 90.0  # per cent of cells under pressure whose colours differ
+SURFACE_MAXIMUM_SHARE = (
+    0.999  # of the maximum; if the whole surface is below it, the maximum is inside
+)
 
 
 @dataclass(frozen=True)
@@ -99,15 +105,15 @@ def _surface(surface: Surface) -> dict[str, Any]:
     each = np.abs(stress).max(axis=(1, 2), initial=0.0)
     longest = np.abs(moved).max(axis=(0, 1), initial=0.0)
     return {
-        "sectors": SECTORS if surface.revolved else 1,
+        "sectors": SURFACE_SECTORS if surface.revolved else 1,
         "points": packed(surface.points, "<f4"),
         "triangles": None if surface.revolved else packed(surface.triangles, "<u4"),
         "n": surface.n.tolist(),
         "even": [int(e) for e in surface.even],
-        "stress": packed(np.rint(_parts(stress, each[:, None, None], FINE)).T, "<i2"),
-        "stress_scale": packed(each / FINE, "<f4"),
-        "moved": packed(np.rint(_parts(moved, longest, COARSE)).T, "<i1"),
-        "moved_scale": packed(longest / COARSE, "<f4"),
+        "stress": packed(np.rint(_parts(stress, each[:, None, None], MAX_STRESS_INTEGER)).T, "<i2"),
+        "stress_scale": packed(each / MAX_STRESS_INTEGER, "<f4"),
+        "moved": packed(np.rint(_parts(moved, longest, MAX_DISPLACEMENT_INTEGER)).T, "<i1"),
+        "moved_scale": packed(longest / MAX_DISPLACEMENT_INTEGER, "<f4"),
     }
 
 
@@ -123,7 +129,7 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
     # The solid model's maximum is a mean over directions of the loads.
     error = sum(pin.error_parts.values())
     most = float(case.maxima[case.instant]) if surface.revolved else (pin.max_von_mises or 0.0)
-    least = BENEATH * most - (0.0 if surface.revolved else error)
+    least = SURFACE_MAXIMUM_SHARE * most - (0.0 if surface.revolved else error)
     location = case.location or pin.location
     amounts = case.amounts / _largest(surface)[:, None]
     scale = np.abs(amounts).max(axis=(0, 2), initial=0.0)
@@ -144,8 +150,8 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
         "loads": [_load(load) for load in case.loads],
         "section": None if case.section is None else _section(case.section),
         "turn": _turn(_box(surface), location),
-        "amounts": packed(np.rint(_parts(amounts, scale[:, None], WHOLE)).T, "<i2"),
-        "amounts_scale": (scale / WHOLE).tolist(),
+        "amounts": packed(np.rint(_parts(amounts, scale[:, None], MAX_LOAD_INTEGER)).T, "<i2"),
+        "amounts_scale": (scale / MAX_LOAD_INTEGER).tolist(),
     }
 
 
@@ -174,7 +180,7 @@ def _short(maxima: Floats, instant: int) -> list[float]:
 
 
 def _load(load: LoadCourse) -> dict[str, Any]:
-    scale = float(np.abs(load.forces).max(initial=0.0)) / WHOLE or 1.0
+    scale = float(np.abs(load.forces).max(initial=0.0)) / MAX_LOAD_INTEGER or 1.0
     return {
         "name": load.connection,
         "z": load.z,
@@ -193,8 +199,10 @@ def _section(section: HalfSection) -> dict[str, Any]:
         "inner": packed(section.inner, "<f4"),
         "outer": packed(section.outer, "<f4"),
         "part": packed(section.part, "<f4"),
-        "values": packed(np.rint(_parts(section.von_mises, np.asarray(largest), PARTS)), "<u2"),
-        "scale": largest / PARTS,
+        "values": packed(
+            np.rint(_parts(section.von_mises, np.asarray(largest), MAX_SECTION_INTEGER)), "<u2"
+        ),
+        "scale": largest / MAX_SECTION_INTEGER,
     }
 
 
@@ -215,7 +223,7 @@ def _top(pressure: Floats) -> float:
     how small they are.
     """
     some = pressure[pressure > 0.0]
-    return float(np.percentile(some, MOSTLY)) if len(some) else 0.0
+    return float(np.percentile(some, PRESSURE_PERCENTILE)) if len(some) else 0.0
 
 
 def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:

@@ -11,17 +11,21 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from pinbase.errors import Damaged
-from reports.format.template import TEMPLATES
+from reports.format.template import TEMPLATE_FOLDER
 from reports.plots.draw import svg
 from reports.plots.spec import Plot, Spec
 from reports.plots.theme import on_paper
 
 Content = dict[str, Any]  # of reports.page.paper
 
-UNDATED = datetime(2000, 1, 1, tzinfo=UTC)  # the same results, the same bytes
-FONT = "Libertinus Serif"  # comes with typst
-WIDTH, HIGHER, FLAT = 330, 120, 95  # of plots, and of the views in them that are higher
-FAMILY = re.compile(r'font-family="[^"]*"')
+FIXED_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # the same results, the same bytes
+FONT_NAME = "Libertinus Serif"  # comes with typst
+PLOT_WIDTH, MAX_PLOT_HEIGHT, REDUCED_PLOT_HEIGHT = (
+    330,
+    120,
+    95,
+)  # of plots, and of the views in them that are higher
+FONT_FAMILY_PATTERN = re.compile(r'font-family="[^"]*"')
 
 
 def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
@@ -31,19 +35,21 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
     """
     import typst
 
-    files = {"main": (TEMPLATES / "report.typ").read_bytes()}
+    files = {"main": (TEMPLATE_FOLDER / "report.typ").read_bytes()}
     captions = {}
     for name, plot in plots.items():
         captions[name] = plot.caption
         files[f"{name}.svg"] = _drawn(plot.spec).encode()
     pins = []
     for number, pin in enumerate(content["pins"]):
-        files[f"pin{number}.svg"] = FAMILY.sub(f'font-family="{FONT}"', pin["drawing"]).encode()
+        files[f"pin{number}.svg"] = FONT_FAMILY_PATTERN.sub(
+            f'font-family="{FONT_NAME}"', pin["drawing"]
+        ).encode()
         pins.append({**pin, "drawing": f"pin{number}.svg"})
     data = {**content, "pins": pins, "captions": captions}
     files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
     day = content["block"]["date"]
-    made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else UNDATED
+    made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else FIXED_DATE
     try:
         return _compiled(files, made)
     except typst.TypstError:
@@ -78,9 +84,9 @@ def _without_glyph(text: str) -> list[str]:
 def _has_glyph(character: str) -> bool:
     import typst
 
-    page = f'#set document(title: "x")\n#set text(font: "{FONT}", lang: "en")\n'
+    page = f'#set document(title: "x")\n#set text(font: "{FONT_NAME}", lang: "en")\n'
     try:
-        _compiled({"main": f"{page}{character} *{character}*".encode()}, UNDATED)
+        _compiled({"main": f"{page}{character} *{character}*".encode()}, FIXED_DATE)
     except typst.TypstError:
         return False
     return True
@@ -94,14 +100,16 @@ def shown_plots(content: Content) -> list[str]:
 
 def _drawn(spec: Spec) -> str:
     """A plot for half the width of a page; its caption is the title."""
-    config = on_paper(FONT)
-    config["view"] |= {"continuousWidth": WIDTH}
+    config = on_paper(FONT_NAME)
+    config["view"] |= {"continuousWidth": PLOT_WIDTH}
     small = _flatter({key: value for key, value in spec.items() if key != "title"})
     return svg({**small, "config": config})
 
 
 def _flatter(spec: Spec) -> Spec:
-    flat = {**spec, "height": FLAT} if spec.get("height", 0) > HIGHER else spec
+    flat = (
+        {**spec, "height": REDUCED_PLOT_HEIGHT} if spec.get("height", 0) > MAX_PLOT_HEIGHT else spec
+    )
     if "vconcat" in spec:
         flat = {**flat, "vconcat": [_flatter(part) for part in spec["vconcat"]]}
     return flat

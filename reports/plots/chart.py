@@ -5,13 +5,16 @@ from __future__ import annotations
 import textwrap
 from math import ceil, floor, log10
 
-from reports.data.chart import LIMIT_LOADS, NAME, Chart, ChartPoint
+from reports.data.chart import CHART_NAME, LIMIT_LOAD_MODELS, Chart, ChartPoint
 from reports.plots.spec import Plot, Spec, clipped, headed, level, rows
 from reports.text.chart_summary import curve_name, error, failures, percent, reference_line
 
-LINE = 110  # letters of a line under the title
-ROOM = 2.5  # factor beyond the outermost points
-ACROSS = {"seconds": "time, meshing included [s]", "memory": "peak memory above bare process [MB]"}
+SUBTITLE_LINE_LENGTH = 110  # letters of a line under the title
+AXIS_ROOM_FACTOR = 2.5  # factor beyond the outermost points
+X_AXIS_HEADINGS = {
+    "seconds": "time, meshing included [s]",
+    "memory": "peak memory above bare process [MB]",
+}
 
 
 def chart_plot(chart: Chart) -> Plot:
@@ -23,24 +26,27 @@ def chart_plot(chart: Chart) -> Plot:
         for point in curve
     ]
     errors = [row["error"] for row in data]
-    limits = [min(*errors, floor) / ROOM, max(*errors, chart.tolerance) * ROOM]
+    limits = [
+        min(*errors, floor) / AXIS_ROOM_FACTOR,
+        max(*errors, chart.tolerance) * AXIS_ROOM_FACTOR,
+    ]
     title = f"pin {clipped(chart.pin)}, {clipped(chart.case, 40)}: error against cost"
     names = list(dict.fromkeys(row["of"] for row in data))
     spec = {
         "title": headed(title, *_foot(chart)),
-        "usermeta": {"columns": list(ACROSS.values())},
+        "usermeta": {"columns": list(X_AXIS_HEADINGS.values())},
         "data": rows(data),
         "hconcat": [_panel(across, heading, limits, chart, names)
-                    for across, heading in ACROSS.items()],
+                    for across, heading in X_AXIS_HEADINGS.items()],
     }  # fmt: skip
-    return Plot(NAME, title, spec)
+    return Plot(CHART_NAME, title, spec)
 
 
 def _lines(chart: Chart) -> dict[tuple[str, str], list[ChartPoint]]:
     """Its curves; the meshes of a limit load are one."""
     out: dict[tuple[str, str], list[ChartPoint]] = {}
     for (model, element), curve in chart.curves.items():
-        out.setdefault((model, "" if model in LIMIT_LOADS else element), []).extend(curve)
+        out.setdefault((model, "" if model in LIMIT_LOAD_MODELS else element), []).extend(curve)
     return out
 
 
@@ -109,4 +115,4 @@ def _foot(chart: Chart) -> list[str]:
         *([chart.note] if chart.note else []),
         *failures(chart),
     ]
-    return [part for line in lines for part in textwrap.wrap(line, LINE)]
+    return [part for line in lines for part in textwrap.wrap(line, SUBTITLE_LINE_LENGTH)]

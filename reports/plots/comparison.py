@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from reports.data.comparison import RunComparison
 from reports.plots.spec import Plot, Spec, clipped, rows
-from reports.tables.comparison import shown
+from reports.tables.comparison import changed_rows
 
-NAME = "comparison"
-MOST = 40  # rows
+COMPARISON_PLOT_NAME = "comparison"
+MAX_PLOT_ROWS = 40  # rows
 
 
 def comparison_plot(found: RunComparison) -> Plot | None:
     """Points with ranges on a logarithmic axis; None without two numbers to compare."""
     data: list[Spec] = []
-    for pair in shown(found)[:MOST]:
+    for pair in changed_rows(found)[:MAX_PLOT_ROWS]:
         for run, side in zip("AB", (pair.first, pair.second), strict=True):
             if side is None or not side.maximum:
                 continue
@@ -41,4 +41,4 @@ def comparison_plot(found: RunComparison) -> Plot | None:
              "encoding": {"x": {**x, "field": "x"}, "shape": colour, **common}},
         ],
     }  # fmt: skip
-    return Plot(NAME, "Maxima of both runs with their errors.", spec)
+    return Plot(COMPARISON_PLOT_NAME, "Maxima of both runs with their errors.", spec)

@@ -7,15 +7,15 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from reports.format.file_names import PNG, SVG
+from reports.format.file_names import PNG_SUFFIX, SVG_SUFFIX
 from reports.plots.self_contained import require_no_address, require_self_contained
 from reports.plots.spec import Plot, Spec, still
 from reports.plots.theme import on_paper
 
-VERSION = "6.4"  # of Vega-Lite
-CLIP = re.compile(r'(?<=id="clip)\d+(?=")|(?<=url\(#clip)\d+(?=\))')
-TWO_UNITS = re.compile("[\U00010000-\U0010ffff]")
-SCALE = 2.0  # pixels of a PNG per unit
+VEGA_LITE_VERSION = "6.4"  # of Vega-Lite
+CLIP_ID_PATTERN = re.compile(r'(?<=id="clip)\d+(?=")|(?<=url\(#clip)\d+(?=\))')
+TWO_UNIT_CHARACTER_PATTERN = re.compile("[\U00010000-\U0010ffff]")
+PIXELS_PER_UNIT = 2.0  # pixels of a PNG per unit
 
 
 def draw(plots: Iterable[Plot], directory: Path) -> list[Path]:
@@ -29,9 +29,9 @@ def draw_plot(plot: Plot, directory: Path) -> list[Path]:
     import vl_convert
 
     drawn = svg({**plot.spec, "config": on_paper()})
-    paths = [directory / f"{plot.name}{end}" for end in (SVG, PNG)]
+    paths = [directory / f"{plot.name}{end}" for end in (SVG_SUFFIX, PNG_SUFFIX)]
     paths[0].write_text(drawn, encoding="utf-8", newline="\n")
-    paths[1].write_bytes(vl_convert.svg_to_png(drawn, scale=SCALE))
+    paths[1].write_bytes(vl_convert.svg_to_png(drawn, scale=PIXELS_PER_UNIT))
     return paths
 
 
@@ -45,7 +45,7 @@ def svg(spec: Spec) -> str:
     """
     require_no_address(spec, "the plot")
     text = json.dumps(still(spec), ensure_ascii=False)
-    named = TWO_UNITS.sub(lambda found: f"U+{ord(found[0]):X}", text)
+    named = TWO_UNIT_CHARACTER_PATTERN.sub(lambda found: f"U+{ord(found[0]):X}", text)
     try:
         made = _drawn(text)
     except ValueError:
@@ -59,10 +59,12 @@ def svg(spec: Spec) -> str:
 def _drawn(text: str) -> str:
     import vl_convert
 
-    return vl_convert.vegalite_to_svg(text, vl_version=VERSION, allowed_base_urls=[])
+    return vl_convert.vegalite_to_svg(text, vl_version=VEGA_LITE_VERSION, allowed_base_urls=[])
 
 
 def _numbered(svg: str) -> str:
     """Clips numbered from one: Vega counts on from plot to plot."""
-    number = {name: str(k) for k, name in enumerate(dict.fromkeys(CLIP.findall(svg)), start=1)}
-    return CLIP.sub(lambda found: number[found[0]], svg)
+    number = {
+        name: str(k) for k, name in enumerate(dict.fromkeys(CLIP_ID_PATTERN.findall(svg)), start=1)
+    }
+    return CLIP_ID_PATTERN.sub(lambda found: number[found[0]], svg)

@@ -7,21 +7,37 @@ from statistics import NormalDist
 from reports.data.reliability import Reliability, Risk
 from reports.plots.spec import Plot, Spec, clipped, rows
 
-TICKS = (1e-8, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 0.9999)
-WAYS = "plain sampling", "importance sampling"
+PROBABILITY_TICKS = (
+    1e-8,
+    1e-6,
+    1e-5,
+    1e-4,
+    1e-3,
+    0.01,
+    0.1,
+    0.3,
+    0.5,
+    0.7,
+    0.9,
+    0.99,
+    0.999,
+    0.9999,
+)
+SAMPLING_NAMES = "plain sampling", "importance sampling"
 
 
 def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
     """The probability that the factor is lower, straight for a normal law; None without samples."""
     deviate = NormalDist().inv_cdf
     data: list[Spec] = [
-        {"x": factor, "y": deviate(p), "p": p, "way": WAYS[way]} for factor, p, way in risk.curve
+        {"x": factor, "y": deviate(p), "p": p, "way": SAMPLING_NAMES[way]}
+        for factor, p, way in risk.curve
     ]
     if not data:
         return None
     low, high = (end(row["y"] for row in data) for end in (min, max))
     low = min(low, deviate(found.probability))
-    ticks = [p for p in TICKS if low - 0.5 <= deviate(p) <= high + 0.5]
+    ticks = [p for p in PROBABILITY_TICKS if low - 0.5 <= deviate(p) <= high + 0.5]
     named = " : ".join(f"abs(datum.value - ({deviate(p):.6f})) < 1e-4 ? '{p:g}'" for p in ticks)
     x: Spec = {"field": "x", "type": "quantitative", "title": "factor of safety",
                "scale": {"zero": False, "nice": False}}  # fmt: skip
@@ -30,7 +46,7 @@ def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
                      "tickCount": 2 * len(ticks)},
                "scale": {"zero": False}}  # fmt: skip
     colour: Spec = {"field": "way", "type": "nominal", "title": None,
-                    "scale": {"domain": list(WAYS)}}  # fmt: skip
+                    "scale": {"domain": list(SAMPLING_NAMES)}}  # fmt: skip
     layers: list[Spec] = [
         {"mark": {"type": "line"}, "encoding": {"color": colour, "strokeDash": colour}},
         {"data": rows([{"x": found.limit}]), "mark": {"type": "rule", "style": "governs"},

@@ -12,10 +12,12 @@ from xml.parsers import expat
 
 from pinbase.errors import Damaged
 
-ADDRESSES = {"url", "href"}  # keys of Vega-Lite: of data, of pictures, of links
-PICTURE = "image"
-ELSEWHERE = re.compile(r"url\(\s*['\"]?\s*(?!#)[^\s'\"]|@import|image-set\(|src\(", re.IGNORECASE)
-FOREIGN = {"image", "feimage", "script", "foreignobject", "iframe", "audio", "video"}
+ADDRESS_KEYS = {"url", "href"}  # keys of Vega-Lite: of data, of pictures, of links
+IMAGE_MARK = "image"
+EXTERNAL_REFERENCE_PATTERN = re.compile(
+    r"url\(\s*['\"]?\s*(?!#)[^\s'\"]|@import|image-set\(|src\(", re.IGNORECASE
+)
+FORBIDDEN_ELEMENTS = {"image", "feimage", "script", "foreignobject", "iframe", "audio", "video"}
 
 
 def require_no_address(spec: Any, name: str) -> None:
@@ -24,10 +26,10 @@ def require_no_address(spec: Any, name: str) -> None:
     while waiting:
         node = waiting.pop()
         if isinstance(node, dict):
-            if found := sorted(ADDRESSES & {str(key).lower() for key in node}):
+            if found := sorted(ADDRESS_KEYS & {str(key).lower() for key in node}):
                 raise Damaged(f"{name} has an address ({found[0]}), which no plot of pinstress has")
             mark = node.get("mark")
-            if PICTURE in (mark, mark.get("type") if isinstance(mark, dict) else None):
+            if IMAGE_MARK in (mark, mark.get("type") if isinstance(mark, dict) else None):
                 raise Damaged(f"{name} has a picture in it, which no plot of pinstress has")
             waiting += node.values()
         elif isinstance(node, list):
@@ -40,16 +42,18 @@ def require_self_contained(svg: str, name: str) -> None:
 
     def start(element: str, attributes: dict[str, str]) -> None:
         inside.append(element.rpartition(":")[2].lower())
-        if inside[-1] in FOREIGN:
+        if inside[-1] in FORBIDDEN_ELEMENTS:
             raise Damaged(f"{name} has an element {element}, which no drawing of pinstress has")
         for key, value in attributes.items():
             link = key.rpartition(":")[2].lower() in ("href", "src")
             styled = not key.lower().startswith("aria-")  # which are words
-            if (link and not value.startswith("#")) or (styled and ELSEWHERE.search(value)):
+            if (link and not value.startswith("#")) or (
+                styled and EXTERNAL_REFERENCE_PATTERN.search(value)
+            ):
                 raise Damaged(f"{name} refers to {value[:60]!r}, outside of itself")
 
     def text(found: str) -> None:
-        if inside[-1] == "style" and ELSEWHERE.search(found):
+        if inside[-1] == "style" and EXTERNAL_REFERENCE_PATTERN.search(found):
             raise Damaged(f"{name} refers to something outside of itself")
 
     def doctype(*_: object) -> None:

@@ -16,14 +16,14 @@ from reports.data.results import Floats
 from reports.plots.theme import dashes
 
 Spec = dict[str, Any]
-SAME = 1e-6  # of the largest value: curves nearer than this are one
-FORMAT = ",.5~r"
-ZOOM: Spec = {
+CURVE_TOLERANCE = 1e-6  # of the largest value: curves nearer than this are one
+NUMBER_FORMAT = ",.5~r"
+ZOOM_PARAMETER: Spec = {
     "name": "zoom",
     "select": {"type": "interval", "encodings": ["x"], "zoom": "wheel![event.shiftKey]"},
     "bind": "scales",
 }
-POINTED: Spec = {
+POINTER_PARAMETER: Spec = {
     "name": "pointed",
     "select": {"type": "point", "on": "pointerover", "clear": "pointerout", "fields": ["x"]},
 }
@@ -110,7 +110,7 @@ def _view(panel: Panel, names: dict[str, str], x: Abscissa, last: bool) -> Spec:
     if not last:
         across["axis"] = {"labels": False, "title": None}
     lines = [_line(column, names, panel.scale) for column in names]
-    lines[0]["params"] = [ZOOM]
+    lines[0]["params"] = [ZOOM_PARAMETER]
     zero = [level(0.0, style="zero")] if panel.zero else []
     return {
         "title": panel.heading,
@@ -140,16 +140,16 @@ def _line(column: str, names: dict[str, str], scale: Spec) -> Spec:
 def _pointed(panel: Panel, names: dict[str, str]) -> Spec:
     """A rule at each instant, seen under the pointer only, with the values there."""
     values = [
-        {"field": column, "title": name or panel.heading, "format": FORMAT}
+        {"field": column, "title": name or panel.heading, "format": NUMBER_FORMAT}
         for column, name in names.items()
     ]
     seen: Spec = {"condition": {"param": "pointed", "empty": False, "value": 0.4}, "value": 0.0}
     return {
-        "params": [POINTED],
+        "params": [POINTER_PARAMETER],
         "mark": {"type": "rule", "style": "pointed", "clip": True},
         "encoding": {
             "opacity": seen,
-            "tooltip": [{"field": "x", "title": "at", "format": FORMAT}, *values],
+            "tooltip": [{"field": "x", "title": "at", "format": NUMBER_FORMAT}, *values],
             "y": {"value": 0},
             "y2": {"value": panel.height},
         },
@@ -175,7 +175,7 @@ def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
 
 def _coincide(panel: dict[str, Floats], one: str, other: str) -> bool:
     known = (np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in panel.values())
-    close = SAME * float(max(known))
+    close = CURVE_TOLERANCE * float(max(known))
     return np.allclose(panel[one], panel[other], rtol=0.0, atol=close, equal_nan=True)
 
 
@@ -189,7 +189,7 @@ def still(spec: Spec) -> Spec:
     if "params" in spec:
         spec = {key: value for key, value in spec.items() if key != "params"}
     kept: Spec = {
-        key: [still(part) for part in spec[key] if POINTED not in part.get("params", [])]
+        key: [still(part) for part in spec[key] if POINTER_PARAMETER not in part.get("params", [])]
         for key in ("layer", "vconcat")
         if key in spec
     }

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 # Ink on paper and light on dark; the first seven curves differ in grey too, by their dashes.
-COLOURS: dict[str, tuple[str, str]] = {
+THEME_COLOURS: dict[str, tuple[str, str]] = {
     "ink": ("#1d1f23", "#e4e6ea"),
     "quiet": ("#5a6068", "#a2a9b3"),
     "paper": ("#ffffff", "#17191d"),
@@ -22,30 +22,34 @@ COLOURS: dict[str, tuple[str, str]] = {
     "s5": ("#4f9bd9", "#7fd0f7"),
     "s6": ("#000000", "#ffffff"),
 }
-SERIES = tuple(name for name in COLOURS if name[0] == "s" and name[1:].isdigit())
-DASHES = ([1, 0], [7, 3], [2, 2], [7, 3, 2, 3], [4, 2], [7, 2, 2, 2, 2, 2], [12, 3])
+SERIES_COLOURS = tuple(name for name in THEME_COLOURS if name[0] == "s" and name[1:].isdigit())
+SERIES_DASHES = ([1, 0], [7, 3], [2, 2], [7, 3, 2, 3], [4, 2], [7, 2, 2, 2, 2, 2], [12, 3])
 
 
 def dashes(number: int) -> list[list[int]]:
     """Of so many curves; no two of the first 49 have the same colour and dashes."""
-    return [DASHES[(k + k // len(SERIES)) % len(DASHES)] for k in range(number)]
+    return [
+        SERIES_DASHES[(k + k // len(SERIES_COLOURS)) % len(SERIES_DASHES)] for k in range(number)
+    ]
 
 
 def style_sheet() -> str:
     """The colours as properties of a style sheet."""
-    shades = (f"--{name}: light-dark({light}, {dark});" for name, (light, dark) in COLOURS.items())
+    shades = (
+        f"--{name}: light-dark({light}, {dark});" for name, (light, dark) in THEME_COLOURS.items()
+    )
     return f":root {{ {' '.join(shades)} }}"
 
 
 def on_paper(font: str = "DejaVu Sans, sans-serif") -> dict[str, Any]:
     """The configuration of plots that stand alone."""
-    colours = {name: light for name, (light, _) in COLOURS.items()}
+    colours = {name: light for name, (light, _) in THEME_COLOURS.items()}
     return {**_config(colours, font), "background": colours["paper"]}
 
 
 def on_page() -> dict[str, Any]:
     """The configuration in the report, whose style sheet gives the colours."""
-    colours = {name: f"var(--{name})" for name in COLOURS}
+    colours = {name: f"var(--{name})" for name in THEME_COLOURS}
     return {**_config(colours, "system-ui, sans-serif"), "background": None}
 
 
@@ -66,7 +70,7 @@ def _config(c: Mapping[str, str], font: str) -> dict[str, Any]:
                   "fontSize": 11, "fontWeight": "normal", "offset": 6, "frame": "group"},
         "view": {"stroke": None, "continuousWidth": 560, "continuousHeight": 150},
         "concat": {"spacing": 14},
-        "range": {"category": [c[name] for name in SERIES]},
+        "range": {"category": [c[name] for name in SERIES_COLOURS]},
         "line": {"strokeWidth": 1.6},
         "style": {
             "zero": {"color": c["quiet"], "strokeWidth": 1},

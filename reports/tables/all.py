@@ -31,7 +31,7 @@ from reports.tables.stress.singular_zones import zones_table
 from reports.tables.table import Table
 
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
-CSV_ONLY = (
+CSV_ONLY_TABLES = (
     "line_loads",
     "stress_history",
     "second_opinion_loads",
@@ -42,12 +42,14 @@ CSV_ONLY = (
     "linkage",
     "sliders",
 )
-LONGEST = 2000  # rows of a sheet; longer tables are written as CSV only, which is much faster
+MAX_SHEET_ROWS = (
+    2000  # rows of a sheet; longer tables are written as CSV only, which is much faster
+)
 
 
 def sheets(tables: Sequence[Table]) -> list[Table]:
     """Those that the workbook has."""
-    return [t for t in tables if t.name not in CSV_ONLY and len(t.rows) <= LONGEST]
+    return [t for t in tables if t.name not in CSV_ONLY_TABLES and len(t.rows) <= MAX_SHEET_ROWS]
 
 
 def stress_tables(results: Results) -> list[Table]:

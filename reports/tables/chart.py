@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from reports.data.chart import NAME, Chart
+from reports.data.chart import CHART_NAME, Chart
 from reports.format.files.csv import write_csv
 
 COLUMNS = (
@@ -16,7 +16,7 @@ COLUMNS = (
 def write_chart_csv(chart: Chart, directory: Path) -> None:
     """Write chart.csv with all digits; failed meshes have a reason instead of numbers."""
     write_csv(
-        directory / f"{NAME}.csv",
+        directory / f"{CHART_NAME}.csv",
         COLUMNS,
         (
             (

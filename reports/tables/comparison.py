@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from reports.data.comparison import NO_NUMBER, UNCHANGED, RowPair, RunComparison, Side, ValuePair
+from reports.data.comparison import NOT_SOLVED, UNCHANGED, RowPair, RunComparison, Side, ValuePair
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
 
-MOST = 30  # forces shown
-CHANGES = 3  # digits
+MAX_SHOWN_FORCES = 30  # forces shown
+CHANGE_DIGITS = 3  # digits
 
 
 def rows_grid(found: RunComparison) -> Grid:
@@ -24,7 +24,7 @@ def rows_grid(found: RunComparison) -> Grid:
             _from_to(*(DASH if s is None else s.outcome for s in _sides(row))),
             row.kind,
         ]
-        for row in shown(found)
+        for row in changed_rows(found)
     ]
     return Grid(head, body, [False, False, *[True] * 4, False, False])
 
@@ -38,7 +38,7 @@ def _from_to(first: str, second: str) -> str:
     return first if first == second else f"{first} → {second}"
 
 
-def shown(found: RunComparison) -> list[RowPair]:
+def changed_rows(found: RunComparison) -> list[RowPair]:
     """Rows with a change."""
     return [row for row in found.rows if row.kind != UNCHANGED]
 
@@ -57,7 +57,7 @@ def forces_grid(found: RunComparison) -> Grid:
     """Largest forces that differ, the largest changes first."""
     body = [
         [*pair.names, engineering(pair.first), engineering(pair.second), per_cent(pair.change)]
-        for pair in found.forces[:MOST]
+        for pair in found.forces[:MAX_SHOWN_FORCES]
     ]
     head = [
         "case",
@@ -82,7 +82,7 @@ def margins_grid(found: RunComparison) -> Grid:
 
 def left_out(found: RunComparison) -> str:
     """How many forces have no room."""
-    more = len(found.forces) - MOST
+    more = len(found.forces) - MAX_SHOWN_FORCES
     return f"{more} more forces differ by less." if more > 0 else ""
 
 
@@ -97,10 +97,10 @@ def _range(side: Side | None) -> str:
     if side is None:
         return DASH
     if side.maximum is None:
-        return NO_NUMBER
+        return NOT_SOLVED
     if side.low is None or side.high is None:
         return engineering(side.maximum)
-    ends = (engineering(end, CHANGES) for end in (side.low, side.high))
+    ends = (engineering(end, CHANGE_DIGITS) for end in (side.low, side.high))
     return f"{engineering(side.maximum)} ({' to '.join(ends)})"
 
 
@@ -112,4 +112,4 @@ def per_cent(change: float | None) -> str:
 def _signed(margin: float | None) -> str:
     if margin is None:
         return DASH
-    return f"{'+' if margin > 0.0 else ''}{engineering(margin, CHANGES)}"
+    return f"{'+' if margin > 0.0 else ''}{engineering(margin, CHANGE_DIGITS)}"

@@ -28,13 +28,13 @@ from reports.tables.stress.calculix import opinion_json
 from reports.tables.stress.joint import joint_json
 from reports.tables.stress.places import places_json
 
-SCHEMA = "pinstress-results/2"
+RESULTS_SCHEMA = "pinstress-results/2"
 
 
 def to_json(results: Results) -> dict[str, Any]:
     """The results as plain JSON values; missing numbers are null."""
     return {
-        "schema": SCHEMA,
+        "schema": RESULTS_SCHEMA,
         "title": results.title,
         "study": results.study,
         "study_sha256": results.study_sha256,

@@ -12,8 +12,18 @@ from reports.format.numbers import engineering, ratio
 from reports.format.ranges import factor_range
 from reports.tables.table import Table
 
-REACTIONS = ("case", "connection", "ours", "published", "ratio")
-VALUES = ("case", "time", "quantity", "name", "published", "ours", "ratio", "unit", "reason")
+PUBLISHED_REACTION_COLUMNS = ("case", "connection", "ours", "published", "ratio")
+PUBLISHED_VALUE_COLUMNS = (
+    "case",
+    "time",
+    "quantity",
+    "name",
+    "published",
+    "ours",
+    "ratio",
+    "unit",
+    "reason",
+)
 
 
 @dataclass(frozen=True)
@@ -46,8 +56,11 @@ def _rows(table: ReactionTable) -> list[PublishedReaction]:
 
 def published_reactions_table(results: Results) -> Table:
     """The same as a table."""
-    rows = ([getattr(row, name) for name in REACTIONS] for row in published_reactions(results))
-    return Table.of("reactions_published", REACTIONS, rows)
+    rows = (
+        [getattr(row, name) for name in PUBLISHED_REACTION_COLUMNS]
+        for row in published_reactions(results)
+    )
+    return Table.of("reactions_published", PUBLISHED_REACTION_COLUMNS, rows)
 
 
 def write_published_reactions(results: Results, directory: Path) -> None:
@@ -70,7 +83,7 @@ def write_published_reactions(results: Results, directory: Path) -> None:
 
 def published_values_table(results: Results) -> Table:
     """Every published value with ours."""
-    return Table.of("published", VALUES, (_cells(v) for v in results.published))
+    return Table.of("published", PUBLISHED_VALUE_COLUMNS, (_cells(v) for v in results.published))
 
 
 def write_published_values(results: Results, directory: Path) -> None:

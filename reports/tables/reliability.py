@@ -14,9 +14,9 @@ from reports.format.files.csv import Cell, write_csv
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite
 
-SCHEMA = "pinstress-reliability/1"
-DIGITS = 3
-OR_BENEATH = "or beneath contact"  # probability that a row fails, or depends on that
+RELIABILITY_SCHEMA = "pinstress-reliability/1"
+PROBABILITY_DIGITS = 3
+OR_BENEATH_CONTACT = "or beneath contact"  # probability that a row fails, or depends on that
 COLUMNS = (
     "pin", "case", "result", "verdict", "safety_factor", "limit_factor",
     "probability", "probability_low", "probability_high", "probability_by",
@@ -28,7 +28,7 @@ COLUMNS = (
     "joint_lower", "joint_higher",
     "quantile_probability", "quantile", "quantile_low", "quantile_high", "quantile_form", "remark",
 )  # fmt: skip
-DRIVERS = (
+DRIVER_COLUMNS = (
     "pin", "case", "parameter", "form_importance",
     "sobol_first", "sobol_first_low", "sobol_first_high",
     "sobol_total", "sobol_total_low", "sobol_total_high",
@@ -38,8 +38,8 @@ DRIVERS = (
 def write_reliability(found: Reliability, directory: Path) -> None:
     """Write reliability.csv, drivers.csv and reliability.json with all digits."""
     write_csv(directory / "reliability.csv", COLUMNS, (_cells(found, r) for r in found.risks))
-    write_csv(directory / "drivers.csv", DRIVERS, _driver_cells(found))
-    content = {"schema": SCHEMA, **_plain(found)}
+    write_csv(directory / "drivers.csv", DRIVER_COLUMNS, _driver_cells(found))
+    content = {"schema": RELIABILITY_SCHEMA, **_plain(found)}
     for risk, made in zip(found.risks, content["risks"], strict=True):
         made |= {"result": risk.result(found.probability), "by_weights": risk.by_weights}
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
@@ -124,7 +124,7 @@ def _driver_cells(found: Reliability) -> Iterator[list[Cell]]:
 
 def chance(value: float | None) -> str:
     """A probability as text."""
-    return DASH if value is None or not math.isfinite(value) else f"{value:.{DIGITS}g}"
+    return DASH if value is None or not math.isfinite(value) else f"{value:.{PROBABILITY_DIGITS}g}"
 
 
 def chance_range(value: Spread | None) -> str:
@@ -141,9 +141,10 @@ def factor_interval(value: Spread | None) -> str:
     if value is None or math.isnan(value.value):
         return DASH
     ends = (
-        engineering(end, DIGITS) if math.isfinite(end) else "?" for end in (value.low, value.high)
+        engineering(end, PROBABILITY_DIGITS) if math.isfinite(end) else "?"
+        for end in (value.low, value.high)
     )
-    return f"{engineering(value.value, DIGITS)} ({' to '.join(ends)})"
+    return f"{engineering(value.value, PROBABILITY_DIGITS)} ({' to '.join(ends)})"
 
 
 def risks_grid(found: Reliability) -> Grid:
@@ -151,8 +152,8 @@ def risks_grid(found: Reliability) -> Grid:
     deep = found.deep
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
     head = ["pin", "case", "result", "FoS", f"FoS at probability {p} ({per_cent})",
-            f"P(FoS < {engineering(found.limit, DIGITS)}) ({per_cent})",
-            *[OR_BENEATH] * deep, "by mesh error", "over joint"]  # fmt: skip
+            f"P(FoS < {engineering(found.limit, PROBABILITY_DIGITS)}) ({per_cent})",
+            *[OR_BENEATH_CONTACT] * deep, "by mesh error", "over joint"]  # fmt: skip
     body = [
         [
             risk.pin,
@@ -188,7 +189,7 @@ def ways_grid(found: Reliability) -> Grid:
             engineering(finite(form.index), 4) if form else DASH,
             factor_interval(risk.quantile_sampled),
             factor_interval(risk.quantile_weighted),
-            engineering(finite(form.quantile), DIGITS) if form else DASH,
+            engineering(finite(form.quantile), PROBABILITY_DIGITS) if form else DASH,
         ])  # fmt: skip
     return Grid(head, body, [False, False, *[True] * 8])
 

@@ -11,10 +11,10 @@ from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
 from reports.format.units import unit_name
 
-MOST_IN_CSV = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
+MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 
 # What columns are measured in, by their names; tables name the exceptions.
-DIMENSIONS = {
+COLUMN_DIMENSIONS = {
     "time": "time",
     "impulse_time": "time",
     **dict.fromkeys(("fx", "fy", "fz", "force", "shear", "friction", "normal"), "force"),
@@ -86,11 +86,11 @@ class Table:
         """Of a column's numbers; empty for texts, ratios, and what differs from row to row."""
         if column in self.mixed:
             return ""
-        return unit_name(DIMENSIONS.get(column, ""), units)
+        return unit_name(COLUMN_DIMENSIONS.get(column, ""), units)
 
     def write(self, directory: Path) -> Path:
         """Write it into a folder: as CSV, or as Parquet where spreadsheets could not open it."""
-        large = len(self.rows) > MOST_IN_CSV
+        large = len(self.rows) > MAX_CSV_ROWS
         path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
         (write_parquet if large else write_csv)(path, self.columns, self.rows)
         return path

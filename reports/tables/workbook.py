@@ -13,18 +13,30 @@ import numpy as np
 
 from reports.data.results import Results
 from reports.format.files.csv import Cell, harmless
-from reports.format.words import MEANING, READING
+from reports.format.words import RESULT_ROWS_NOTE, VERDICT_MEANINGS
 from reports.tables.table import Table
 
 if TYPE_CHECKING:
     import xlsxwriter
 
-LONG_AGO = datetime(2000, 1, 1)  # a fixed time of creation: the same results, the same bytes
-WIDEST = 60  # characters of a column
-LOOKED_AT = 200  # rows whose texts decide how wide a column is
-LARGE, SMALL = 1e7, 1e-3  # from and below which numbers are shown with a power of ten
+FIXED_CREATION_TIME = datetime(
+    2000, 1, 1
+)  # a fixed time of creation: the same results, the same bytes
+MAX_COLUMN_WIDTH = 60  # characters of a column
+WIDTH_SAMPLE_ROWS = 200  # rows whose texts decide how wide a column is
+MAX_PLAIN_NUMBER, MIN_PLAIN_NUMBER = (
+    1e7,
+    1e-3,
+)  # from and below which numbers are shown with a power of ten
 # Of four digits each, by the power of ten of the largest number of a column.
-FORMATS = {-3: "0.000000", -2: "0.00000", -1: "0.0000", 0: "0.000", 1: "#,##0.00", 2: "#,##0.0"}
+FORMATS_BY_POWER = {
+    -3: "0.000000",
+    -2: "0.00000",
+    -1: "0.0000",
+    0: "0.000",
+    1: "#,##0.00",
+    2: "#,##0.0",
+}
 
 
 def write_workbook(
@@ -44,7 +56,7 @@ def write_workbook(
     }
     content = BytesIO()
     with xlsxwriter.Workbook(content, safe) as book:
-        book.set_properties({"title": results.title, "created": LONG_AGO})
+        book.set_properties({"title": results.title, "created": FIXED_CREATION_TIME})
         bold = book.add_format({"bold": True, "text_wrap": True, "valign": "top", "bottom": 1})
         _about(book, results, [table.name for table in tables], left_out, bold)
         for table in tables:
@@ -67,8 +79,8 @@ def _about(
         ("study", f"{results.study} (SHA-256 {results.study_sha256})"),
         ("units", f"length {u.length}, force {u.force}, stress {u.stress}, time {u.time}"),
         ("made by", ", ".join(f"{k} {v}" for k, v in sorted(results.versions.items()))),
-        ("how to read", READING),
-        *MEANING.items(),
+        ("how to read", RESULT_ROWS_NOTE),
+        *VERDICT_MEANINGS.items(),
         ("sheets", f"{', '.join(sheets)}; all tables are CSV files, too"),
     ]
     if left_out:
@@ -126,15 +138,15 @@ def _format(column: Sequence[Cell]) -> str:
     """How a spreadsheet shows a column: the cells hold every digit, whatever it says."""
     numbers = _numbers(column)
     if all(v == int(v) for v in numbers):
-        return "#,##0" if max(map(abs, numbers), default=0.0) < LARGE else "0.000E+00"
+        return "#,##0" if max(map(abs, numbers), default=0.0) < MAX_PLAIN_NUMBER else "0.000E+00"
     largest = max(map(abs, numbers))
-    if not SMALL <= largest < LARGE:
+    if not MIN_PLAIN_NUMBER <= largest < MAX_PLAIN_NUMBER:
         return "0.000E+00"
-    return FORMATS.get(int(np.floor(np.log10(largest))), "#,##0.0")
+    return FORMATS_BY_POWER.get(int(np.floor(np.log10(largest))), "#,##0.0")
 
 
 def _width(heading: str, column: Sequence[Cell]) -> float:
-    texts = [len(v) for v in column[:LOOKED_AT] if isinstance(v, str)]
+    texts = [len(v) for v in column[:WIDTH_SAMPLE_ROWS] if isinstance(v, str)]
     # A heading is broken between its name and its unit.
     words = max(len(word) for word in heading.replace("] ", "]").split(" "))
-    return min(WIDEST, max(10, words + 3, *texts, 0))
+    return min(MAX_COLUMN_WIDTH, max(10, words + 3, *texts, 0))

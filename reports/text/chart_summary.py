@@ -6,18 +6,18 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.data.chart import LIMIT_LOADS, Chart, ChartPoint
+from reports.data.chart import LIMIT_LOAD_MODELS, Chart, ChartPoint
 from reports.format.numbers import engineering, short
 
-LEAST = 1e-12  # replaces an error of zero
-ANOTHER_FORM = "foundation", "prescribed"  # whose error is not that of a mesh
-OURS = {
+MIN_CHART_ERROR = 1e-12  # replaces an error of zero
+MODELS_WITHOUT_MESH_ERROR = "foundation", "prescribed"  # whose error is not that of a mesh
+HARMONIC_MODEL_NAMES = {
     "harmonic": "the harmonic model",
     "harmonic+local": "the harmonic model with local solids",
     "contact": "contact by the harmonic model",
 }
-THEIRS = {"solid": "the solid model", "calculix": "CalculiX"}
-SHORT = {
+SOLID_MODEL_NAMES = {"solid": "the solid model", "calculix": "CalculiX"}
+SHORT_MODEL_NAMES = {
     "foundation": "foundation",
     "hinges": "limit load: hinges",
     "elastic-plastic": "limit load: elastic-plastic",
@@ -46,7 +46,7 @@ class Cost:
 def error(point: ChartPoint) -> float:
     """Relative error of a point that did not fail, never zero."""
     assert point.error is not None
-    return max(point.error, LEAST)
+    return max(point.error, MIN_CHART_ERROR)
 
 
 def staying(curve: Curve, wanted: float) -> Curve:
@@ -91,7 +91,7 @@ def _cheapest(chart: Chart) -> str:
     found = [
         staying(curve, chart.tolerance)
         for (model, _), curve in chart.curves.items()
-        if model not in (*ANOTHER_FORM, *LIMIT_LOADS)
+        if model not in (*MODELS_WITHOUT_MESH_ERROR, *LIMIT_LOAD_MODELS)
     ]
     first = [within[0] for within in found if within]
     if not first:
@@ -113,7 +113,7 @@ def _another_form(chart: Chart) -> str:
     found = [
         f"{model} ({element}) {percent(error(curve[-1]))}"
         for (model, element), curve in chart.curves.items()
-        if model in ANOTHER_FORM
+        if model in MODELS_WITHOUT_MESH_ERROR
     ]
     if not found:
         return ""
@@ -149,7 +149,10 @@ def _fastest(curves: dict[str, Curve], wanted: float) -> tuple[str, Cost] | None
 
 def _ratio(chart: Chart) -> str:
     """Our model compared with the fastest solid element at equal error."""
-    (ours, planes), (theirs, solids) = _curves(chart, OURS), _curves(chart, THEIRS)
+    (ours, planes), (theirs, solids) = (
+        _curves(chart, HARMONIC_MODEL_NAMES),
+        _curves(chart, SOLID_MODEL_NAMES),
+    )
     if not planes or not solids:
         return ""
     text, wanted = "", chart.tolerance
@@ -187,7 +190,7 @@ def _start(text: str) -> str:
 
 def curve_name(model: str, element: str) -> str:
     """Short, for labels."""
-    return SHORT.get(model) or SHORT.get(element) or f"{model}, {element}"
+    return SHORT_MODEL_NAMES.get(model) or SHORT_MODEL_NAMES.get(element) or f"{model}, {element}"
 
 
 def label(point: ChartPoint) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from reports.data.comparison import KINDS, UNCHANGED, RunComparison
+from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison
 from reports.format.files import markdown
 from reports.format.grid import Grid
 from reports.tables.comparison import (
@@ -23,21 +23,21 @@ from reports.text.fitted_table import Column, fitted_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-RANKS = 0, 0, 4, 3, 0, 1, 2, 0  # of the columns of rows: which are left out first
-READING = (
+ROW_COLUMN_RANKS = 0, 0, 4, 3, 0, 1, 2, 0  # of the columns of rows: which are left out first
+COMPARISON_NOTE = (
     "A change is beyond the errors if the ranges of the two maxima, by their errors, do not "
     "overlap; the range over the joint is not part of them. Similar runs have similar errors, so a "
     "change within the errors may still be real."
 )
-NO_INPUTS = "One of the runs is of an earlier version, which did not keep the inputs."
-SAME_INPUTS = "The inputs are the same."
+NO_INPUTS_NOTE = "One of the runs is of an earlier version, which did not keep the inputs."
+SAME_INPUTS_NOTE = "The inputs are the same."
 
 
 def headline(found: RunComparison) -> str:
     """How many rows changed, and how; the one that changed most."""
     if not found.rows:
         return "Neither run has pins."
-    counts = [(found.count(kind), kind) for kind in KINDS]
+    counts = [(found.count(kind), kind) for kind in CHANGE_KINDS]
     said = ", ".join(f"{n} {kind}" for n, kind in counts if n)
     count = "1 row" if len(found.rows) == 1 else f"{len(found.rows)} rows"
     changed = [row for row in found.rows if row.change and row.kind != UNCHANGED]
@@ -50,9 +50,9 @@ def headline(found: RunComparison) -> str:
 
 def sections(found: RunComparison) -> Iterator[tuple[str, Grid, str]]:
     """Title, table and remark of all that differs."""
-    remark = NO_INPUTS if found.inputs is None else "" if found.inputs else SAME_INPUTS
+    remark = NO_INPUTS_NOTE if found.inputs is None else "" if found.inputs else SAME_INPUTS_NOTE
     yield "Inputs that differ", inputs_grid(found), remark
-    yield "Safety factors", rows_grid(found), READING
+    yield "Safety factors", rows_grid(found), COMPARISON_NOTE
     yield "Margins of safety that differ", margins_grid(found), ""
     yield "Forces that differ", forces_grid(found), left_out(found)
     yield "Versions that differ", versions_grid(found), ""
@@ -76,7 +76,7 @@ def print_comparison(found: RunComparison, console: Console) -> None:
 
 
 def _columns(grid: Grid) -> list[Column]:
-    ranks = RANKS if len(grid.head) == len(RANKS) else (0,) * len(grid.head)
+    ranks = ROW_COLUMN_RANKS if len(grid.head) == len(ROW_COLUMN_RANKS) else (0,) * len(grid.head)
     cells = zip(*grid.body, strict=True)
     parts = zip(grid.head, cells, ranks, grid.numeric, strict=True)
     return [Column(head, each, rank, numeric) for head, each, rank, numeric in parts]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rich.table import Table
 
-GAP = 2  # blanks between columns
+COLUMN_GAP = 2  # blanks between columns
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Column:
 def fitting(columns: Sequence[Column], width: int) -> list[Column]:
     """The columns that have room side by side, in their order."""
     kept = list(columns)
-    while sum(column.width + GAP for column in kept) - GAP > width:
+    while sum(column.width + COLUMN_GAP for column in kept) - COLUMN_GAP > width:
         worst = max(kept, key=lambda column: column.rank)
         if not worst.rank:
             break
@@ -47,7 +47,7 @@ def fitted_table(columns: Sequence[Column], width: int) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, padding=(0, GAP, 0, 0), header_style="bold")
+    table = Table(box=None, pad_edge=False, padding=(0, COLUMN_GAP, 0, 0), header_style="bold")
     kept = fitting(columns, width)
     for column in kept:
         side = "right" if column.numeric else "left"

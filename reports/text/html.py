@@ -4,26 +4,35 @@ from __future__ import annotations
 
 from html import escape
 
-from reports.data.envelope import elsewhere, in_detail
+from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import Results
 from reports.format.words import headline
-from reports.tables.strength.safety_factors import TEXTS, shown, shown_columns, shown_rows
+from reports.tables.strength.safety_factors import (
+    TEXT_COLUMNS,
+    display_rows,
+    display_text,
+    shown_columns,
+)
 from reports.text.summary import summary
 
-HEAD = '<th style="text-align:{0}">{1}</th>'
-CELL = '<td style="text-align:{0}">{1}</td>'
+HEADING_CELL_HTML = '<th style="text-align:{0}">{1}</th>'
+BODY_CELL_HTML = '<td style="text-align:{0}">{1}</td>'
 
 
 def safety_factors_html(results: Results) -> str:
     """Title, the worst row in a sentence, safety factor table with verdicts, and summary."""
-    detailed = in_detail(results)
-    rows = shown_rows(detailed)
+    detailed = detailed_rows(results)
+    rows = display_rows(detailed)
     columns = shown_columns(rows, detailed)
-    sides = {name: "left" if name in TEXTS else "right" for name in columns}
-    head = "".join(HEAD.format(sides[name], escape(text)) for name, text in columns.items())
+    sides = {name: "left" if name in TEXT_COLUMNS else "right" for name in columns}
+    head = "".join(
+        HEADING_CELL_HTML.format(sides[name], escape(text)) for name, text in columns.items()
+    )
     body = "".join(
         "<tr>"
-        + "".join(CELL.format(sides[name], escape(shown(name, row))) for name in columns)
+        + "".join(
+            BODY_CELL_HTML.format(sides[name], escape(display_text(name, row))) for name in columns
+        )
         + "</tr>"
         for row in rows
     )
@@ -31,5 +40,5 @@ def safety_factors_html(results: Results) -> str:
         f"<p><b>{escape(results.title)}</b></p>"
         f"<p>{escape(headline(results))}</p>"
         f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
-        f"<p>{escape(' '.join(filter(None, (elsewhere(results), summary(results)))))}</p>"
+        f"<p>{escape(' '.join(filter(None, (omitted_note(results), summary(results)))))}</p>"
     )

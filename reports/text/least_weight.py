@@ -12,7 +12,7 @@ from reports.text.fitted_table import Column, fitted_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-TINY = 1e-6  # a residual that is round-off
+RESIDUAL_ROUND_OFF = 1e-6  # a residual that is round-off
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def _saved(part: float | None) -> str:
 def _residual(residual: float | None) -> str:
     if residual is None:
         return DASH
-    return f"<{TINY:g}" if residual < TINY else f"{residual:.1g}"
+    return f"<{RESIDUAL_ROUND_OFF:g}" if residual < RESIDUAL_ROUND_OFF else f"{residual:.1g}"
 
 
 def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> Iterator[str]:

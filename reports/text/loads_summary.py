@@ -12,8 +12,8 @@ from reports.format.numbers import engineering, short
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.text.loads import unresolved
 
-NAMES = ("connection", "body", "pin")
-POOR = 40.0  # transmission angle in degrees below which forces increase rapidly
+NAME_COLUMNS = ("connection", "body", "pin")
+MIN_TRANSMISSION_ANGLE = 40.0  # transmission angle in degrees below which forces increase rapidly
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) ->
         row += [engineering(peak.time)] * moving + [engineering(peak.position)] * at_drive
         row += [engineering(peak.frictionless)] * rubs
         body.append(row)
-    return Grid(head, body, [name not in NAMES for name in head])
+    return Grid(head, body, [name not in NAME_COLUMNS for name in head])
 
 
 def _drives(drives: list[DriveTable], results: Results) -> Grid:
@@ -113,7 +113,11 @@ def _checks(motion: LinkageMotion, results: Results) -> list[str]:
     if angles := motion.poorest:
         link = min(angles, key=lambda name: angles[name][0])
         low, at = angles[link]
-        warning = f", below {POOR:.0f}°: forces increase rapidly" if low < POOR else ""
+        warning = (
+            f", below {MIN_TRANSMISSION_ANGLE:.0f}°: forces increase rapidly"
+            if low < MIN_TRANSMISSION_ANGLE
+            else ""
+        )
         lines.append(f"Minimum transmission angle: {low:.1f}°, {link}{when(at)}{warning}.")
     worst, at = motion.worst_condition
     lines.append(f"Maximum condition number: {engineering(worst, 3)}{when(at)}.")

@@ -1,6 +1,6 @@
 """How results are found, for the page and the PDF."""
 
-METHOD = (
+METHOD_NOTE = (
     "Linkage forces are those of rigid bodies, from the principle of virtual work, at every "
     "instant of a motion. Each pin is linear elastic, of one material, and loaded by tractions on "
     "its bands. The simplest adequate model was used: a stepped beam, a Fourier (harmonic) model "

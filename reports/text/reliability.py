@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 # Of the columns: which are left out first.
-RISKS, DEEP = (0, 0, 0, 1, 2, 0, 3, 4), (0, 0, 0, 1, 2, 0, 0, 3, 4)
-WAYS, DRIVERS = (0, 0, 0, 0, 0, 0, 1, 4, 3, 2), (0, 0, 0, 0, 1, 2)
+RISK_COLUMN_RANKS, BENEATH_RISK_COLUMN_RANKS = (0, 0, 0, 1, 2, 0, 3, 4), (0, 0, 0, 1, 2, 0, 0, 3, 4)
+SAMPLING_COLUMN_RANKS, DRIVER_COLUMN_RANKS = (0, 0, 0, 0, 0, 0, 1, 4, 3, 2), (0, 0, 0, 0, 1, 2)
 
 
 def sentence(found: Reliability, risk: Risk) -> str:
@@ -76,9 +76,9 @@ def print_reliability(found: Reliability, console: Console) -> None:
     for risk in found.risks[:1]:
         console.print(Text(sentence(found, risk), "bold"))
     for title, grid, ranks in (
-        ("", risks_grid(found), DEEP if found.deep else RISKS),
-        (ways_title(found), ways_grid(found), WAYS),
-        ("What drives it", drivers_grid(found), DRIVERS),
+        ("", risks_grid(found), BENEATH_RISK_COLUMN_RANKS if found.deep else RISK_COLUMN_RANKS),
+        (ways_title(found), ways_grid(found), SAMPLING_COLUMN_RANKS),
+        ("What drives it", drivers_grid(found), DRIVER_COLUMN_RANKS),
     ):
         if not grid.body:
             continue

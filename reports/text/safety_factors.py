@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from reports.data.changes import command
-from reports.data.decision import BELOW, FAILS, SAFE, YIELDS, limit, outcome, worst_first
-from reports.data.envelope import elsewhere, in_detail
+from reports.data.decision import BELOW_YIELD, FAILS, SAFE, YIELDS, limit, outcome, worst_first
+from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
@@ -19,15 +19,15 @@ from reports.tables.strength.changes import change_notes, changes_grid
 from reports.tables.strength.fatigue import fatigue_sentence
 from reports.tables.strength.limit_load import limit_grid
 from reports.tables.strength.margins import not_made_briefly, worst_grid
-from reports.tables.strength.sensitivities import BRIEFLY, sensitivities_grid
+from reports.tables.strength.sensitivities import MAX_BRIEF_ROWS, sensitivities_grid
 from reports.text.fitted_table import Column, fitted_table
 from reports.text.summary import summary
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-COLOURS = {SAFE: "green", BELOW: "green", FAILS: "red", YIELDS: "red"}
-TO = "–"  # of a range
+OUTCOME_COLOURS = {SAFE: "green", BELOW_YIELD: "green", FAILS: "red", YIELDS: "red"}
+RANGE_DASH = "–"  # of a range
 
 
 def print_safety_factors(results: Results, console: Console, study: str = "") -> None:
@@ -39,8 +39,8 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     if results.pins:
         # As Text: a name in square brackets is no markup.
         console.print(Text(headline(results), "bold"))
-        console.print(fitted_table(_columns(in_detail(results)), console.width))
-        if rest := elsewhere(results):
+        console.print(fitted_table(_columns(detailed_rows(results)), console.width))
+        if rest := omitted_note(results):
             console.print(Text(rest))
     console.print(Text(summary(results)))
     if grid := worst_grid(results):
@@ -67,7 +67,7 @@ def _print_changes(results: Results, console: Console, study: str) -> None:
     console.print(fitted_table(_of_grid(changes_grid(results)), console.width))
     for note in change_notes(results):
         console.print(Text(note))
-    if grid := sensitivities_grid(_of_changes(results), BRIEFLY):
+    if grid := sensitivities_grid(_of_changes(results), MAX_BRIEF_ROWS):
         console.print(Text("Sensitivities", "bold"))
         console.print(fitted_table(_of_grid(grid), console.width))
     if line := command(results.changes, study, results.required_safety_factor):
@@ -82,7 +82,7 @@ def _of_changes(results: Results) -> Results:
 
 def _columns(results: Results) -> list[Column]:
     rows, required, units = worst_first(results), limit(results), results.units
-    colours = [COLOURS.get(outcome(pin), "yellow") for pin in rows]
+    colours = [OUTCOME_COLOURS.get(outcome(pin), "yellow") for pin in rows]
 
     def column(
         heading: str, cell: Callable[[PinResult], str], rank: int, numeric: bool = True
@@ -95,11 +95,11 @@ def _columns(results: Results) -> list[Column]:
         column("Pin", lambda pin: pin.pin, 0, False),
         column("Case", lambda pin: pin.case, 0, False),
         Column("Result", [result_words(pin) for pin in rows], 0, False, colours),
-        column(factor, lambda pin: factor_range(pin, TO), 0),
-        column("Utilisation", lambda pin: utilisation_range(pin, required, TO), 2),
+        column(factor, lambda pin: factor_range(pin, RANGE_DASH), 0),
+        column("Utilisation", lambda pin: utilisation_range(pin, required, RANGE_DASH), 2),
         column(f"max von\nMises [{units.stress}]", lambda pin: engineering(pin.max_von_mises), 1),
         column("±", _error, 3),
-        column(f"joint [{units.stress}]", lambda pin: joint_range(pin, TO), 4),
+        column(f"joint [{units.stress}]", lambda pin: joint_range(pin, RANGE_DASH), 4),
         column("at", lambda pin: pin.places.governs if pin.places else DASH, 5, False),
         column(f"beneath\n[{units.stress}]", _beneath, 5),
         column(f"t [{units.time}]", lambda pin: DASH if pin.time is None else short(pin.time), 6),

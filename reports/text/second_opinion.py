@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from assess.opinion.opinions import (
-    SAME_DISPLACEMENT,
-    SAME_LIMIT,
-    SAME_LOAD,
-    SAME_MAXIMUM,
-    SAME_MOMENT,
-    SAME_STRESS,
+    MAX_DISPLACEMENT_DIFFERENCE,
+    MAX_LIMIT_LOAD_DIFFERENCE,
+    MAX_LOAD_DIFFERENCE,
+    MAX_MAXIMUM_DIFFERENCE,
+    MAX_MOMENT_DIFFERENCE,
+    MAX_STRESS_DIFFERENCE,
     ContactOpinion,
     LimitOpinion,
     Opinion,
@@ -209,16 +209,19 @@ def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
     text = f"Second opinion: CalculiX agrees in {agree} of {len(every)} rows."
     if others:
         text += (
-            f" Limits: on the same mesh, {SAME_DISPLACEMENT:.0e} of the largest displacement and "
-            f"{SAME_STRESS:.0e} of the largest von Mises stress; its maximum, from that mesh only, "
-            f"{SAME_MAXIMUM:.0%} plus the error from our result."
+            f" Limits: on the same mesh, {MAX_DISPLACEMENT_DIFFERENCE:.0e} of the largest "
+            f"displacement and "
+            f"{MAX_STRESS_DIFFERENCE:.0e} of the largest von Mises stress; its maximum, from "
+            f"that mesh only, "
+            f"{MAX_MAXIMUM_DIFFERENCE:.0%} plus the error from our result."
         )
     if pressed:
         text += (
-            f" Limits for contact: {SAME_MOMENT:.0%} of the largest bending moment and "
-            f"{SAME_MAXIMUM:.0%} of the stress at the point of our maximum, each plus the error; "
-            f"{SAME_LOAD:.0%} of the load of a lug elsewhere along it."
+            f" Limits for contact: {MAX_MOMENT_DIFFERENCE:.0%} of the largest bending moment and "
+            f"{MAX_MAXIMUM_DIFFERENCE:.0%} of the stress at the point of our maximum, each plus "
+            f"the error; "
+            f"{MAX_LOAD_DIFFERENCE:.0%} of the load of a lug elsewhere along it."
         )
     if any(o.limit for o in every):
-        text += f" Limit for limit loads on the same mesh: {SAME_LIMIT:.0%}."
+        text += f" Limit for limit loads on the same mesh: {MAX_LIMIT_LOAD_DIFFERENCE:.0%}."
     return text

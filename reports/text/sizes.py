@@ -13,7 +13,7 @@ from reports.text.fitted_table import Column, fitted_table
 if TYPE_CHECKING:
     from rich.console import Console
 
-WIDE = 1.0  # length over diameter below which a pin is wider than long
+MIN_SLENDERNESS = 1.0  # length over diameter below which a pin is wider than long
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console:
 
 def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
     """What an engineer would object to in the sizes."""
-    if wide := [row.pin for row in rows if row.after and row.slenderness < WIDE]:
+    if wide := [row.pin for row in rows if row.after and row.slenderness < MIN_SLENDERNESS]:
         yield (
             f"Wider than long: {', '.join(wide)}. No pin is made like this: use a stronger "
             "material, smaller loads or another arrangement of the lugs."

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from reports.data.decision import BELOW, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
+from reports.data.decision import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
 from reports.format.numbers import short
-from reports.format.words import BEYOND, but_words, over_words, undecided_because
+from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
-LISTED = 4  # cases of a pin; of more, their number is given
+MAX_LISTED_CASES = 4  # cases of a pin; of more, their number is given
 
 
 def summary(results: Results) -> str:
@@ -28,8 +28,8 @@ def _against_required(results: Results) -> str:
     """Every pin by the worst of its checks."""
     required = results.required_safety_factor
     worst = list(worst_checks(results).values())
-    good = SAFE if required is not None else BELOW
-    safe = pins_with(worst, SAFE, BELOW)
+    good = SAFE if required is not None else BELOW_YIELD
+    safe = pins_with(worst, SAFE, BELOW_YIELD)
     factor = "" if required is None else f" (required factor {short(required)})"
     text = (
         f"{len(safe)} of {_count(len(worst), 'pin')} {_is(len(worst))} {good} in all cases{factor}"
@@ -69,9 +69,13 @@ def _depending(results: Results) -> str:
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
         each = (
             f"{p.pin} ({p.case}), {but_words(p.depends_on, results.units, 'not')}"
-            for p in rows[:LISTED]
+            for p in rows[:MAX_LISTED_CASES]
         )
-        more = f"; and {len(rows) - LISTED} rows more" if len(rows) > LISTED else ""
+        more = (
+            f"; and {len(rows) - MAX_LISTED_CASES} rows more"
+            if len(rows) > MAX_LISTED_CASES
+            else ""
+        )
         text = f"Safe as described: {'; '.join(each)}{more}."
     for over in ("joint", "landing"):
         some = [
@@ -109,7 +113,7 @@ def _yielding(results: Results) -> str:
     pins = list(dict.fromkeys(p.pin for p in results.pins if p.yields))
     if not pins:
         return ""
-    return f"{BEYOND.capitalize()}, where linear elasticity is not valid: {_names(pins)}."
+    return f"{BEYOND_YIELD.capitalize()}, where linear elasticity is not valid: {_names(pins)}."
 
 
 def _negative(results: Results) -> str:
@@ -128,7 +132,7 @@ def _listed(rows: Iterable[tuple[str, str]]) -> str:
 def _of_cases(cases: list[str]) -> str:
     if not cases:
         return ""
-    return f" ({', '.join(cases) if len(cases) <= LISTED else f'{len(cases)} cases'})"
+    return f" ({', '.join(cases) if len(cases) <= MAX_LISTED_CASES else f'{len(cases)} cases'})"
 
 
 def _unknown(results: Results) -> str:

@@ -29,12 +29,12 @@ __all__ = [
 ]
 
 # From xx, yy, zz, yz, xz, xy to the order of VTK's symmetric tensors, XX YY ZZ XY YZ XZ.
-VTK_SYMMETRIC = (0, 1, 2, 5, 3, 4)
-FACES = {  # of a tetrahedron: corners, then the middles of their edges
+VTK_TENSOR_ORDER = (0, 1, 2, 5, 3, 4)
+TETRAHEDRON_FACES = {  # of a tetrahedron: corners, then the middles of their edges
     "tetra10": ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
     "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
 }
-AROUND = 60  # quads around a band
+QUADS_AROUND_BAND = 60  # quads around a band
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -48,7 +48,7 @@ def point_data(field: Field, units: Units) -> Arrays:
     stress = units.stress
     data: Arrays = {
         f"displacement [{units.length}]": field.displacement,
-        f"stress [{stress}]": field.stress[:, VTK_SYMMETRIC],
+        f"stress [{stress}]": field.stress[:, VTK_TENSOR_ORDER],
         f"von Mises [{stress}]": field.von_mises,
         f"von Mises envelope [{stress}]": field.envelope,
     }
@@ -120,7 +120,7 @@ def write_flow(flow: FlowField, path: Path, units: Units) -> None:
 def _volume(volume: Volume, units: Units) -> Block:
     data: Arrays = {
         f"displacement [{units.length}]": volume.displacement,
-        f"stress [{units.stress}]": volume.stress[:, VTK_SYMMETRIC],
+        f"stress [{units.stress}]": volume.stress[:, VTK_TENSOR_ORDER],
         f"von Mises [{units.stress}]": volume.von_mises,
     }
     data |= _pressed(volume.pressed)
@@ -160,14 +160,14 @@ def _loads(loads: Sequence[BandLoad], units: Units) -> Block:
 
 def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
     """A cylinder on every band, each cell with its name and load."""
-    angle = 2.0 * np.pi * np.arange(AROUND) / AROUND
-    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(AROUND)], axis=1)
+    angle = 2.0 * np.pi * np.arange(QUADS_AROUND_BAND) / QUADS_AROUND_BAND
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(QUADS_AROUND_BAND)], axis=1)
     points = [load.radius * circle + np.array([0.0, 0.0, z]) for load in loads for z in load.z]
-    j = np.arange(AROUND)
-    k = (j + 1) % AROUND
-    ring = np.stack([j, k, k + AROUND, j + AROUND], axis=1)
-    cells = [ring + 2 * AROUND * i for i in range(len(loads))]
-    each = [load for load in loads for _ in range(AROUND)]
+    j = np.arange(QUADS_AROUND_BAND)
+    k = (j + 1) % QUADS_AROUND_BAND
+    ring = np.stack([j, k, k + QUADS_AROUND_BAND, j + QUADS_AROUND_BAND], axis=1)
+    cells = [ring + 2 * QUADS_AROUND_BAND * i for i in range(len(loads))]
+    each = [load for load in loads for _ in range(QUADS_AROUND_BAND)]
     return Block(
         np.concatenate(points),
         np.concatenate(cells),
@@ -182,9 +182,11 @@ def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
 
 def surface(field: Field) -> Field:
     """The outside of a solid alone: the faces that only one tetrahedron has, and their nodes."""
-    if field.cell_type not in FACES:
+    if field.cell_type not in TETRAHEDRON_FACES:
         return field
-    faces = np.concatenate([field.cells[:, list(face)] for face in FACES[field.cell_type]])
+    faces = np.concatenate(
+        [field.cells[:, list(face)] for face in TETRAHEDRON_FACES[field.cell_type]]
+    )
     _, first, count = np.unique(
         np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True
     )

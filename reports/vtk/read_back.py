@@ -15,11 +15,11 @@ from reports.folder.inside import read_inside
 from reports.folder.results_json import read_results
 from reports.format.numbers import engineering
 from reports.format.words import verdict_words
-from reports.vtk.fields import VTK_SYMMETRIC
+from reports.vtk.fields import VTK_TENSOR_ORDER
 from reports.vtk.vtu import Vtu, read_vtu
 
-LARGEST_FIELD = 2048 * MB
-LARGEST = 1e15  # of coordinates; VTK computes with their squares in float32
+MAX_FIELD_SIZE = 2048 * MB
+MAX_COORDINATE = 1e15  # of coordinates; VTK computes with their squares in float32
 
 
 @dataclass(frozen=True)
@@ -65,14 +65,14 @@ class Opened:
         """The field of a row. Raises: FileNotFoundError when none was written, Damaged, OSError."""
         name = f"vtk/{row['pin']}_{row['case']}.vtu"
         try:
-            content = read_inside(self.directory, name, LARGEST_FIELD)
+            content = read_inside(self.directory, name, MAX_FIELD_SIZE)
         except FileNotFoundError:
             raise FileNotFoundError(self.directory / name) from None
         mesh, u = read_vtu(content, name), self.units
-        if np.abs(mesh.points).max() > LARGEST or not np.ptp(mesh.points, axis=0).any():
+        if np.abs(mesh.points).max() > MAX_COORDINATE or not np.ptp(mesh.points, axis=0).any():
             raise Damaged(f"{name} is damaged: its points are no body")
         stress = np.empty((len(mesh.points), 6))
-        stress[:, VTK_SYMMETRIC] = _data(mesh, f"stress [{u.stress}]", 6, name)
+        stress[:, VTK_TENSOR_ORDER] = _data(mesh, f"stress [{u.stress}]", 6, name)
         pressed = mesh.data.get("pressed")
         return Field(
             pin=row["pin"],

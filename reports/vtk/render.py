@@ -10,16 +10,16 @@ import numpy as np
 from reports.data.results import Field, Floats, Units
 from reports.format.drawing.camera import VIEW_ANGLE, View
 from reports.format.numbers import engineering
-from reports.vtk.writer import TYPES
+from reports.vtk.writer import VTK_CELL_TYPES
 
 if TYPE_CHECKING:
     import pyvista
 
-SIZE = (1200, 800)
+WINDOW_SIZE = (1200, 800)
 SUBDIVISIONS = 3  # of each quadratic triangle, so that round pins look round
-SHARP = 30.0  # degrees between faces from which an edge is drawn
-INK = "#222222"
-PRESSED = "#b4b4b4"
+FEATURE_ANGLE = 30.0  # degrees between faces from which an edge is drawn
+INK_COLOUR = "#222222"
+PRESSED_COLOUR = "#b4b4b4"
 
 
 def render_pin(
@@ -32,7 +32,7 @@ def render_pin(
     """
     import pyvista
 
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(SIZE))
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(WINDOW_SIZE))
     try:
         _draw(plotter, field, units, title, top)
         plotter.screenshot(path_png)
@@ -44,7 +44,7 @@ def show_pin(field: Field, units: Units, title: str) -> None:
     """The same in a window, until it is closed; needs a display."""
     import pyvista
 
-    plotter: Any = pyvista.Plotter(window_size=list(SIZE), title=title)
+    plotter: Any = pyvista.Plotter(window_size=list(WINDOW_SIZE), title=title)
     _draw(plotter, field, units, title)
     plotter.add_axes()
     plotter.show()
@@ -67,10 +67,14 @@ def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | Non
     _add_surface(plotter, surface, name, top / 10.0**power)
     label = f"{label} {engineering(largest / 10.0**power)} {unit}"
     _mark(plotter, place, view.above(field.points, place), label)
-    plotter.add_text(_drawable(title), position=(24, SIZE[1] - 48), font_size=13, color=INK)
+    plotter.add_text(
+        _drawable(title), position=(24, WINDOW_SIZE[1] - 48), font_size=13, color=INK_COLOUR
+    )
     # Apart from the bar, whose own title lies on its labels.
     text = name if field.pressed is None else f"{name}; grey: pressed by lugs"
-    plotter.add_text(text, position=(0.2 * SIZE[0], 0.1 * SIZE[1]), font_size=10, color=INK)
+    plotter.add_text(
+        text, position=(0.2 * WINDOW_SIZE[0], 0.1 * WINDOW_SIZE[1]), font_size=10, color=INK_COLOUR
+    )
     plotter.camera_position = view.camera
     plotter.camera.view_angle = VIEW_ANGLE
     plotter.reset_camera_clipping_range()
@@ -91,7 +95,7 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     import pyvista
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-    kind = np.full(len(field.cells), TYPES[field.cell_type], dtype=np.uint8)
+    kind = np.full(len(field.cells), VTK_CELL_TYPES[field.cell_type], dtype=np.uint8)
     counts = np.full((len(field.cells), 1), field.cells.shape[1])
     cells = np.hstack([counts, field.cells]).ravel()
     grid = pyvista.UnstructuredGrid(cells, kind, np.asarray(field.points, dtype=float))
@@ -106,7 +110,7 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     skin.Update()
     surface: Any = pyvista.wrap(skin.GetOutput())
     return surface.compute_normals(  # type: ignore[no-any-return]
-        cell_normals=False, split_vertices=True, feature_angle=SHARP
+        cell_normals=False, split_vertices=True, feature_angle=FEATURE_ANGLE
     )
 
 
@@ -122,7 +126,7 @@ def _add_surface(
         "width": 0.6,
         "n_labels": 6,
         "fmt": _bar_format(largest),
-        "color": INK,
+        "color": INK_COLOUR,
         "label_font_size": 18,
         "unconstrained_font_size": True,
     }
@@ -132,17 +136,20 @@ def _add_surface(
         # Between the nodes the quadratic surface may dip below zero.
         clim=(0.0, largest or 1.0),
         cmap="viridis",
-        nan_color=PRESSED,
+        nan_color=PRESSED_COLOUR,
         smooth_shading=True,
         scalar_bar_args=bar,
         specular=0.15,
         ambient=0.25,
     )
     edges = surface.extract_feature_edges(
-        feature_angle=SHARP, boundary_edges=True, manifold_edges=False, non_manifold_edges=False
+        feature_angle=FEATURE_ANGLE,
+        boundary_edges=True,
+        manifold_edges=False,
+        non_manifold_edges=False,
     )
     if edges.n_points:
-        plotter.add_mesh(edges, color=INK, line_width=1.5)
+        plotter.add_mesh(edges, color=INK_COLOUR, line_width=1.5)
 
 
 def _bar_format(largest: float) -> str:
@@ -152,7 +159,7 @@ def _bar_format(largest: float) -> str:
 
 
 def _mark(plotter: pyvista.Plotter, place: Floats, text_at: Floats, text: str) -> None:
-    plotter.add_lines(np.asarray([place, text_at]), color=INK, width=1)
+    plotter.add_lines(np.asarray([place, text_at]), color=INK_COLOUR, width=1)
     plotter.add_points(
         np.asarray([place]), color="red", point_size=12, render_points_as_spheres=True
     )
@@ -160,7 +167,7 @@ def _mark(plotter: pyvista.Plotter, place: Floats, text_at: Floats, text: str) -
         np.asarray([text_at]),
         [text],
         font_size=18,
-        text_color=INK,
+        text_color=INK_COLOUR,
         shape_color="white",
         shape_opacity=0.85,
         margin=4,

@@ -6,10 +6,10 @@ import os
 import subprocess
 import sys
 
-WINDOW = "VTK_DEFAULT_OPENGL_WINDOW"
-OFF_SCREEN = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
-SECONDS = 120
-PROBE = """
+WINDOW_VARIABLE = "VTK_DEFAULT_OPENGL_WINDOW"
+OFF_SCREEN_WINDOWS = ("vtkEGLRenderWindow", "vtkOSOpenGLRenderWindow")
+PROBE_TIMEOUT = 120
+PROBE_CODE = """
 import pyvista
 plotter = pyvista.Plotter(off_screen=True, window_size=(32, 32))
 plotter.add_mesh(pyvista.Sphere(), color="red")
@@ -29,37 +29,37 @@ def renderer_problem() -> str | None:
         problem = _try(window)
         if problem is None:
             if window:
-                os.environ[WINDOW] = window
+                os.environ[WINDOW_VARIABLE] = window
             return None
         problems.append(f"{window or 'default'}: {problem}")
     return "VTK finds no renderer (" + "; ".join(problems) + ")"
 
 
 def _candidates() -> tuple[str, ...]:
-    chosen = os.environ.get(WINDOW, "")
+    chosen = os.environ.get(WINDOW_VARIABLE, "")
     # Without a display VTK's own choice complains about the X server before it falls back.
     display = sys.platform != "linux" or bool(os.environ.get("DISPLAY"))
     first = (chosen,) if chosen or display else ()
-    return first + tuple(window for window in OFF_SCREEN if window != chosen)
+    return first + tuple(window for window in OFF_SCREEN_WINDOWS if window != chosen)
 
 
 def _try(window: str) -> str | None:
-    environment = {key: value for key, value in os.environ.items() if key != WINDOW}
+    environment = {key: value for key, value in os.environ.items() if key != WINDOW_VARIABLE}
     if window:
-        environment[WINDOW] = window
+        environment[WINDOW_VARIABLE] = window
     try:
         done = subprocess.run(
-            [sys.executable, "-P", "-c", PROBE],  # importing nothing from the current folder
+            [sys.executable, "-P", "-c", PROBE_CODE],  # importing nothing from the current folder
             cwd="/",  # nor taking settings from there, as matplotlib does
             env=environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
-            timeout=SECONDS,
+            timeout=PROBE_TIMEOUT,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return f"no answer in {SECONDS} s"
+        return f"no answer in {PROBE_TIMEOUT} s"
     except OSError as error:
         return str(error)
     if done.returncode < 0:

@@ -17,23 +17,29 @@ from numpy.typing import NDArray
 
 from pinbase.errors import Damaged
 from reports.data.results import Floats
-from reports.vtk.writer import TYPES
+from reports.vtk.writer import VTK_CELL_TYPES
 
-NODES = {
+NODES_PER_CELL = {
     **{"vertex": 1, "triangle": 3, "quad": 4, "tetra": 4, "wedge": 6},
     **{"triangle6": 6, "tetra10": 10, "wedge15": 15, "hexahedron20": 20},
 }
-KINDS = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "<u1"}
+VTK_NUMBER_TYPES = {
+    "Float32": "<f4",
+    "Float64": "<f8",
+    "Int32": "<i4",
+    "Int64": "<i8",
+    "UInt8": "<u1",
+}
 MAX_COUNT = 20_000_000  # points or cells
 MAX_COMPONENTS = 9
-HEADER = np.dtype("<u8")
-WRITTEN = {
+HEADER_TYPE = np.dtype("<u8")
+FILE_ATTRIBUTES = {
     "type": "UnstructuredGrid",
     "byte_order": "LittleEndian",
     "header_type": "UInt64",
     "compressor": "vtkZLibDataCompressor",
 }
-PARTS = "Points", "Cells", "PointData"
+VTU_SECTIONS = "Points", "Cells", "PointData"
 
 
 @dataclass(frozen=True)
@@ -63,10 +69,10 @@ def read_vtu(content: bytes, name: str) -> Vtu:
 
 def _cells(found: _Reader, count: int, points: int) -> tuple[str, NDArray[np.int64]]:
     kinds = found.array("Cells", "types", count)
-    names = [name for name, number in TYPES.items() if count and (kinds == number).all()]
+    names = [name for name, number in VTK_CELL_TYPES.items() if count and (kinds == number).all()]
     if not names:
         raise ValueError("its cells are not of one type that pinstress writes")
-    width = NODES[names[0]]
+    width = NODES_PER_CELL[names[0]]
     ends = found.array("Cells", "offsets", count)
     if not np.array_equal(ends, width * np.arange(1, count + 1)):
         raise ValueError(f"its cells have not {width} nodes each")
@@ -82,7 +88,9 @@ class _Reader:
 
     def __init__(self) -> None:
         self._piece: dict[str, str] | None = None
-        self._arrays: dict[str, list[tuple[dict[str, str], list[str]]]] = {p: [] for p in PARTS}
+        self._arrays: dict[str, list[tuple[dict[str, str], list[str]]]] = {
+            p: [] for p in VTU_SECTIONS
+        }
         self._path: list[str] = []
 
     def read(self, content: bytes) -> _Reader:
@@ -122,16 +130,16 @@ class _Reader:
             if self._piece is not None:
                 raise ValueError("it has more than one piece")
             self._piece = attributes
-        elif name == "DataArray" and self._path[-2] in PARTS:
+        elif name == "DataArray" and self._path[-2] in VTU_SECTIONS:
             self._arrays[self._path[-2]].append((attributes, []))
 
     def _require_ours(self, name: str, attributes: dict[str, str]) -> None:
-        for key, value in WRITTEN.items():
+        for key, value in FILE_ATTRIBUTES.items():
             if name != "VTKFile" or attributes.get(key) != value:
                 raise ValueError(f"it is no VTU file as pinstress writes them ({key}: {value})")
 
     def _text(self, text: str) -> None:
-        if self._path[-1] == "DataArray" and self._path[-2] in PARTS:
+        if self._path[-1] == "DataArray" and self._path[-2] in VTU_SECTIONS:
             self._arrays[self._path[-2]][-1][1].append(text)
 
     def _doctype(self, *_: object) -> None:
@@ -141,11 +149,11 @@ class _Reader:
 def _decoded(attributes: Mapping[str, str], text: str, count: int) -> NDArray[Any]:
     shown = attributes.get("Name", "")[:60]
     kind, many = attributes.get("type", ""), attributes.get("NumberOfComponents", "1")
-    if kind not in KINDS or attributes.get("format") != "binary":
+    if kind not in VTK_NUMBER_TYPES or attributes.get("format") != "binary":
         raise ValueError(f"array {shown!r} is not of numbers as pinstress writes them")
     if not (many.isascii() and many.isdecimal() and 0 < int(many[:3]) <= MAX_COMPONENTS):
         raise ValueError(f"array {shown!r} has {many[:20]!r} components")
-    dtype, width = np.dtype(KINDS[kind]), int(many)
+    dtype, width = np.dtype(VTK_NUMBER_TYPES[kind]), int(many)
     content = _unpacked(text.strip(), count * width * dtype.itemsize, shown)
     values = np.frombuffer(content, dtype)
     return values if width == 1 else values.reshape(count, width)
@@ -156,7 +164,7 @@ def _unpacked(text: str, size: int, shown: str) -> bytes:
     most = f"array {shown!r} is not {size:,} bytes long"
     blocks, block, last = _integers(text[: _coded(3)], 3, shown)
     whole = blocks if last == 0 else blocks - 1
-    if blocks > size or block > size + HEADER.itemsize * 2**20 or whole * block + last != size:
+    if blocks > size or block > size + HEADER_TYPE.itemsize * 2**20 or whole * block + last != size:
         raise ValueError(most)
     lengths = _integers(text[: _coded(3 + blocks)], 3 + blocks, shown)[3:]
     packed = b64decode(text[_coded(3 + blocks) :], validate=True)
@@ -174,11 +182,11 @@ def _unpacked(text: str, size: int, shown: str) -> bytes:
 
 def _coded(numbers: int) -> int:
     """The characters of so many integers of a header."""
-    return 4 * math.ceil(numbers * HEADER.itemsize / 3)
+    return 4 * math.ceil(numbers * HEADER_TYPE.itemsize / 3)
 
 
 def _integers(text: str, count: int, shown: str) -> list[int]:
     content = b64decode(text, validate=True)
-    if len(content) != count * HEADER.itemsize:
+    if len(content) != count * HEADER_TYPE.itemsize:
         raise ValueError(f"array {shown!r} has no header")
-    return [int(x) for x in np.frombuffer(content, HEADER)]
+    return [int(x) for x in np.frombuffer(content, HEADER_TYPE)]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from reports.data.results import Floats
 
-TYPES = {
+VTK_CELL_TYPES = {
     **{"vertex": 1, "triangle": 5, "quad": 9, "tetra": 10, "wedge": 13},
     **{"triangle6": 22, "tetra10": 24, "wedge15": 26, "hexahedron20": 25},
 }
@@ -64,7 +64,7 @@ def grid(block: Block) -> Any:
     ends = np.arange(0, count * width + 1, width, dtype=np.int32)
     nodes = np.ascontiguousarray(block.cells, dtype=np.int32).ravel()
     cells.SetData(numpy_to_vtk(ends, deep=True), numpy_to_vtk(nodes, deep=True))
-    made.SetCells(TYPES[block.cell_type], cells)
+    made.SetCells(VTK_CELL_TYPES[block.cell_type], cells)
     for place, data in (
         (made.GetPointData(), block.point_data),
         (made.GetCellData(), block.cell_data),

@@ -10,7 +10,7 @@ import pytest
 from assess.opinion.calculix import CalculixError
 from benchmarks.joints import joint_ccx
 from benchmarks.joints.joint_ccx import COUNT, SEED, drawn, ours
-from fea.support.contact.solve_joint import Cells
+from fea.support.contact.solve_joint import Resolution
 
 
 def test_what_is_drawn() -> None:
@@ -31,7 +31,7 @@ def test_what_is_drawn() -> None:
 
 def test_a_failure_of_calculix_is_in_its_row(monkeypatch: pytest.MonkeyPatch) -> None:
     joint = drawn(1, SEED)[0]
-    mine = ours(joint, Cells(4, 16, 6))
+    mine = ours(joint, Resolution(4, 16, 6))
     failed = CalculixError("ccx diverged", "failed")
     monkeypatch.setattr(joint_ccx, "_theirs", lambda *_: failed)
     row = joint_ccx._row(joint, mine, failed)

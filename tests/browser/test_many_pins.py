@@ -10,13 +10,13 @@ from urllib.parse import quote
 import pytest
 
 from benchmarks.runs.page import many_pins
-from reports.page.page import AT_ONCE
+from reports.page.page import MAX_PINS_AT_ONCE
 from tests.browser.conftest import run
 from tests.support.results.browser_page import errors, opened, view, wait
 
 pytestmark = pytest.mark.browser
 
-PINS = AT_ONCE + 2
+PINS = MAX_PINS_AT_ONCE + 2
 NODES_OF_A_PIN = 170  # drawing, headings, rows of the tables that are not folded
 NODES_OF_THE_REST = 600
 NODES = "return document.querySelectorAll('*').length;"

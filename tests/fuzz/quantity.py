@@ -12,7 +12,7 @@ from typing import Any
 
 import tomlkit
 
-from pinstress.study.schema.units import SYSTEMS, UNIT_NEEDED
+from pinstress.study.schema.units import DIMENSIONS_NEEDING_UNIT, UNIT_SYSTEMS
 
 Tree = dict[str, Any]
 INCH, POUND = 0.0254, 0.45359237
@@ -95,7 +95,7 @@ def write(tree: Tree, folder: Path, spelling: random.Random | None = None) -> Pa
     """Put a study and its tables in a folder; the study's path. Numbers are in its unit system, or
     some of them, as `spelling` draws, in units of their own.
     """
-    system = SYSTEMS[tree["units"]]
+    system = UNIT_SYSTEMS[tree["units"]]
 
     def number(quantity: Quantity) -> float:
         return float(f"{quantity.value / system.factor(quantity.dimension):.15g}")
@@ -103,7 +103,7 @@ def write(tree: Tree, folder: Path, spelling: random.Random | None = None) -> Pa
     def plain(node: Any) -> Any:
         if isinstance(node, Quantity):
             worded = spelling is not None and spelling.random() < 0.3
-            if worded or node.dimension in UNIT_NEEDED:
+            if worded or node.dimension in DIMENSIONS_NEEDING_UNIT:
                 units = UNITS[node.dimension]
                 name, factor = spelling.choice(units) if spelling else units[0]
                 return f"{node.value / factor:.15g} {name}"

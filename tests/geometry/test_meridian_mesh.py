@@ -13,7 +13,7 @@ from skfem import Basis, ElementTriP2
 
 from geometry import Arc, Edge, Pin, Segment, meridian
 from geometry.mesh.section_mesh import (
-    SMALLEST_JACOBIAN,
+    MIN_JACOBIAN_RATIO,
     MeridianMesh,
     SectionSize,
     Spot,
@@ -98,7 +98,7 @@ def test_axis(name: str) -> None:
 def test_jacobians(name: str, factor: float) -> None:
     """Positive everywhere, and no element too bent."""
     detail = jacobians(meridian_mesh(PINS[name], SectionSize().finer(factor)))
-    assert np.all(detail.min(axis=1) / detail.max(axis=1) > SMALLEST_JACOBIAN)
+    assert np.all(detail.min(axis=1) / detail.max(axis=1) > MIN_JACOBIAN_RATIO)
 
 
 @settings(max_examples=25, deadline=None)
@@ -123,7 +123,7 @@ def test_any_pin(diameters: list[float], lengths: list[float], part: float, bore
         return
     assert volume(found) == pytest.approx(pin.volume, rel=1e-4)
     detail = jacobians(found)
-    assert np.all(detail.min(axis=1) / detail.max(axis=1) > SMALLEST_JACOBIAN)
+    assert np.all(detail.min(axis=1) / detail.max(axis=1) > MIN_JACOBIAN_RATIO)
 
 
 def test_the_same_twice() -> None:

@@ -13,7 +13,7 @@ from skfem import Basis, ElementTriP2
 from geometry import Pin, Segment, meridian
 from geometry.mesh.moved import near_mesh
 from geometry.mesh.section_mesh import (
-    SMALLEST_JACOBIAN,
+    MIN_JACOBIAN_RATIO,
     MeridianMesh,
     SectionSize,
     Spot,
@@ -48,7 +48,7 @@ def test_the_outline_is_exact_and_elements_are_good(name: str) -> None:
         r, z = found.nodes[np.unique(found.edges[label])].T
         assert np.min([off(r, z) for off in same], axis=0).max() < 1e-12 * pin.length
     assert (found.nodes[found.axis, 0] == 0.0).all()
-    assert found.distortion().min() > SMALLEST_JACOBIAN
+    assert found.distortion().min() > MIN_JACOBIAN_RATIO
 
 
 def test_near_shapes_have_the_same_elements_and_other_nodes() -> None:
@@ -63,7 +63,7 @@ def test_a_shape_has_the_same_mesh_whatever_was_meshed_before(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """To the last bit, with spots and grades: first of all, and after near and far shapes."""
-    monkeypatch.setattr(near_mesh, "_KEPT", near_mesh._Kept())
+    monkeypatch.setattr(near_mesh, "_KEPT_MESHES", near_mesh._Kept())
     corner = (PIN.segments[1].diameter / 2.0, PIN.stations[2])
     spots = [Spot(*corner, 1e-4, 1e-3)]
     high = [Grade(((0.0101, 0.0221),), 3e-4, 1e-3, 0.8)]
@@ -71,7 +71,7 @@ def test_a_shape_has_the_same_mesh_whatever_was_meshed_before(
     for x in (1.003, 0.997, 1.2, 0.8):
         near_mesh.near_mesh(wider(PIN, x), SectionSize(), [], high)
         near_mesh.near_mesh(wider(PIN, x), SectionSize())
-    monkeypatch.setattr(near_mesh, "NODES", 1)
+    monkeypatch.setattr(near_mesh, "MAX_KEPT_NODES", 1)
     near_mesh.near_mesh(PINS["plain"], SectionSize())
     again = near_mesh.near_mesh(PIN, SectionSize(), spots, high)
     assert first.shared is not again.shared
@@ -97,7 +97,7 @@ def test_what_a_fillet_leaves_of_a_shoulder_is_rounded_itself() -> None:
         one, other = (near_mesh.near_mesh(pin.scaled(x), SectionSize()) for x in (1.0, 1.001))
         assert one.shared is other.shared is not None
         assert volume(one) == pytest.approx(pin.volume, rel=1e-5)
-        assert one.distortion().min() > SMALLEST_JACOBIAN
+        assert one.distortion().min() > MIN_JACOBIAN_RATIO
 
 
 def test_without_a_rounded_shape_it_is_the_shapes_own_mesh() -> None:

@@ -13,7 +13,7 @@ import pytest
 
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot, meridian
 from geometry.imported.body_file import BodyFile
-from geometry.imported.recognise import NotTurnedError, Turned, turned
+from geometry.imported.recognise import NotTurnedError, RecognisedProfile, recognised_profile
 from geometry.mesh.cut_solid import cut_solid
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.revolve import revolve
@@ -66,7 +66,7 @@ def step(pin: Pin | CutPin, path: Path, change: Change = _as_drawn) -> BodyFile:
     return BodyFile("P", path, MM, ())
 
 
-def same(found: Turned, pin: Pin) -> None:
+def same(found: RecognisedProfile, pin: Pin) -> None:
     """The outline is the pin's: as long edge by edge, and as large."""
     same_outline(found.pin("P"), pin.scaled(MM))
 
@@ -80,7 +80,7 @@ def same_outline(made: Pin, wanted: Pin) -> None:
 
 @pytest.mark.parametrize("name", PROFILES)
 def test_a_turned_body_is_its_profile(name: str, tmp_path: Path) -> None:
-    same(turned(step(PROFILES[name], tmp_path / "pin.step")), PROFILES[name])
+    same(recognised_profile(step(PROFILES[name], tmp_path / "pin.step")), PROFILES[name])
 
 
 @pytest.mark.parametrize("name", ["stepped", "cone", "tube"])
@@ -88,8 +88,8 @@ def test_its_axis_may_lie_anyhow(name: str, tmp_path: Path) -> None:
     """Either end may be the start, as nothing in the file says which."""
     file = step(PROFILES[name], tmp_path / "pin.step", _turn)
     with raises(NotTurnedError, "not-turned", "not the file's z-axis"):
-        turned(file)
-    found = turned(file, upright=False).pin("P")
+        recognised_profile(file)
+    found = recognised_profile(file, upright=False).pin("P")
     assert found.volume == pytest.approx(PROFILES[name].volume * MM**3, rel=1e-8)
     lengths = sorted(s.length / MM for s in found.segments)
     assert lengths == pytest.approx(sorted(s.length for s in PROFILES[name].segments))
@@ -114,13 +114,13 @@ def _halves(gmsh: Any, solid: int) -> None:
 def test_faces_may_be_split(name: str, tmp_path: Path) -> None:
     file = step(PROFILES[name], tmp_path / "pin.step", _halves)
     assert file.path.read_text().count("ADVANCED_FACE") > len(meridian(PROFILES[name]))
-    same(turned(file), PROFILES[name])
+    same(recognised_profile(file), PROFILES[name])
 
 
 def test_holes_and_flats_become_features(tmp_path: Path) -> None:
     hole, flat = Hole(30.0, 4.0, math.pi / 6.0), Flat(45.0, 55.0, 8.0, -math.pi / 3.0)
     pin = CutPin(PROFILES["stepped"], (hole,), (flat,))
-    found = turned(step(pin, tmp_path / "pin.step"))
+    found = recognised_profile(step(pin, tmp_path / "pin.step"))
     same(found, PROFILES["stepped"])
     a, b = found.cuts
     assert isinstance(a, Hole)
@@ -152,7 +152,7 @@ CUTS: dict[str, Cut] = {
 def test_a_cut_is_recognised(name: str, tmp_path: Path) -> None:
     """And the volume of what is made of it is that of the body, or it would not be."""
     cut = CUTS[name]
-    found = turned(step(CutPin.of(PROFILES["stepped"], [cut]), tmp_path / "pin.step"))
+    found = recognised_profile(step(CutPin.of(PROFILES["stepped"], [cut]), tmp_path / "pin.step"))
     same(found, PROFILES["stepped"])
     (made,) = found.cuts
     assert isinstance(made, Hole | Flat | Slot | Passage)
@@ -174,7 +174,7 @@ def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> Non
         Slot(30.0, 45.0, 4.0, 3.0, 2.8, 0.4), Passage(0.0, 60.0, 2.0, 7.0, -1.5),
     )  # fmt: skip
     file = step(CutPin.of(tube, cuts), tmp_path / "pin.step", _turn)
-    found = turned(file, upright=False)
+    found = recognised_profile(file, upright=False)
     assert sorted(cut.what for cut in found.cuts) == ["flat", "hole", "hole", "passage", "slot"]
 
 
@@ -194,7 +194,7 @@ def test_a_file_in_inches(tmp_path: Path) -> None:
     (before,) = set(re.findall(r"\( *LENGTH_UNIT\(\) NAMED_UNIT\(\*\) SI_UNIT\([^)]*\) *\)", text))
     text = text.replace(before, INCH[0]).replace("ENDSEC;\nEND-ISO", INCH[1])
     file.path.write_text(text)
-    found = turned(file)
+    found = recognised_profile(file)
     same(found, PROFILES["stepped"].scaled(25.4))
     (made,) = found.cuts
     assert made.scaled(1e3 / 25.4).like(cut, 1e-5)
@@ -208,7 +208,7 @@ def test_a_dome_may_have_its_poles_aside(tmp_path: Path) -> None:
         occ.fuse([(3, bar)], [(3, ball)])
         occ.synchronize()
         gmsh.write(str(tmp_path / "dome.brep"))
-    found = turned(BodyFile("P", tmp_path / "dome.brep", MM, ()), upright=False)
+    found = recognised_profile(BodyFile("P", tmp_path / "dome.brep", MM, ()), upright=False)
     (segment,) = found.pin("P").segments
     assert (segment.length, segment.diameter) == pytest.approx((0.035, 0.01))
     assert segment.edge_radii == pytest.approx((0.0, 0.005))
@@ -218,7 +218,7 @@ def test_where_it_starts_and_what_its_cylinders_are_called(tmp_path: Path) -> No
     def lift(gmsh: Any, solid: int) -> None:
         gmsh.model.occ.translate([(3, solid)], 0, 0, -12.5)
 
-    found = turned(step(PROFILES["sharp"], tmp_path / "pin.step", lift))
+    found = recognised_profile(step(PROFILES["sharp"], tmp_path / "pin.step", lift))
     assert found.start == -12.5
     first, second = sorted(found.surfaces.values())
     assert (*first, *second) == pytest.approx((0.0, 0.02, 0.02, 0.06))
@@ -242,4 +242,4 @@ def _oblique(gmsh: Any, solid: int) -> None:
 @pytest.mark.parametrize("change", [_box, _beside_axis, _oblique])
 def test_other_bodies_are_not_turned(change: Change, tmp_path: Path) -> None:
     with raises(NotTurnedError, "not-turned", "pin.step"):
-        turned(step(PROFILES["sharp"], tmp_path / "pin.step", change))
+        recognised_profile(step(PROFILES["sharp"], tmp_path / "pin.step", change))

@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from pinbase.platform import bare, offered
+from pinbase.platform import offered
+from pinbase.platform import portable as portable_numerics
 from pinbase.processes.system import portable
 from tests.conftest import ROOT
 from tests.pinstress.cli.test_output import ROOM, SLOW, names
@@ -187,12 +188,12 @@ def test_a_chart_is_refused_where_memory_is_not_known(tmp_path: Path) -> None:
 
 def test_all_rooms_take_the_same_way(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PINSTRESS_PORTABLE", "1")
+    assert portable_numerics()
     assert portable()
-    assert bare()
     assert offered("cvxopt.cholmod") is None
     monkeypatch.setenv("PINSTRESS_PORTABLE", "0")
+    assert not portable_numerics()
     assert not portable()
-    assert not bare()
     assert offered("cvxopt.cholmod") is not None
     assert offered("no_such_library") is None
     monkeypatch.setattr(sys, "platform", "win32")

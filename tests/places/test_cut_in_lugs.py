@@ -10,15 +10,15 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs, Rings
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.cut.free_points import FreePoints, relieved
-from fea.solve.requirement import Asked
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.requirement import Requirement
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import CutPin, Hole, Pin, Segment
 
 D, F = 0.02, 30e3
-ROUGHLY = Asked(0.05, cells="rough", meshes=1)
+ROUGHLY = Requirement(0.05, cells="rough", meshes=1)
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=9e8)
 PIN = Pin(
     "P",
@@ -34,7 +34,7 @@ LOADS = PinLoads("pull", ("A", "B"), F * np.array([[[-1.0, 0.0, 0.0], [1.0, 0.0,
 def solved(*cuts: Hole) -> LugSolution:
     """In single shear, where lugs nearly touch."""
     cut = CutPin(PIN, cuts) if cuts else None
-    return solve_in_lugs(InLugs(PIN, STEEL, LUGS, (LOADS,), cut=cut), ROUGHLY)[0]
+    return solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (LOADS,), cut=cut), ROUGHLY)[0]
 
 
 def test_a_prick_changes_nothing() -> None:
@@ -52,7 +52,7 @@ def test_a_prick_changes_nothing() -> None:
     assert other.surface.max_von_mises == pytest.approx(one.surface.max_von_mises, rel=0.05)
     assert other.contact.beneath == pytest.approx(one.contact.beneath, rel=0.02)
     answer, loads = pricked.solution.answer, pricked.pressed(LOADS)
-    assert isinstance(answer, CutAnswer)
+    assert isinstance(answer, CutField)
     (piece,) = answer.solution.pieces
     assert piece.piece.z1 > PIN.band("B").z0
     read, every = (piece.largest(x)[0][0] for x in (loads, replace(loads, pressed=None)))

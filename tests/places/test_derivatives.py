@@ -28,22 +28,22 @@ from benchmarks.pins.derivatives import moved_maximum, richardson
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.free_surface import surface_points
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import solve_pin
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.support.contact.solve_joint import Cells
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
-from geometry.mesh.moved.outline_motion import PLACES
+from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
 from geometry.shape.dimensions import dimensions
 from pinbase.arrays import Floats
 
 STEEL = Material("steel", 210e9, 0.3, 7850.0, yield_strength=700e6)
 ALUMINIUM = Material("aluminium", 70e9, 0.33)
-ROUGH = Cells(4, 24, 8)
-FINE = Cells(16, 24, 8)  # so short rings that stress is continued to the edges of lugs
+ROUGH = Resolution(4, 24, 8)
+FINE = Resolution(16, 24, 8)  # so short rings that stress is continued to the edges of lugs
 STEP = 1e-4  # of a parameter
 FILLET = Pin(
     "P",
@@ -206,7 +206,9 @@ def test_at_the_edge_of_a_lug() -> None:
             loads = replace(solved.loads, pressed=pressed)
             return moved_maximum(solved, made.pin, moved, STEEL, loads, adjoint.top.point)
 
-        pins = tuple(model.reshaped(*one.changed(one.value + x * step)).pin for x in PLACES)
+        pins = tuple(
+            model.reshaped(*one.changed(one.value + x * step)).pin for x in DIFFERENCE_STEPS
+        )
         ours = adjoint.by_motions([nodes.among(one.key, pins, step)])[one.key]
         little = 1e-6 * adjoint.top.value / one.value
         assert ours == pytest.approx(richardson(other, step), rel=1e-5, abs=little), one.key
@@ -230,8 +232,8 @@ def test_a_prescribed_section_by_formula() -> None:
     loads = PinLoads("c", ("B",), np.array([[[force, 0.0, 0.0]]]))
     for length, band, power, by in ((0.1, 0.01, -3.0, 1.0 / 0.105), (5e-4, 0.004, -2.0, 0.0)):
         pin = Pin("P", (Segment(length, 0.02), Segment(band, 0.02, connection="B")))
-        (found,) = solve_pin(pin, STEEL, ("start",), (loads,), Asked(0.05, model="harmonic"))
-        assert isinstance(found.answer, HarmonicAnswer)
+        (found,) = solve_pin(pin, STEEL, ("start",), (loads,), Requirement(0.05, model="harmonic"))
+        assert isinstance(found.answer, HarmonicField)
         solved = SolvedCase(pin, STEEL, ("start",), loads, found.answer.solution, ())
         ours = section_derivatives(solved, tuple(dimensions(pin)))
         diameter = ours.by_dimension["profile[1-2].diameter"]
@@ -271,7 +273,7 @@ def test_of_whole_solutions(place: Place) -> None:
     one = every["profile[5-7].diameter" if surface else "profile[1-4].diameter"]
 
     def solved(pin: Pin) -> tuple[LugSolution, float]:
-        (made,) = solve_in_lugs(InLugs(pin, STEEL, lugs, (loads,)), Asked(0.02))
+        (made,) = solve_in_lugs(PinProblem(pin, STEEL, lugs, (loads,)), Requirement(0.02))
         places = made.solution.peak.places
         assert places is not None
         value = places.surface if surface else places.section

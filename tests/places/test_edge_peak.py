@@ -14,8 +14,14 @@ from benchmarks.joints.joint import STEEL, D
 from benchmarks.joints.rounded_edge import edge_stress
 from fea.core.material import Material
 from fea.singular.lug_edge import edge_exponent, lug_edge_exponent, next_power
-from fea.support.contact.edge_peak import BELOW, POISSON, WITHIN, contact_edges, strength_at_edge
-from fea.support.contact.solve_joint import Cells
+from fea.support.contact.edge_peak import (
+    EDGE_PEAK_ERROR,
+    POISSON_RATIOS,
+    SUBSURFACE_STRESS_RATIOS,
+    contact_edges,
+    strength_at_edge,
+)
+from fea.support.contact.solve_joint import Resolution
 
 RIGID = Material("rigid", 210e15, 0.3)
 
@@ -38,7 +44,9 @@ def test_the_peak_is_that_of_finite_elements(radius: float, length: float, lug: 
     for cells in ALIKE[:2]:
         for edge in contact_edges(shrunk(fit, lug, cells), STEEL):
             assert edge.max_pressure == pytest.approx(truth.pressure, rel=0.04)
-            assert edge.error_estimate == pytest.approx(WITHIN * (edge.max_pressure or 0.0))
+            assert edge.error_estimate == pytest.approx(
+                EDGE_PEAK_ERROR * (edge.max_pressure or 0.0)
+            )
 
 
 @pytest.mark.slow
@@ -49,7 +57,9 @@ def test_von_mises_stress_beneath_it_is_that_of_finite_elements() -> None:
     fit = shrink_fit(0.02, 1.0)
     coarse, fine = (edge_stress(fit, STEEL, STEEL, x) for x in (1.0 / 300.0, 1.0 / 600.0))
     part = 2.0 * fine.von_mises / fine.pressure - coarse.von_mises / coarse.pressure
-    assert float(np.interp(0.3, POISSON, BELOW)) == pytest.approx(part, rel=0.03)
+    assert float(np.interp(0.3, POISSON_RATIOS, SUBSURFACE_STRESS_RATIOS)) == pytest.approx(
+        part, rel=0.03
+    )
 
 
 @pytest.mark.parametrize("lug", [STEEL, ALUMINIUM])
@@ -59,7 +69,7 @@ def test_the_strength_of_a_sharp_edge_is_that_of_many_rings(lug: Material, lengt
     a straight line over the first tenth of the lug: that uses no force and no second term.
     """
     fit = shrink_fit(0.0, length)
-    contact = shrunk(fit, lug, Cells(32, 6, 0))
+    contact = shrunk(fit, lug, Resolution(32, 6, 0))
     s = lug_edge_exponent(STEEL, lug)
     size = contact.bands.length
     x, p = np.cumsum(size) - size / 2.0, contact.contact[0].pressure[:, 0]

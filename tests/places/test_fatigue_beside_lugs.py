@@ -12,10 +12,10 @@ from assess.fatigue.stress_points import StressPoints, stress_points
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.requirement import Asked
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.requirement import Requirement
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import CutPin, Hole, Pin, Segment
 from pinbase.arrays import Floats
@@ -45,8 +45,8 @@ def solved(wide: float, hole: float = 0.0) -> LugSolution:
     """Under a force that reverses."""
     lugs = tuple(Lug(n, 0.06, STEEL, 2e-5, 0.0, 0.0 if n == "B" else np.inf) for n in "ABC")
     cut = CutPin(pin(wide), (Hole(0.5 * pin(wide).length, hole, np.pi / 2.0),)) if hole else None
-    given = InLugs(pin(wide), STEEL, lugs, (REVERSED,), cut=cut)
-    return solve_in_lugs(given, Asked(0.05, cells="rough", meshes=1))[0]
+    given = PinProblem(pin(wide), STEEL, lugs, (REVERSED,), cut=cut)
+    return solve_in_lugs(given, Requirement(0.05, cells="rough", meshes=1))[0]
 
 
 def test_the_critical_point_is_in_the_fillet_with_the_range_of_the_surface() -> None:
@@ -65,7 +65,7 @@ def test_the_critical_point_is_in_the_fillet_with_the_range_of_the_surface() -> 
     assert min(abs(first.location[2] - end) for end in (ends[3], ends[6])) < RHO
     stress = first.cases[0].stress
     swing = float(von_mises(stress[0] - stress[1]))
-    assert isinstance(found.answer, HarmonicAnswer)
+    assert isinstance(found.answer, HarmonicField)
     fields = found.answer.fields
     around = Circumference(fields, found.loads.at(np.array([0])))
     r, z = fields.points[: fields.skin].T

@@ -9,21 +9,21 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
+from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
 from fea.solve.solve_pin import singularities_of
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 D, F, RHO = 0.02, 30e3, 0.001
 STEEL = Material("steel", 2.1e11, 0.3)
 PULL = PinLoads("pull", tuple("ABC"), F * np.outer([-0.5, 1.0, -0.5], np.eye(3)[0])[None])
-ROUGH, FINE = Cells(4, 24, 8), Cells(16, 64, 20)
+ROUGH, FINE = Resolution(4, 24, 8), Resolution(16, 64, 20)
 TRUTH = 290e6  # Pa, on 16 rings of a lug; 287 on 12
 
 
 @pytest.mark.parametrize("cells", [ROUGH, pytest.param(FINE, marks=pytest.mark.slow)])
-def test_it_is_found_on_any_cells(cells: Cells) -> None:
+def test_it_is_found_on_any_cells(cells: Resolution) -> None:
     """Fillets of 0.05 d that begin 0.005 d from the outer lugs, 0.05 d from the middle one. Rough
     cells would end in rings of 0.07 and 0.14 d, and a lug presses on either side of each fillet:
     with no part of these rings cut for it, 134 MPa were left within a ring's length of both.
@@ -40,9 +40,9 @@ def test_it_is_found_on_any_cells(cells: Cells) -> None:
     )
     tilts = zip("ABC", (math.inf, 0.0, math.inf), strict=True)
     lugs = [Lug(n, 0.06, STEEL, 2e-5, 0.0, tilt) for n, tilt in tilts]
-    model = JointModel(pin, STEEL, lugs, cells)
+    model = ContactModel(pin, STEEL, lugs, cells)
     loads = model.solve(PULL).loads
     zones = singularities_of(model.pin, STEEL, (), (loads,))
     posed = SectionProblem(model.pin, STEEL, (), (loads,), zones, model.first)
-    answer = HarmonicAnswer(harmonic_solution(posed, 0, 1.0), zones)
+    answer = HarmonicField(harmonic_solution(posed, 0, 1.0), zones)
     assert answer.largest(loads)[0] == pytest.approx(TRUTH, rel=0.04)

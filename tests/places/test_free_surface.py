@@ -10,14 +10,14 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.core.pressed import ANGLES, BINS, EDGE, PressedArcs
+from fea.core.pressed import ARC_ANGLES, ARC_COUNT, UNREAD_EDGE_RINGS, PressedArcs
 from fea.core.voigt import von_mises
-from fea.harmonic.beneath import EVERY, _distance, depths
+from fea.harmonic.beneath import ARC_STRIDE, _distance, depths
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.superposition import Circumference
 from fea.support.contact.pressure_loads import stacked
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 from pinbase.arrays import Mask
@@ -46,7 +46,7 @@ class Solved:
         found = self.contact.contact[instant]
         sectors = found.pressure.shape[1]
         middles = np.degrees(self.contact.angles + found.angle)
-        off = np.abs((np.degrees(ANGLES)[:, None] - middles + 180.0) % 360.0 - 180.0)
+        off = np.abs((np.degrees(ARC_ANGLES)[:, None] - middles + 180.0) % 360.0 - 180.0)
         return found.pressure > 0.0, 180.0 / sectors + math.ceil(360.0 / sectors) - off
 
     @property
@@ -75,7 +75,7 @@ def solved(request: pytest.FixtureRequest) -> Solved:
     lugs = [Lug(c, 2.5 * D, STEEL, edge_radius=radius, tilt=1e5) for c in "LMR"]
     share = np.array([-0.55, 1.0, -0.45])[:, None] * 50e3
     along = np.array([[1.0, 0.0, 0.0], [0.4 * math.cos(0.3), 0.4 * math.sin(0.3), 0.0]])
-    model = JointModel(pin, STEEL, lugs, Cells(6, 36, 12))
+    model = ContactModel(pin, STEEL, lugs, Resolution(6, 36, 12))
     loads = PinLoads("c", ("L", "M", "R"), along[:, None, :] * share[None], times=np.arange(2.0))
     contact = model.solve(loads)
     problem = SectionProblem(model.pin, STEEL, (), (contact.loads,), (), model.first)
@@ -129,12 +129,12 @@ def test_the_free_surface_is_that_of_its_definition(solved: Solved) -> None:
         masked = free.masked(points)
         for k, read, some in zip(points.tolist(), found, masked, strict=True):
             shut = shutting(solved, pressed, float(of.fields.points[k, 0]), float(of.middle[k]))
-            deep = depth[:, shut].max(axis=1) if shut.any() else np.full(BINS, -np.inf)
+            deep = depth[:, shut].max(axis=1) if shut.any() else np.full(ARC_COUNT, -np.inf)
             assert not read[deep > 0.5].any()
             if k not in stands:
                 assert read[deep < -0.5].all()
             assert some or read.all()
-            partly += int(0 < read.sum() < BINS)
+            partly += int(0 < read.sum() < ARC_COUNT)
     assert partly > 100
 
 
@@ -143,7 +143,7 @@ def test_the_edges_of_lugs_are_read_where_all_beside_them_is(solved: Solved) -> 
     of, free = solved.of, solved.free
     assert of.cusps or not solved.pressed.rings.edge.any()  # rings may be too long for a fit
     for instant in range(2):
-        seen = np.zeros(BINS, dtype=bool)
+        seen = np.zeros(ARC_COUNT, dtype=bool)
         for edge, cusp in of.cusps.items():
             (read,) = free.read(np.array([edge]), np.array([instant]))
             each = free.read(cusp.near, np.full(len(cusp.near), instant))
@@ -176,9 +176,9 @@ def test_pressed_surface_is_read_away_from_the_edges_of_lugs(solved: Solved) -> 
                 while rounded < len(side) and rings.edge[side[rounded]]:
                     rounded += 1
                 reached = pressed[side[: rounded + 1]].any(axis=0)
-                if ring in side[: rounded + EDGE]:
+                if ring in side[: rounded + UNREAD_EDGE_RINGS]:
                     shut |= pressed[ring] & reached
-            deep = depth[:, shut].max(axis=1) if shut.any() else np.full(BINS, -np.inf)
+            deep = depth[:, shut].max(axis=1) if shut.any() else np.full(ARC_COUNT, -np.inf)
             assert not read[deep > 0.5].any()
             assert read[deep < -0.5].all()
 
@@ -197,7 +197,7 @@ def test_depths_are_how_far_stress_exceeds_any_limit(solved: Solved) -> None:
     """
     fields, loads = solved.of.fields, solved.contact.loads
     rows = np.flatnonzero(~np.isin(np.arange(len(fields.points)), fields.unread))
-    stress = von_mises(Circumference(fields, loads).stress(rows, 0, ANGLES[::EVERY]))
+    stress = von_mises(Circumference(fields, loads).stress(rows, 0, ARC_ANGLES[::ARC_STRIDE]))
     away = _distance(fields.points[rows], solved.pressed, 0)
     found = depths(fields, loads, 0, (), 0.0)
     for limit in np.quantile(stress, [0.3, 0.7, 0.99, 0.9999]).tolist():

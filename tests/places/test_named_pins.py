@@ -26,7 +26,7 @@ from benchmarks.joints.named_pins import (
 )
 from benchmarks.joints.turned_ccx import DENSER, turned_opinion
 from fea.core.voigt import von_mises
-from fea.support.contact.solve_in_lugs import InLugs
+from fea.support.contact.solve_in_lugs import PinProblem
 from geometry import Segment
 
 # Of the nearer end: lugs with shanks of their own differ from rings by 4 % (docs/benchmarks.md).
@@ -72,7 +72,7 @@ def test_the_outline_of_a_groove() -> None:
     assert (np.diff(stations) > 5e-5).all()
 
 
-def same(given: InLugs, found: JointOpinion, within: float) -> None:
+def same(given: PinProblem, found: JointOpinion, within: float) -> None:
     """The row is the largest stress of their surface without what is pressed; the moment at
     mid-span is theirs to 2 %.
     """

@@ -19,8 +19,8 @@ from fea.core.places import (
 )
 from fea.harmonic.beneath import stairs
 from pinstress import load_study, run
-from pinstress.cli.closing import REQUIREMENT_MISSED, report_violations
-from pinstress.study.schema.units import SYSTEMS
+from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED, report_violations
+from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units
@@ -108,7 +108,7 @@ def test_it_is_said_wherever_an_outcome_is(capsys: pytest.CaptureFixture[str]) -
     table = envelope_table(results)
     said = {line[table.columns.index("outcome")] for line in table.rows}
     assert said <= {"depends"}
-    assert report_violations(results) == REQUIREMENT_MISSED
+    assert report_violations(results) == EXIT_REQUIREMENT_MISSED
     assert f"Safe as described, {clause}: A (x)." in capsys.readouterr().err
 
 
@@ -135,7 +135,7 @@ def test_results_json_has_the_places() -> None:
 def test_strengths_of_edges_and_depths_are_in_the_units_of_a_study() -> None:
     """K of p = K d^-s: 1 Pa m^0.25 is 1e-6 MPa (1000 mm)^0.25 = 5.623e-6 MPa mm^0.25."""
     edge = ContactEdge("L", "start", 1.0, 0.25, 0.001, None, None, None)
-    found = in_units(replace(contact(1e6), edges=(edge,)), SYSTEMS["mm-N-s"].factor)
+    found = in_units(replace(contact(1e6), edges=(edge,)), UNIT_SYSTEMS["mm-N-s"].factor)
     strength = found.edges[0].K
     assert strength == pytest.approx(1e-6 * 1000.0**0.25, rel=1e-12)
     assert found.edges[0].yield_distance == pytest.approx(1.0)

@@ -12,9 +12,9 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.core.places import BENEATH
-from fea.core.pressed import ANGLES, BINS, PressedArcs, Rings
-from fea.harmonic.beneath import EVERY, Away, _distance, arcs_apart
+from fea.core.places import BENEATH_DISTANCE
+from fea.core.pressed import ARC_ANGLES, ARC_COUNT, PressedArcs, Rings
+from fea.harmonic.beneath import ARC_STRIDE, Away, _distance, arcs_apart
 
 STEEL = Material("steel", 210e9, 0.3)
 D, RADIUS = 0.02, 0.01
@@ -48,10 +48,10 @@ def test_arcs_are_those_of_the_cells_that_turn(sectors: int, angle: float) -> No
     rng = np.random.default_rng(sectors)
     cells = rng.random((2, len(THREE), sectors)) < 0.4
     found = PressedArcs.of(THREE, list(cells), [angle, 0.0])
-    assert found.on.shape == (2, len(THREE), BINS)
+    assert found.on.shape == (2, len(THREE), ARC_COUNT)
     assert found.sector == math.ceil(360.0 / sectors)
     middles = np.degrees(angle) + 360.0 / sectors * np.arange(sectors)
-    for k, at in enumerate(np.degrees(ANGLES)):
+    for k, at in enumerate(np.degrees(ARC_ANGLES)):
         off = np.array([apart(at, m) for m in middles])
         nearest = np.flatnonzero(off <= off.min() + 1e-6)
         assert any((found.on[0, :, k] == cells[0, :, m]).all() for m in nearest)
@@ -65,19 +65,21 @@ def test_a_pressed_cell_presses_as_many_arcs_as_it_is_wide() -> None:
         found = PressedArcs.of(THREE, [cells], [angle])
         assert found.on.sum() == found.on[0, 3].sum() == 10
         middle = np.degrees(angle) + 10.0 * cell
-        assert max(apart(float(a), middle) for a in np.degrees(ANGLES[found.on[0, 3]])) <= 5.0
+        assert max(apart(float(a), middle) for a in np.degrees(ARC_ANGLES[found.on[0, 3]])) <= 5.0
 
 
 @pytest.mark.parametrize("sector", [5, 8, 10, 15])
 def test_widened_is_a_sector_more_on_both_sides(sector: int) -> None:
     rng = np.random.default_rng(sector)
-    arcs = rng.random((6, BINS)) < np.array([0.0, 0.002, 0.01, 0.1, 0.9, 1.1])[:, None]
+    arcs = rng.random((6, ARC_COUNT)) < np.array([0.0, 0.002, 0.01, 0.1, 0.9, 1.1])[:, None]
     arcs[1, [0, 359]] = True
     found = PressedArcs(THREE, arcs[None], sector).widened(arcs)
     for row, on in enumerate(arcs):
         where = np.flatnonzero(on)
-        for k in range(BINS):
-            near = any(min((k - j) % BINS, (j - k) % BINS) <= sector for j in where.tolist())
+        for k in range(ARC_COUNT):
+            near = any(
+                min((k - j) % ARC_COUNT, (j - k) % ARC_COUNT) <= sector for j in where.tolist()
+            )
             assert found[row, k] == near
 
 
@@ -91,11 +93,11 @@ def test_the_last_pressed_rings_of_what_has_no_gap() -> None:
     for of, follows in cases:
         assert of.follows.tolist() == [True, follows, True]
         rng = np.random.default_rng(1)
-        on = rng.random((3, len(of), BINS)) < 0.6
+        on = rng.random((3, len(of), ARC_COUNT)) < 0.6
         for instant in range(3):
             first, last = PressedArcs(of, on, 8).last(instant)
             for ring in range(len(of)):
-                for k in range(0, BINS, 7):
+                for k in range(0, ARC_COUNT, 7):
                     now = on[instant, :, k]
                     before = ring > 0 and of.follows[ring - 1] and now[ring - 1]
                     after = ring + 1 < len(of) and of.follows[ring] and now[ring + 1]
@@ -106,7 +108,7 @@ def test_the_last_pressed_rings_of_what_has_no_gap() -> None:
 def test_instants_go_with_those_of_the_loads() -> None:
     """Through `at` and `merged` of loads in the order of time, and `amid` between two."""
     rng = np.random.default_rng(0)
-    on = rng.random((5, len(THREE), BINS)) < 0.5
+    on = rng.random((5, len(THREE), ARC_COUNT)) < 0.5
     times = np.array([0.0, 0.5, 1.0, 0.25, 0.75])
 
     def case(instants: list[int]) -> PinLoads:
@@ -142,7 +144,7 @@ def brute(point: tuple[float, float], angle: float, of: PressedArcs, instant: in
         radius = float(of.rings.radius[ring])
         along = np.linspace(of.rings.start[ring], of.rings.end[ring], 101) - z
         height = float(np.abs(along).min())
-        arcs = ANGLES[of.on[instant, ring]]
+        arcs = ARC_ANGLES[of.on[instant, ring]]
         if len(arcs):
             each = arcs[:, None] + np.radians(np.linspace(-0.5, 0.5, 101))
             flat = np.hypot(radius * np.cos(each) - x, radius * np.sin(each) - y).min()
@@ -154,10 +156,10 @@ def some_arcs(seed: int, share: float) -> PressedArcs:
     """A few stretches of arcs on the rings of two lugs of unlike radius, one instant with none."""
     rng = np.random.default_rng(seed)
     of = rings([[0.0, 0.001, 0.004, 0.006], [0.008, 0.010, 0.013]], 1, (RADIUS, 1.2 * RADIUS))
-    on = np.zeros((3, len(of), BINS), dtype=bool)
+    on = np.zeros((3, len(of), ARC_COUNT), dtype=bool)
     for ring in np.flatnonzero(rng.random(len(of)) < share).tolist():
-        first, count = rng.integers(0, BINS), rng.integers(1, 120)
-        on[0, ring, np.arange(first, first + count) % BINS] = True
+        first, count = rng.integers(0, ARC_COUNT), rng.integers(1, 120)
+        on[0, ring, np.arange(first, first + count) % ARC_COUNT] = True
     on[1, 2] = True
     return PressedArcs(of, on, 10)
 
@@ -170,10 +172,10 @@ def test_distances_are_those_in_space(seed: int) -> None:
     points[0, 0] = 0.0
     for instant in range(3):
         found = _distance(points, of, instant)
-        assert found.shape == (12, BINS // EVERY)
+        assert found.shape == (12, ARC_COUNT // ARC_STRIDE)
         for k, (r, z) in enumerate(points.tolist()):
-            for arc in rng.integers(0, BINS // EVERY, 5).tolist():
-                expected = brute((r, z), float(ANGLES[arc * EVERY]), of, instant)
+            for arc in rng.integers(0, ARC_COUNT // ARC_STRIDE, 5).tolist():
+                expected = brute((r, z), float(ARC_ANGLES[arc * ARC_STRIDE]), of, instant)
                 if math.isinf(expected):
                     assert math.isinf(found[k, arc])
                 else:
@@ -193,16 +195,16 @@ def test_away_is_farther_than_a_tenth_of_the_diameter(seed: int) -> None:
         found = region.read(every, np.full(len(points), instant))
         masked = region.masked(every)
         for k, (r, z) in enumerate(points.tolist()):
-            for arc in rng.integers(0, BINS, 6).tolist():
+            for arc in rng.integers(0, ARC_COUNT, 6).tolist():
                 distances = [
-                    brute((r, z), float(ANGLES[arc]), one, instant) / (2.0 * float(radius))
+                    brute((r, z), float(ARC_ANGLES[arc]), one, instant) / (2.0 * float(radius))
                     for radius in np.unique(of.rings.radius)
                     for one in [of_radius(of, float(radius))]
                 ]
                 slack = 0.5 * math.radians(1.0) * RADIUS / (2.0 * RADIUS)
-                if min(distances) > BENEATH + slack:
+                if min(distances) > BENEATH_DISTANCE + slack:
                     assert found[k, arc]
-                if min(distances) < BENEATH - slack:
+                if min(distances) < BENEATH_DISTANCE - slack:
                     assert not found[k, arc]
                     near += 1
             assert masked[k] or found[k].all()
@@ -216,10 +218,12 @@ def of_radius(of: PressedArcs, radius: float) -> PressedArcs:
 
 def test_arcs_apart_are_counted_the_shorter_way_round() -> None:
     rng = np.random.default_rng(5)
-    on = rng.random((5, BINS)) < np.array([0.0, 0.003, 0.02, 0.3, 1.1])[:, None]
+    on = rng.random((5, ARC_COUNT)) < np.array([0.0, 0.003, 0.02, 0.3, 1.1])[:, None]
     found = arcs_apart(on)
     for row, arcs in enumerate(on):
         where = np.flatnonzero(arcs).tolist()
-        for k in range(BINS):
-            least = min((min((k - j) % BINS, (j - k) % BINS) for j in where), default=BINS)
+        for k in range(ARC_COUNT):
+            least = min(
+                (min((k - j) % ARC_COUNT, (j - k) % ARC_COUNT) for j in where), default=ARC_COUNT
+            )
             assert found[row, k] == least

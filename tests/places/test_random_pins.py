@@ -13,7 +13,7 @@ import pytest
 from benchmarks.joints.random_pins import Checked, check, pin_trials, read_surface
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.fields import MeridianFields
-from fea.solve.solve_pin import Asked
+from fea.solve.solve_pin import Requirement
 
 TRIALS = pin_trials(20, 7)
 
@@ -21,7 +21,7 @@ TRIALS = pin_trials(20, 7)
 @pytest.mark.parametrize("k", range(len(TRIALS)))
 def test_rows_on_large_cells(k: int) -> None:
     """Rows on the largest cells, whose error is largest."""
-    found = check(TRIALS[k], Asked(cells="rough"))
+    found = check(TRIALS[k], Requirement(cells="rough"))
     assert not found.violates, found
 
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.peak import ErrorParts, Peak, accuracy
+from fea.core.peak import ErrorParts, Maximum, accuracy
 from fea.core.pin_loads import PinLoads
 from fea.section.place import FoundSection, found_section
 from fea.section.row import row_of
-from fea.section.section_stress import SectionAnswer
+from fea.section.section_stress import SectionField
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)
@@ -21,9 +21,9 @@ CANTILEVER = Pin("C", (Segment(0.2, D, name="shaft"), Segment(0.02, D, connectio
 BENT = PinLoads("c", ("E",), np.array([[[1e3, 0.0, 0.0]]]))
 
 
-def surface(value: float, error: float, **more: object) -> Peak:
+def surface(value: float, error: float, **more: object) -> Maximum:
     own = accuracy(error / value, 0.02, error <= 0.02 * value)
-    row = Peak(
+    row = Maximum(
         "P", "c", "harmonic", "converged", f"{own.text}; and more", value, error, (0.01, 0.0, 0.1),
         parts=ErrorParts(error), reasons=(*own.codes, "more", "why"),
     )  # fmt: skip
@@ -32,7 +32,7 @@ def surface(value: float, error: float, **more: object) -> Peak:
 
 def section(share: float = 0.0) -> tuple[FoundSection, float]:
     """With an error of so much of it by cells, and its value."""
-    answer = SectionAnswer(CANTILEVER, STEEL, ("start",), (BENT,))
+    answer = SectionField(CANTILEVER, STEEL, ("start",), (BENT,))
     found = found_section(answer, BENT, None, 0.02)
     found = replace(found, parts=ErrorParts(0.0, cells=share * found.at.value))
     return found, found.at.value
@@ -128,5 +128,5 @@ def test_bodies_without_sections_and_rows_without_numbers() -> None:
     row = row_of(surface(1e8, 1e6), None, STEEL, 0.02)
     assert row.places is not None
     assert (row.places.governs, row.places.section) == ("surface", None)
-    rigid = Peak("P", "c", "auto", "rigid", "not held")
+    rigid = Maximum("P", "c", "auto", "rigid", "not held")
     assert row_of(rigid, None, STEEL, 0.02) is rigid

@@ -11,8 +11,8 @@ from assess.plastic.hinge import beam_bounds
 from fea.core.material import Material
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import Floats, PinLoads
-from fea.section.place import FLEXIBILITIES, found_section
-from fea.section.section_stress import AtSection, SectionAnswer
+from fea.section.place import FLEXIBILITY_ERROR, found_section
+from fea.section.section_stress import AtSection, SectionField
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)
@@ -96,7 +96,7 @@ def test_it_is_the_largest_of_all_points_of_all_sections(seed: int) -> None:
     moments[:, 2] = rng.normal(size=3) * 100.0
     forces = rng.normal(size=(3, 3)) * [1e4, 1e4, 5e4]
     case = loads("ABC", forces, moments)
-    answer = SectionAnswer(pin, STEEL, ("start",), (case,))
+    answer = SectionField(pin, STEEL, ("start",), (case,))
     expected = brute(pin, case, np.linspace(1e-9, 1.0 - 1e-9, 65))
     at = answer.place(case)
     assert at.value == pytest.approx(expected, rel=3e-3)
@@ -122,7 +122,7 @@ def test_a_moment_may_be_largest_within_a_band(seed: int) -> None:
     a, c = 0.5 * (lengths[0] + lengths[1]), 0.5 * (lengths[1] + lengths[2])
     sizes = 1e4 * np.array([-c, a + c, -a]) / (a + c)
     case = loads("ABC", sizes[:, None] * [0.6, 0.8, 0.0])
-    at = SectionAnswer(pin, STEEL, (), (case,)).place(case)
+    at = SectionField(pin, STEEL, (), (case,)).place(case)
     expected = brute(pin, case, np.linspace(1e-9, 1.0 - 1e-9, 401))
     assert at.value == pytest.approx(expected, rel=2e-4)
 
@@ -144,7 +144,7 @@ def test_a_cantilever_is_that_of_the_textbooks(bore: float) -> None:
 
     def place(x: float, z: float, torque: float) -> AtSection:
         case = loads("E", np.array([[x, 0.0, z]]), np.array([[0.0, 0.0, torque]]))
-        return SectionAnswer(pin, STEEL, ("start",), (case,)).place(case)
+        return SectionField(pin, STEEL, ("start",), (case,)).place(case)
 
     tension, twist, bent = place(0.0, 1e5, 0.0), place(0.0, 0.0, 300.0), place(1e3, 0.0, 0.0)
     assert tension.value == pytest.approx(1e5 / area)
@@ -165,7 +165,7 @@ def test_shear_governs_between_a_pair_of_lugs_side_by_side() -> None:
     forces = np.array([[1e5, 0.0, 0.0], [-1e5, 0.0, 0.0]])
     pin = Pin("S", (Segment(D, D, name="root"), *thin))
     case = loads("AB", forces)
-    at = SectionAnswer(pin, STEEL, ("start",), (case,)).place(case)
+    at = SectionField(pin, STEEL, ("start",), (case,)).place(case)
     area = math.pi * D * D / 4.0
     shear = (3.0 + 2.0 * NU) / (2.0 * (1.0 + NU)) * 1e5 / area
     assert at.value == pytest.approx(math.sqrt(3.0) * shear, rel=0.01)
@@ -180,7 +180,7 @@ def test_both_sides_of_a_step_count() -> None:
     for clamp, segments in (("start", pin.segments), ("end", pin.segments[::-1])):
         turned = Pin("S", segments)
         case = loads("E", np.array([[0.0, 2e3, 0.0]]))
-        at = SectionAnswer(turned, STEEL, (clamp,), (case,)).place(case)
+        at = SectionField(turned, STEEL, (clamp,), (case,)).place(case)
         assert at.value == pytest.approx(32.0 * 2e3 * 0.11 / (math.pi * D**3), rel=1e-4)
         assert at.section.outer == pytest.approx(D / 2.0)
         assert at.z == pytest.approx(0.05 if clamp == "start" else 0.12)
@@ -194,7 +194,7 @@ def test_a_cone_is_largest_where_it_is_half_as_thick_again() -> None:
     long = Segment(0.3, D + 0.3 * k, end_diameter=D, name="cone")
     pin = Pin("K", (long, Segment(tip, D, connection="E")))
     case = loads("E", np.array([[1e3, 0.0, 0.0]]))
-    at = SectionAnswer(pin, STEEL, ("start",), (case,)).place(case)
+    at = SectionField(pin, STEEL, ("start",), (case,)).place(case)
     expected = 32.0 * 1e3 * (0.5 * D / k) / (math.pi * (1.5 * D) ** 3)
     assert expected * 0.999 <= at.value <= expected * 1.03
     assert 2.0 * at.section.outer == pytest.approx(1.5 * D, rel=0.05)
@@ -205,7 +205,7 @@ def test_two_clamps_share() -> None:
     half = Segment(0.2, D, name="a"), Segment(0.2, D, name="b")
     pin = Pin("T", (half[0], Segment(1e-4, D, connection="E"), half[1]))
     case = loads("E", np.array([[1e3, 0.0, 6e3]]), np.array([[0.0, 0.0, 50.0]]))
-    at = SectionAnswer(pin, STEEL, ("start", "end"), (case,)).place(case)
+    at = SectionField(pin, STEEL, ("start", "end"), (case,)).place(case)
     assert at.bending_moment == pytest.approx(1e3 * 0.4 / 8.0, rel=1e-3)
     assert abs(at.axial_force) == pytest.approx(3e3, rel=1e-3)
     assert abs(at.torque) == pytest.approx(25.0, rel=1e-3)
@@ -222,7 +222,7 @@ def test_its_plastic_use_is_that_of_the_static_theorem(bore: float) -> None:
     for _ in range(6):
         force = rng.normal(size=(1, 3)) * [2e3, 2e3, 4e4]
         case = loads("E", force, rng.normal(size=(1, 3)) * [0.0, 0.0, 200.0])
-        at = SectionAnswer(pin, STEEL, ("start",), (case,)).place(case)
+        at = SectionField(pin, STEEL, ("start",), (case,)).place(case)
         lower = float(beam_bounds(pin, STEEL, ("start",), case).lower[0])
         assert at.plastic_use(400e6) == pytest.approx(1.0 / lower, rel=1e-3)
 
@@ -238,7 +238,7 @@ def swing(times: Floats) -> PinLoads:
 def test_a_motion_is_largest_between_its_samples() -> None:
     pin = cantilever()
     case = swing(np.linspace(0.0, 1.0, 5))
-    answer = SectionAnswer(pin, STEEL, ("start",), (case,))
+    answer = SectionField(pin, STEEL, ("start",), (case,))
     expected = 2e3 * 0.21 / (math.pi * D**3 / 32.0)
     assert answer.place(case).value < 0.9 * expected
     found = found_section(answer, case, swing, 0.02)
@@ -264,7 +264,7 @@ def test_between_two_clamps_moments_have_the_error_of_a_beam(gap: float, solid: 
     widths = (("A", 0.015), ("", gap), ("B", 0.03), ("", gap), ("C", 0.015))
     pin = Pin("P", tuple(Segment(w, D, connection=name or None) for name, w in widths))
     case = loads("B", np.array([[0.0, -30e3, 0.0]]))
-    answer = SectionAnswer(pin, STEEL, ("A", "C"), (case,))
+    answer = SectionField(pin, STEEL, ("A", "C"), (case,))
     found = found_section(answer, case, None, 0.02)
     long, section = 0.03 + 2.0 * gap, math.pi * D**3 / 32.0
     beam = 30e3 * (3.0 * long**2 - 0.03**2) / (24.0 * long)
@@ -276,12 +276,12 @@ def test_between_two_clamps_moments_have_the_error_of_a_beam(gap: float, solid: 
 
 def test_forces_of_contact_bring_its_errors() -> None:
     case = loads("E", np.array([[1e3, 0.0, 0.0]]))
-    answer = SectionAnswer(cantilever(), STEEL, ("start",), (case,))
+    answer = SectionField(cantilever(), STEEL, ("start",), (case,))
     found = found_section(answer, case, None, 0.02, cells=0.01)
     value = found.at.value
-    assert found.parts == ErrorParts(mesh=FLEXIBILITIES * value, cells=0.01 * value)
+    assert found.parts == ErrorParts(mesh=FLEXIBILITY_ERROR * value, cells=0.01 * value)
     assert (found.lower_end, found.upper_end) == pytest.approx(
-        ((1.0 - FLEXIBILITIES - 0.01) * value, (1.0 + FLEXIBILITIES + 0.01) * value)
+        ((1.0 - FLEXIBILITY_ERROR - 0.01) * value, (1.0 + FLEXIBILITY_ERROR + 0.01) * value)
     )
     assert found.known(0.02)
     assert not found.known(0.01)
@@ -294,7 +294,7 @@ def test_forces_of_contact_bring_its_errors() -> None:
 def test_maxima_are_those_of_each_instant() -> None:
     times = np.linspace(0.0, 1.0, 7)
     case = swing(times)
-    answer = SectionAnswer(cantilever(), STEEL, ("start",), (case,))
+    answer = SectionField(cantilever(), STEEL, ("start",), (case,))
     every = [answer.largest(case.at(np.array([k])))[0] for k in range(7)]
     assert answer.maxima(case) == pytest.approx(every)
     least = 0.5 * max(every)

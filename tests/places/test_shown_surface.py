@@ -12,13 +12,13 @@ from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs
 from fea.core.solution import Picture
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.free_surface import FreeSurface
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import _first, sectors_of
 from fea.harmonic.superposition import Circumference
-from fea.solve.requirement import Asked
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
+from fea.solve.requirement import Requirement
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -40,13 +40,13 @@ TURNING = PinLoads("turning", ("A", "B"), FORCES, times=np.array([0.0, 1.0]))
 def found() -> LugSolution:
     """In single shear, in rigidly guided lugs that nearly touch."""
     lugs = tuple(Lug(n, 0.05, STEEL, 2e-5, 0.0, np.inf) for n in "AB")
-    asked = Asked(0.05, cells="rough", meshes=1)
-    return solve_in_lugs(InLugs(PIN, STEEL, lugs, (TURNING,)), asked)[0]
+    asked = Requirement(0.05, cells="rough", meshes=1)
+    return solve_in_lugs(PinProblem(PIN, STEEL, lugs, (TURNING,)), asked)[0]
 
 
 @pytest.fixture(scope="module")
-def answer(found: LugSolution) -> HarmonicAnswer:
-    assert isinstance(found.solution.answer, HarmonicAnswer)
+def answer(found: LugSolution) -> HarmonicField:
+    assert isinstance(found.solution.answer, HarmonicField)
     return found.solution.answer
 
 
@@ -58,7 +58,7 @@ def picture(found: LugSolution, instant: int) -> Picture:
     return shown
 
 
-def test_the_free_surface_has_no_steps(found: LugSolution, answer: HarmonicAnswer) -> None:
+def test_the_free_surface_has_no_steps(found: LugSolution, answer: HarmonicField) -> None:
     """Of both sides of the ends of rings the first one, as it was shown before, has more than 1.2
     times the largest stress of the free surface.
     """
@@ -98,7 +98,7 @@ def test_the_envelope_is_of_what_is_free_at_some_instant(found: LugSolution) -> 
     assert np.isnan(first.envelope[always]).all()
 
 
-def test_the_solid_shows_what_its_surface_does(found: LugSolution, answer: HarmonicAnswer) -> None:
+def test_the_solid_shows_what_its_surface_does(found: LugSolution, answer: HarmonicField) -> None:
     skin, body = picture(found, 0), revolve_solid(answer.fields, found.solution.loads, 0, 0.3)
     where = {tuple(p): k for k, p in enumerate(np.round(skin.points, 12).tolist())}
     pairs = [

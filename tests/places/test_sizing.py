@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.places import ContactPlace, Places, SectionPlace, SurfacePlace
 from fea.support.contact.solve_in_lugs import LugSolution
 from pinstress.analysis.plan import prepare
@@ -17,10 +17,10 @@ from pinstress.analysis.remedies.changes import change
 from pinstress.analysis.results import run
 from pinstress.analysis.solve import solutions
 from pinstress.explore.size.counted import beneath, low_factor, surface_and_section
-from pinstress.explore.size.lightest_pin import Aim, problem_of
+from pinstress.explore.size.lightest_pin import WeightGoal, problem_of
 from pinstress.explore.size.pin_stress import PinStress
 from pinstress.explore.size.scaled_study import resized_study
-from pinstress.explore.size.size_pin import Wish, counts, size_pin
+from pinstress.explore.size.size_pin import SizingGoal, design_stress, size_pin
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.file import Study, parse_study
@@ -35,20 +35,20 @@ def contact(stress: float, error: float) -> ContactPlace:
     return ContactPlace(stress, error, (0.0, 0.0, 1.0), None, 0.0, 0.0, (), ())
 
 
-def peak(beneath: ContactPlace | None) -> Peak:
+def peak(beneath: ContactPlace | None) -> Maximum:
     places = Places("section", SURFACE, SECTION, beneath)
-    return Peak("P", "c", "harmonic", "converged", "", 104.0, 1.0, places=places)
+    return Maximum("P", "c", "harmonic", "converged", "", 104.0, 1.0, places=places)
 
 
 def test_what_counts() -> None:
     """By hand: of the surface 105, of the section 104.5, of the row 105, beneath 118 or 98."""
     assert dict(surface_and_section(peak(None))) == {"surface": 105.0, "section": 104.5}
     assert beneath(peak(None)) == 0.0
-    assert counts(peak(None)) == 105.0
-    assert counts(peak(contact(110.0, 8.0))) == 118.0
-    assert counts(peak(contact(90.0, 8.0))) == 105.0
+    assert design_stress(peak(None)) == 105.0
+    assert design_stress(peak(contact(110.0, 8.0))) == 118.0
+    assert design_stress(peak(contact(90.0, 8.0))) == 105.0
     singular = replace(peak(contact(90.0, 8.0)), verdict="singular", interval=(100.0, 140.0))
-    assert counts(singular) == 104.0
+    assert design_stress(singular) == 104.0
 
 
 def touching(required: float) -> Study:
@@ -88,7 +88,7 @@ def test_a_pin_is_sized_by_what_lies_beneath() -> None:
     needed = strength * 2.6 / (low_factor(before) or 1.0)
     assert remedy.yield_strength == pytest.approx(needed * 1e6, rel=0.02)
 
-    sized = size_pin(prepare(study), "P", Wish(2.6), {})
+    sized = size_pin(prepare(study), "P", SizingGoal(2.6), {})
     assert sized.scale is not None
     assert 1.02 < sized.scale < 1.3
     (after,) = run(resized_study(study, {"P": sized.scale})).pins
@@ -99,9 +99,9 @@ def test_a_pin_is_sized_by_what_lies_beneath() -> None:
 @pytest.mark.slow
 def test_a_search_has_what_lies_beneath_as_a_place(monkeypatch: pytest.MonkeyPatch) -> None:
     """With its value from the run and, once two designs are known, the slope between them."""
-    monkeypatch.setattr("pinstress.explore.size.pin_stress.UNKNOWN", 1.0)
+    monkeypatch.setattr("pinstress.explore.size.pin_stress.UNKNOWN_PLACE_WINDOW", 1.0)
     study = touching(2.6)
-    problem = problem_of(study, prepare(study), "P", Aim(2.6))
+    problem = problem_of(study, prepare(study), "P", WeightGoal(2.6))
     assert not isinstance(problem, str)
     stress, values = PinStress(problem, lambda _: None), problem.shape.values
     first, second = (stress.at(values * x) for x in (1.0, 1.05))

@@ -17,11 +17,11 @@ from assess.derivatives.records import SolvedCase
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
-from fea.singular.singularities import VARIED, find_singularities, free_of_arcs
+from fea.singular.singularities import DISTANCE_VARIATIONS, find_singularities, free_of_arcs
 from fea.solid.sharp_edges import SharpEdges
-from fea.solve.solve_pin import Asked, Solution, singularities_of, solve_pin
+from fea.solve.solve_pin import Requirement, Solution, singularities_of, solve_pin
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
-from geometry.mesh.moved.outline_motion import PLACES
+from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
 from geometry.shape.dimensions import dimensions
@@ -80,7 +80,7 @@ def tension(pin: Pin, clamp: str, at: float, band: str) -> dict[str, float]:
 def solved(pin: Pin, clamp: str, band: str, steel: Material, distance: float) -> Solution:
     loads = PinLoads("t", (band,), np.array([[[0.0, 0.0, FORCE]]]))
     material = replace(steel, youngs_modulus=E, poisson_ratio=NU)
-    return solve_pin(pin, material, (clamp,), (loads,), Asked(distance=distance))[0]
+    return solve_pin(pin, material, (clamp,), (loads,), Requirement(distance=distance))[0]
 
 
 def shoulder(gap: float, radius: float) -> Pin:
@@ -146,7 +146,7 @@ def test_a_clamps_edge_beside_a_hole(steel: Material) -> None:
     loads = PinLoads("t", ("L",), np.array([[[0.0, 0.0, FORCE]]]))
     found = []
     for distance in (0.1, 0.2):
-        asked = Asked(distance=distance, meshes=2)
+        asked = Requirement(distance=distance, meshes=2)
         peak = solve_pin(pin, steel, ("held",), (loads,), asked)[0].peak
         found.append(peak.max_von_mises)
         assert [zone.excluded for zone in peak.singular_at][1] == pytest.approx(0.05 * D)
@@ -184,7 +184,7 @@ def test_no_zone_reaches_into_an_arc(
             x, y = arc.start[0] - arc.centre[0], arc.start[1] - arc.centre[1]
             r, z = arc.centre[0] + c * x - s * y, arc.centre[1] + s * x + c * y
             away = float(np.hypot(r - p.r, z - p.z).min())
-            for times in (1.0, *VARIED):
+            for times in (1.0, *DISTANCE_VARIATIONS):
                 allowed = max(away, 0.25 * arc.radius)
                 assert p.varied(times).radius <= allowed * (1.0 + 1e-4)
         if not any(p.limit < 2.0 * nominal for _ in arcs):
@@ -226,7 +226,7 @@ def test_a_zone_moves_with_the_fillet_that_ends_it(steel: Material) -> None:
     for dimension in dimensions(pin):
         motion = of.outline_nodes.motion(dimension)
         velocity = of.interior.velocity(motion.velocity[:, :, None])[:, :, 0]
-        for x, moved in zip(PLACES, motion.pins, strict=True):
+        for x, moved in zip(DIFFERENCE_STEPS, motion.pins, strict=True):
             found = of._places_at(moved, x * motion.step, velocity)
             there = singularities_of(moved, steel, clamps, (loads,))
             expected = [[p.r, p.z, p.radius] for p in there]

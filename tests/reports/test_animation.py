@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from reports.animation.frames import MOST, frames, nice
+from reports.animation.frames import MAX_FRAMES, frames, nice
 from reports.animation.page import render_animation, write_animations
 from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
@@ -275,7 +275,7 @@ def test_many_bodies_make_a_small_file_with_the_peaks() -> None:
     text = render(results)
     data = Reader(text).data
     assert len(text.encode()) < 1_000_000
-    assert len(data["time"]) <= MOST
+    assert len(data["time"]) <= MAX_FRAMES
     for c, found in enumerate(data["connections"]):
         assert max(found["f"]) == pytest.approx(table.magnitudes[:, c].max(), rel=1e-4)
     at = frames(results.motion[0], table, [])

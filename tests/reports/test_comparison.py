@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 from reports.data.comparison import (
-    BEYOND,
-    DECISION,
-    ONLY,
+    BEYOND_ERRORS,
+    DECISION_CHANGED,
+    ONLY_IN_ONE_RUN,
     UNCHANGED,
-    WITHIN,
+    WITHIN_ERRORS,
     RunComparison,
     compared,
 )
@@ -52,21 +52,25 @@ def test_the_same_run_has_no_change(run: dict[str, Any]) -> None:
 def test_a_change_is_beyond_the_errors_or_within(run: dict[str, Any]) -> None:
     """Ranges of 100 to 120 and of the other maximum with its error."""
     base = changed(run, max_von_mises=110.0, error_estimate=10.0, max_von_mises_interval=None)
-    for value, error, kind in [(131.0, 10.0, BEYOND), (131.0, 12.0, WITHIN), (98.0, 1.0, BEYOND)]:
+    for value, error, kind in [
+        (131.0, 10.0, BEYOND_ERRORS),
+        (131.0, 12.0, WITHIN_ERRORS),
+        (98.0, 1.0, BEYOND_ERRORS),
+    ]:
         other = changed(base, max_von_mises=value, error_estimate=error)
         first = compare(base, other).rows[0]
         assert first.kind == kind
         assert first.change == pytest.approx(value / 110.0 - 1.0)
         assert compare(other, base).rows[0].kind == kind
     excluded = changed(base, max_von_mises=131.0, max_von_mises_interval=[119.0, 200.0])
-    assert compare(base, excluded).rows[0].kind == WITHIN
+    assert compare(base, excluded).rows[0].kind == WITHIN_ERRORS
 
 
 def test_decisions_and_missing_rows_come_first(run: dict[str, Any]) -> None:
     other = changed(run, outcome="fails" if run["pins"][0]["outcome"] != "fails" else "safe")
     other["pins"][3] |= {"pin": "new"}
     kinds = [row.kind for row in compare(run, other).rows]
-    assert kinds[:3] == [DECISION, ONLY[0], ONLY[1]]
+    assert kinds[:3] == [DECISION_CHANGED, ONLY_IN_ONE_RUN[0], ONLY_IN_ONE_RUN[1]]
     assert set(kinds[3:]) == {UNCHANGED}
 
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.core.mesh_result import Strength
+from fea.core.mesh_result import SingularIntensity
 from fea.core.peak import SingularZone
-from pinstress.study.schema.units import SYSTEMS
+from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data import results as data
 from reports.data.in_units import in_units
 from reports.data.results import (
@@ -22,7 +22,7 @@ from reports.data.results import (
     Results,
 )
 
-INCHES, MILLIMETRES = SYSTEMS["in-lbf-s"], SYSTEMS["mm-N-s"]
+INCHES, MILLIMETRES = UNIT_SYSTEMS["in-lbf-s"], UNIT_SYSTEMS["mm-N-s"]
 
 
 def numbers(value: Any) -> list[float]:
@@ -106,7 +106,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
 def test_a_singularity_has_the_units_of_its_exponent() -> None:
     zone = SingularZone(
         (0.0254, 0.0, 0.0), "a sharp corner", ("a", "b"), 0.44, 0.4555, 0.0508, True, 6894.757293,
-        "a fillet", Strength(6894.757293 * 0.0254**0.4555, 0.4555, None),
+        "a fillet", SingularIntensity(6894.757293 * 0.0254**0.4555, 0.4555, None),
     )  # fmt: skip
     found = in_units(zone, INCHES.factor)
     assert found.location == pytest.approx((1.0, 0.0, 0.0))

@@ -14,19 +14,19 @@ import pytest
 from rich.console import Console
 
 from fea.support.contact.records import JointRange, JointResult, Variation
-from pinstress.study.schema.units import SYSTEMS
+from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units
 from reports.data.results import Field, Results
 from reports.files import write_reports
 from reports.format.ranges import joint_range, part_words
-from reports.format.words import JOINT
+from reports.format.words import JOINT_RANGE_NOTE
 from reports.page.viewer import pin_views
 from reports.plots.all import all_plots
 from reports.plots.draw import draw
 from reports.plots.stress.joint import joint_plot
-from reports.tables.strength.safety_factors import shown_columns, shown_rows, write_safety_factors
+from reports.tables.strength.safety_factors import display_rows, shown_columns, write_safety_factors
 from reports.tables.stress.joint import joint_json, joint_tables
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
@@ -52,7 +52,7 @@ def written(small: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_lengths_of_a_joint_are_converted() -> None:
-    found = in_units(CONTACT, SYSTEMS["mm-N-s"].factor)
+    found = in_units(CONTACT, UNIT_SYSTEMS["mm-N-s"].factor)
     assert found.range is not None
     assert [v.length for v in found.range.variations] == pytest.approx([0.0, 3.0, None])
     assert found.bands[0].ends == pytest.approx((0.0, 500.0, 1000.0))
@@ -101,7 +101,7 @@ def test_a_range_in_assumed_lugs_is_marked(small: Results, tmp_path: Path) -> No
     assert (found["range"]["model"], found["range"]["lugs"]) == ("foundation", "assumed")
     assert found["range"]["over"][0]["max_von_mises_interval"] == [1200.0, 1800.0]
     first = odd.pins[0]
-    row = next(r for r in shown_rows(odd) if (r["pin"], r["case"]) == (first.pin, first.case))
+    row = next(r for r in display_rows(odd) if (r["pin"], r["case"]) == (first.pin, first.case))
     assert row["joint_high"] == "1,100 to 1,900"
     assert (row["joint_model"], row["joint_lugs"]) == ("foundation", "assumed")
     last = joint_tables(odd)[2].rows[0][-5:]
@@ -146,16 +146,16 @@ def test_published_maxima_are_apart_and_fit(results: Results) -> None:
 
 
 def test_a_column_only_where_a_range_was_found(small: Results, tmp_path: Path) -> None:
-    heading = shown_columns(shown_rows(small), small)
+    heading = shown_columns(display_rows(small), small)
     assert heading["joint_high"] == "joint [psi]"
-    assert [row["joint_high"] for row in shown_rows(small)] == ["–", "1,100 to 1,900"]
+    assert [row["joint_high"] for row in display_rows(small)] == ["–", "1,100 to 1,900"]
     bare = in_lugs(small, make_joint(over=False))
-    assert "joint_high" not in shown_columns(shown_rows(bare), bare)
+    assert "joint_high" not in shown_columns(display_rows(bare), bare)
     for some, has in ((small, True), (bare, False)):
         write_safety_factors(some, tmp_path)
         text = (tmp_path / "safety_factors.md").read_text(encoding="utf-8")
         assert ("joint [psi] |" in text) is has
-        assert (JOINT in text) is has
+        assert (JOINT_RANGE_NOTE in text) is has
 
 
 @pytest.mark.parametrize("over", [True, False])

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from fea.core.mesh_result import Strength
+from fea.core.mesh_result import SingularIntensity
 from reports.data.results import PinResult, Results, SingularZone
 from reports.format.ranges import error_range, error_words, factor_range
 from reports.format.words import headline
@@ -22,7 +22,7 @@ from reports.text.safety_factors import print_safety_factors
 
 ZONE = SingularZone(
     (0.0, 0.5, 1.0), "the edge of a clamp", ("left", "A"), 0.5, 0.4555, 0.1, True, 9e5, "none",
-    Strength(1234.5, 0.4555, 4321.0),
+    SingularIntensity(1234.5, 0.4555, 4321.0),
 )  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from rich.console import Console
 from fea.core.peak import Verdict
 from reports.data.decision import outcome
 from reports.data.results import Results
-from reports.format.words import MEANING, RESULTS, verdict_words
+from reports.format.words import OUTCOME_MEANINGS, VERDICT_MEANINGS, verdict_words
 from reports.plots.strength.landing import landing_plot
 from reports.tables.json_results import to_json
 from reports.tables.strength.landing import landing_table, write_landing
@@ -59,13 +59,13 @@ def test_without_a_required_factor_yield_is_the_limit(decided: bool | None, expe
 
 
 def test_every_verdict_has_a_sentence() -> None:
-    assert set(MEANING) == {*get_args(Verdict), "beyond yield"}
+    assert set(VERDICT_MEANINGS) == {*get_args(Verdict), "beyond yield"}
     assert all(
         text.endswith(".") and text.count(". ") == 0
-        for text in (*MEANING.values(), *RESULTS.values())
+        for text in (*VERDICT_MEANINGS.values(), *OUTCOME_MEANINGS.values())
     )
-    assert "there is no maximum" in MEANING["singular"]
-    assert "outside the excluded zones" in MEANING["singular"]
+    assert "there is no maximum" in VERDICT_MEANINGS["singular"]
+    assert "outside the excluded zones" in VERDICT_MEANINGS["singular"]
     assert verdict_words("rigid", None) == "rigid"
     assert verdict_words("singular", True) == "singular, beyond yield"
 

@@ -52,7 +52,7 @@ def test_vtu_is_quadratic_for_vtk(solid: Field, tmp_path: Path) -> None:
 
 
 def test_picture(solid: Field, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(renderer.WINDOW, os.environ.get(renderer.WINDOW, ""))
+    monkeypatch.setenv(renderer.WINDOW_VARIABLE, os.environ.get(renderer.WINDOW_VARIABLE, ""))
     problem = renderer_problem()
     assert problem is None, problem
     path = tmp_path / "b.png"
@@ -96,7 +96,7 @@ def test_factor_of_safety_at_every_point(solid: Field, tmp_path: Path) -> None:
 
 
 def test_picture_of_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(renderer.WINDOW, os.environ.get(renderer.WINDOW, ""))
+    monkeypatch.setenv(renderer.WINDOW_VARIABLE, os.environ.get(renderer.WINDOW_VARIABLE, ""))
     assert renderer_problem() is None
     render_pin(tube(), tmp_path / "a.png", UNITS, "pin A, sharp")
     picture = np.asarray(pyvista.read(tmp_path / "a.png").active_scalars)
@@ -106,7 +106,7 @@ def test_picture_of_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 def test_pictures_that_share_a_scale_do_not_both_end_in_its_last_colour(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(renderer.WINDOW, os.environ.get(renderer.WINDOW, ""))
+    monkeypatch.setenv(renderer.WINDOW_VARIABLE, os.environ.get(renderer.WINDOW_VARIABLE, ""))
     assert renderer_problem() is None
     field, shares = tube(), []
     for top in (None, 2.0 * float(field.von_mises.max())):
@@ -124,26 +124,27 @@ def _above_the_bar(path: Path) -> np.ndarray[Any, Any]:
 
 
 def test_a_crash_is_a_problem_and_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(renderer, "PROBE", "import os; os.kill(os.getpid(), 11)")
+    monkeypatch.setattr(renderer, "PROBE_CODE", "import os; os.kill(os.getpid(), 11)")
     problem = renderer_problem()
     assert problem is not None
     assert "signal 11" in problem
 
 
 def test_a_hang_is_a_problem(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(renderer, "PROBE", "import time; time.sleep(60)")
-    monkeypatch.setattr(renderer, "SECONDS", 0.2)
+    monkeypatch.setattr(renderer, "PROBE_CODE", "import time; time.sleep(60)")
+    monkeypatch.setattr(renderer, "PROBE_TIMEOUT", 0.2)
     assert "no answer" in str(renderer_problem())
 
 
 def test_the_renderer_that_works_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(renderer.WINDOW, "noSuchWindow")
+    monkeypatch.setenv(renderer.WINDOW_VARIABLE, "noSuchWindow")
     probe = (
-        f"import os; w = os.environ['{renderer.WINDOW}']; assert w.startswith('vtkOS'); print(w)"
+        f"import os; w = os.environ['{renderer.WINDOW_VARIABLE}']; assert w.startswith('vtkOS'); "
+        f"print(w)"
     )
-    monkeypatch.setattr(renderer, "PROBE", probe)
+    monkeypatch.setattr(renderer, "PROBE_CODE", probe)
     assert renderer_problem() is None
-    assert os.environ[renderer.WINDOW] == "vtkOSOpenGLRenderWindow"
+    assert os.environ[renderer.WINDOW_VARIABLE] == "vtkOSOpenGLRenderWindow"
 
 
 def test_importing_reports_loads_nothing_heavy() -> None:

@@ -185,9 +185,9 @@ def test_the_pdf_reads_no_file_of_the_current_folder(
 ) -> None:
     import typst
 
-    from reports.pdf.typeset import UNDATED, _compiled
+    from reports.pdf.typeset import FIXED_DATE, _compiled
 
     (tmp_path / "secret").write_bytes(SECRET)
     monkeypatch.chdir(tmp_path)
     with pytest.raises(typst.TypstError, match="not found"):
-        _compiled({"main": b'#read("secret")'}, UNDATED)
+        _compiled({"main": b'#read("secret")'}, FIXED_DATE)

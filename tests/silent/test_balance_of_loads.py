@@ -22,7 +22,7 @@ import pinstress
 from fea.core.equilibrium import closing, out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import solve_pin
 from geometry import Pin, Segment
 from pinstress.cli.check import describe
@@ -124,7 +124,7 @@ def test_a_couple_is_not_solved_either(steel: Material) -> None:
     hold = np.zeros((1, 2, 3))
     hold[0, :, 0] = -1e4 * 0.02 / 2.0  # half of the couple on each band
     cases = PinLoads("sheared", ("A", "B"), shear), PinLoads("held", ("A", "B"), shear, hold)
-    loose, held = solve_pin(pin, steel, (), cases, Asked(model="harmonic", meshes=1))
+    loose, held = solve_pin(pin, steel, (), cases, Requirement(model="harmonic", meshes=1))
     assert (loose.peak.verdict, loose.peak.reasons) == ("rigid", ("couple-imbalance",))
     assert "couple across the axis is 0.5 of the largest force" in loose.peak.note
     assert held.peak.max_von_mises is not None

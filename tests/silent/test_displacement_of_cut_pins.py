@@ -20,9 +20,9 @@ from scipy.spatial import cKDTree
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import Picture
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.cut.region import zone
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from fea.solve.surface_fields import amounts, unit_surface
 from geometry import Cut, CutPin, Flat, Hole, Pin, PinLike, Segment
 from pinbase.arrays import Floats
@@ -42,7 +42,7 @@ def loaded(force: list[float], moment: list[float] | None = None) -> PinLoads:
     return PinLoads("c", ("B",), np.array([[force]]), np.array([[moment or [0.0, 0.0, 0.0]]]))
 
 
-def shown(pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, asked: Asked) -> Picture:
+def shown(pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, asked: Requirement) -> Picture:
     """The surface at its governing instant."""
     (solution,) = solve_pin(pin, STEEL, clamps, (loads,), asked)
     assert solution.answer is not None
@@ -51,7 +51,7 @@ def shown(pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, asked: Asked) 
     return picture
 
 
-ALL, QUICK = loaded([200.0, 300.0, 2e4], [0.0, 0.0, 40.0]), Asked(0.02, meshes=1)
+ALL, QUICK = loaded([200.0, 300.0, 2e4], [0.0, 0.0, 40.0]), Requirement(0.02, meshes=1)
 
 
 def at_tip(picture: Picture) -> Floats:
@@ -112,14 +112,14 @@ def in_series(reduced: float, full: float, modulus: float) -> float:
 
 
 @pytest.fixture(scope="module")
-def bar_with_flats() -> CutAnswer:
+def bar_with_flats() -> CutField:
     """Pulled, twisted, and bent both ways at once: the answers do not mix."""
     (solution,) = solve_pin(FLATS, STEEL, ("start",), (ALL,), QUICK)
-    assert isinstance(solution.answer, CutAnswer)
+    assert isinstance(solution.answer, CutField)
     return solution.answer
 
 
-def test_the_tip_moves_as_that_of_a_beam_of_the_reduced_section(bar_with_flats: CutAnswer) -> None:
+def test_the_tip_moves_as_that_of_a_beam_of_the_reduced_section(bar_with_flats: CutField) -> None:
     """To 2 % of what all of it moves (ends of flats, load and clamp are no beam's); without the
     flats it is 9 to 55 % less.
     """
@@ -143,7 +143,7 @@ def test_there_is_no_jump_where_pieces_begin_and_end() -> None:
     pin = CutPin.of(BAR, [Hole(0.05, 0.014, 0.3), Hole(0.12, 0.008, 1.2)])
     (solution,) = solve_pin(pin, STEEL, ("start",), (ALL,), QUICK)
     answer = solution.answer
-    assert isinstance(answer, CutAnswer)
+    assert isinstance(answer, CutField)
     picture = answer.picture(ALL, 0)
     largest, checked = np.linalg.norm(picture.displacement, axis=1).max(), 0
     sizes = [len(p.points) for p in answer.solution.pieces]
@@ -162,7 +162,7 @@ def test_there_is_no_jump_where_pieces_begin_and_end() -> None:
     assert checked >= 2
 
 
-def test_the_view_has_the_same(bar_with_flats: CutAnswer) -> None:
+def test_the_view_has_the_same(bar_with_flats: CutField) -> None:
     """The page superposes unit fields; what it shows is what is in the VTU file."""
     surface = unit_surface(bar_with_flats)
     assert surface is not None
@@ -226,7 +226,7 @@ def test_all_of_the_surface_moves_as_that_of_the_whole_solid(name: str) -> None:
     pin, cuts, clamps, loads = WHOLE[name]
     meshes = 2 if clamps and len(cuts) == 1 else 1
     local = shown(CutPin.of(pin, cuts), clamps, loads, QUICK)
-    solid = shown(CutPin.of(pin, cuts), clamps, loads, Asked(0.1, "solid", meshes=meshes))
+    solid = shown(CutPin.of(pin, cuts), clamps, loads, Requirement(0.1, "solid", meshes=meshes))
     x, u = local.points, local.displacement
     there = np.ones(len(x), dtype=bool)
     if len(cuts) == 2 and clamps:  # each piece has the pin's outline where the other one's cut is
@@ -243,7 +243,7 @@ def test_all_of_the_surface_moves_as_that_of_the_whole_solid(name: str) -> None:
 
 def _own(answer: object, count: int, z: Floats) -> Floats:
     """Points of which piece's cut is the nearer one."""
-    assert isinstance(answer, CutAnswer)
+    assert isinstance(answer, CutField)
     first, second = answer.solution.pieces
     middle = 0.5 * (zone(first.piece)[1] + zone(second.piece)[0])
     rest = count - len(first.points) - len(second.points)

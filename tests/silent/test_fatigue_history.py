@@ -21,11 +21,11 @@ from assess.fatigue.critical_plane import _counted, findley_k, worst_plane
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from assess.fatigue.flight import Flight, flight
 from assess.fatigue.many_planes import on_planes
-from assess.fatigue.proportional import BY_SIDE
+from assess.fatigue.proportional import SIGNED_SHEAR_RULE
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from assess.fatigue.signed_stress import signed_von_mises
 from assess.fatigue.sn_curve import SnCurve
-from fea.core.voigt import TENSOR
+from fea.core.voigt import TENSOR_TO_VOIGT
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
@@ -71,7 +71,7 @@ def test_alternating_torsion_has_its_whole_range() -> None:
     assert (found.amplitude, found.mean) == pytest.approx((VON_MISES, 0.0))
     assert found.life == pytest.approx(1e6 * (VON_MISES / 200e6) ** -5)
     assert found.method == "signed-von-mises"
-    assert BY_SIDE in found.note
+    assert SIGNED_SHEAR_RULE in found.note
 
 
 def test_alternating_torsion_by_local_strains_is_that_of_the_same_tension() -> None:
@@ -152,7 +152,7 @@ def _grid(step: float) -> tuple[Floats, Floats]:
 
 def _on(stress: Floats, normals: Floats, ways: Floats) -> tuple[Floats, Floats]:
     """Shear and normal stress (M, T) by the tensor's definition."""
-    across = np.stack([normals @ tensor for tensor in stress[:, TENSOR]])  # (T, M, 3)
+    across = np.stack([normals @ tensor for tensor in stress[:, TENSOR_TO_VOIGT]])  # (T, M, 3)
     return np.einsum("tma,ma->mt", across, ways), np.einsum("tma,ma->mt", across, normals)
 
 
@@ -187,7 +187,7 @@ def test_cycles_of_many_planes_are_those_of_each_by_pylife() -> None:
     order = flight([2.0, 0.25, 7.0])
     cases = [100e6 * rng.normal(size=(n, 6)).cumsum(axis=0) for n in (30, 1, 12)]
     zero = np.zeros((1, 6))
-    tensors = [np.concatenate([zero, stress, zero])[:, TENSOR] for stress in cases]
+    tensors = [np.concatenate([zero, stress, zero])[:, TENSOR_TO_VOIGT] for stress in cases]
     normals, ways = (x[::97] for x in _grid(15.0))
     life = CURVE.life(0.1)
     found = on_planes(cases, order, (normals, ways), 0.2, life)

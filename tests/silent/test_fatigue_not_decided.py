@@ -20,7 +20,7 @@ import pytest
 
 import pinstress
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
-from pinstress.analysis.results import Found
+from pinstress.analysis.results import RunResults
 from reports.tables.json_results import to_json
 from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
 
@@ -62,12 +62,12 @@ SEQUENCE = """day = 10
 [sequence.day]
 steps = [{ case = "work", duration = "1 s" }, { case = "jam", duration = "1 s" }]
 """
-Run = Callable[..., Found]
+Run = Callable[..., RunResults]
 
 
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
-    def results(text: str, cases: list[str] | None = None) -> Found:
+    def results(text: str, cases: list[str] | None = None) -> RunResults:
         path = tmp_path / "pin.toml"
         path.write_text(text)
         return pinstress.run(pinstress.load_study(path), cases=cases)
@@ -75,7 +75,7 @@ def run(tmp_path: Path) -> Run:
     return results
 
 
-def _margin(results: Found) -> tuple[float | None, str]:
+def _margin(results: RunResults) -> tuple[float | None, str]:
     (found,) = (m.margin for m in results.margins if m.margin.method == "fatigue life")
     return found.margin, found.needs
 

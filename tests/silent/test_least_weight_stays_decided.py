@@ -16,7 +16,7 @@ import pinstress
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size import least_weight
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Aim, Lightest
+from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
 from reports.data.decision import SAFE, outcome
@@ -85,7 +85,7 @@ def test_a_clamp_whose_edge_would_govern() -> None:
     """
     before = study(CLAMP)
     assert outcomes(before) == [SAFE]
-    found = lighten(before, Aim(2.0))
+    found = lighten(before, WeightGoal(2.0))
     assert outcomes(found.study) == [SAFE]
     assert found.settled
     assert lighter(found, before) < 0.35
@@ -102,7 +102,7 @@ def test_a_pin_that_fails_is_not_made_singular_either() -> None:
     """Under three times the load it fails; larger, it is safe, not merely undecided."""
     before = study(CLAMP.replace("10000", "30000"))
     assert outcomes(before) == ["fails"]
-    found = lighten(before, Aim(2.0))
+    found = lighten(before, WeightGoal(2.0))
     assert outcomes(found.study) == [SAFE]
 
 
@@ -111,7 +111,7 @@ def test_a_bore_whose_step_would_govern() -> None:
     """85 % of the volume that scaling gives."""
     before = study(BORE)
     assert outcomes(before) == [SAFE]
-    found = lighten(before, Aim(2.0))
+    found = lighten(before, WeightGoal(2.0))
     assert outcomes(found.study) == [SAFE]
     (only,) = found.pins
     assert only.scaled is not None

@@ -19,7 +19,7 @@ from scipy.optimize import linprog, minimize_scalar
 
 from assess.plastic.hinge import beam_bounds
 from assess.plastic.limit_load import bracket
-from assess.plastic.solve import SIZES, limit_load
+from assess.plastic.solve import MESH_SIZES, limit_load
 from assess.strength.collapse import collapse_margin
 from assess.strength.situation import LoadFactors
 from fea.beam.plastic_interaction import bent_and_pulled
@@ -222,7 +222,7 @@ def test_the_solids_bracket_has_the_exact_factor(bore: float, m: float, n: float
     Mp, Np, _ = _plastic(bore)
     exact = _strips(bore, m * Mp, n * Np)
     loads = _ends(m * Mp, n * Np, 0.0)
-    meshes = [limit(bar(bore), loads, size) for size in SIZES[:2]]
+    meshes = [limit(bar(bore), loads, size) for size in MESH_SIZES[:2]]
     lower, upper = bracket(meshes)
     assert lower <= exact <= upper
     assert upper < 1.03 * lower
@@ -244,7 +244,7 @@ def test_a_mesh_that_exceeds_a_strict_upper_bound_gives_no_lower_bound_there() -
     reached = [mesh.lower for mesh in found.meshes]
     assert found.upper == pytest.approx(slip, rel=1e-9)
     assert reached[0] > reached[1] > reached[2] > slip
-    sizes = [size.along for size in SIZES]
+    sizes = [size.along for size in MESH_SIZES]
     towards = reached[2] - sizes[2] * (reached[1] - reached[2]) / (sizes[1] - sizes[2])
     assert found.lower is not None
     assert found.lower < 0.98 * slip
@@ -254,7 +254,7 @@ def test_a_mesh_that_exceeds_a_strict_upper_bound_gives_no_lower_bound_there() -
 @pytest.mark.slow
 def test_the_solids_bracket_of_torsion_has_the_exact_factor() -> None:
     exact = _plastic(0.0)[2]
-    meshes = [limit(bar(), _ends(0.0, 0.0, 1.0), size) for size in SIZES[:2]]
+    meshes = [limit(bar(), _ends(0.0, 0.0, 1.0), size) for size in MESH_SIZES[:2]]
     lower, upper = bracket(meshes)
     assert lower <= exact <= upper
     assert upper < 1.03 * lower

@@ -24,7 +24,7 @@ from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
 from pinstress import load_study, prepare
 from pinstress.analysis.assessed import limits
-from pinstress.analysis.assessed.limits import UNASKED, limit_seconds, rung_of
+from pinstress.analysis.assessed.limits import UNASKED_LIMIT_LOAD_SECONDS, limit_seconds, rung_of
 from pinstress.cli.commands import run_command_line
 from tests.support.exact.plastic import STEEL, D
 
@@ -133,7 +133,7 @@ def test_a_budget_counts_from_its_beginning(monkeypatch: pytest.MonkeyPatch) -> 
 @pytest.mark.parametrize(
     ("asked", "flag", "rung", "seconds"),
     [
-        ('"auto"', False, "auto", UNASKED),
+        ('"auto"', False, "auto", UNASKED_LIMIT_LOAD_SECONDS),
         ('"auto"', True, "auto", math.inf),
         ('"always"', False, "solid", math.inf),
         ('["P"]', False, "solid", math.inf),
@@ -148,7 +148,7 @@ def test_what_is_asked_for_has_no_budget(
     path.write_text(f"{STUDY}limit_load = {asked}\n")
     plan = prepare(load_study(path), limit_load=flag)
     assert (rung_of(plan, "P"), limit_seconds(plan)) == (rung, seconds)
-    assert UNASKED == 20.0
+    assert UNASKED_LIMIT_LOAD_SECONDS == 20.0
 
 
 @pytest.mark.slow
@@ -158,7 +158,7 @@ def test_the_command_says_what_computes_it_and_the_cache_does_not_make_it_stick(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PINSTRESS_CACHE", str(tmp_path / "cache"))
     monkeypatch.setenv("COLUMNS", "200")
-    monkeypatch.setattr(limits, "UNASKED", 1e-9)
+    monkeypatch.setattr(limits, "UNASKED_LIMIT_LOAD_SECONDS", 1e-9)
     Path("study.toml").write_text(STUDY)
 
     def run(*options: str) -> tuple[str, bool, float | None]:

@@ -155,7 +155,7 @@ def test_a_picture_that_fails_leaves_the_others(
     assert made.stderr.splitlines()[-2] == "Written: out/plots"
     assert "not drawn: plots/refinement.landing.svg" in made.stderr.splitlines()[-1]
     assert manifest.listed(folder) == before | {"plots/", "plots/reactions.landing.svg"}
-    assert manifest.entries(folder) | {manifest.NAME} == manifest.listed(folder)
+    assert manifest.entries(folder) | {manifest.MANIFEST_FILE} == manifest.listed(folder)
 
 
 def test_results_are_in_place_before_anything_is_drawn(
@@ -175,7 +175,12 @@ def test_results_are_in_place_before_anything_is_drawn(
     assert made.returncode == 1
     assert len(seen) == 2
     for there in seen:
-        assert {"results.json", "report.html", "safety_factors.csv", manifest.NAME} <= there
+        assert {
+            "results.json",
+            "report.html",
+            "safety_factors.csv",
+            manifest.MANIFEST_FILE,
+        } <= there
     last = made.stderr.splitlines()[-1]
     assert last.startswith("Error: not drawn: report.pdf, plots/reactions.landing.svg, ")
     assert manifest.listed(tmp_path / "out") == manifest.entries(tmp_path / "out")

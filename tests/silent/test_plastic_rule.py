@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from assess.strength.plastic_bending import PLASTIC, plastic_margin
+from assess.strength.plastic_bending import PLASTIC_CHECK, plastic_margin
 from assess.strength.section_forces import section_forces
-from assess.strength.section_stress import CONCENTRATED, OF_JOINT
+from assess.strength.section_stress import CONCENTRATED_BENDING, JOINT_MODEL_BENDING
 from assess.strength.situation import Situation
 from fea.beam.round_section import Circle
 from fea.core.material import Material
@@ -40,7 +40,10 @@ def test_the_rule_has_its_own_name_and_its_formula() -> None:
 
 
 def test_no_check_of_this_program_is_named_after_a_clause_on_shear_alone() -> None:
-    clauses = PLASTIC.clause, *(clause for _, clause in (CONCENTRATED, OF_JOINT))
+    clauses = (
+        PLASTIC_CHECK.clause,
+        *(clause for _, clause in (CONCENTRATED_BENDING, JOINT_MODEL_BENDING)),
+    )
     assert not any("1993-1-1" in clause for clause in clauses)
 
 

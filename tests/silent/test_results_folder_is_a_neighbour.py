@@ -29,7 +29,7 @@ import pytest
 import pinstress.cli.plots as plots_command
 from pinbase.errors import Damaged
 from pinstress.cli import manifest
-from pinstress.explore.sweep.parts import Identity, Parts
+from pinstress.explore.sweep.parts import BatchFolder, Identity
 from pinstress.explore.sweep.table import write_table
 from reports.folder.damaged import inflated
 from reports.folder.inside import read_inside, write_inside
@@ -58,7 +58,7 @@ def folder(made: Path, tmp_path: Path) -> Path:
 
 def list_as_ours(folder: Path) -> None:
     """As a neighbour would, all that is there."""
-    (folder / manifest.NAME).unlink()
+    (folder / manifest.MANIFEST_FILE).unlink()
     manifest.complete(folder)
 
 
@@ -122,8 +122,8 @@ def test_a_link_inside_is_neither_read_nor_written(
     assert made.stderr.count("\n") == 1
     assert entry.is_symlink()
     after = {p: p.read_bytes() for p in folder.parent.rglob("*") if p.is_file()}
-    assert {p: b for p, b in after.items() if p.name != manifest.NAME} == {
-        p: b for p, b in before.items() if p.name != manifest.NAME
+    assert {p: b for p, b in after.items() if p.name != manifest.MANIFEST_FILE} == {
+        p: b for p, b in before.items() if p.name != manifest.MANIFEST_FILE
     }
 
 
@@ -303,7 +303,7 @@ def test_no_link_at_a_partial_name_is_followed(tmp_path: Path) -> None:
     secret.write_bytes(SECRET)
     (out / "parts").mkdir(parents=True)
     table = pa.table({"design": [1, 2]})
-    parts = Parts(out, Identity("a", "b", 2, "sobol"))
+    parts = BatchFolder(out, Identity("a", "b", 2, "sobol"))
     ways: dict[str, Callable[[], None]] = {
         "designs.parquet": lambda: write_table(table, out / "designs.parquet"),
         "designs.html": lambda: write_inside(out, "designs.html", b"page"),
@@ -334,7 +334,7 @@ def test_a_sweep_goes_on_in_no_folder_with_links(name: str, tmp_path: Path) -> N
     out = tmp_path / "out"
     (out / "parts").mkdir(parents=True)
     manifest.begin(out)
-    Parts(out, Identity("a", "b", 2, "sobol")).begin()
+    BatchFolder(out, Identity("a", "b", 2, "sobol")).begin()
     (out / name).symlink_to(tmp_path / "secret")
     made = run_here("sweep", "study.toml", "--out", "out", "--resume", cwd=tmp_path)
     assert made.returncode == 2

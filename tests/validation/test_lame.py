@@ -19,7 +19,7 @@ from fea.core.pin_loads import Floats
 from fea.harmonic.boundary import shapes
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.stress_recovery import reading
-from fea.harmonic.surface_stress import AT
+from fea.harmonic.surface_stress import EDGE_STATIONS
 from geometry import Pin, Segment
 from geometry.mesh.gmsh_session import gmsh_model
 from tests.support.exact.exact_fields import (
@@ -75,7 +75,7 @@ def by_harmonic(steel: Material, across: int) -> tuple[float, float]:
     tractions = edge_tractions(model.space, model.outline, exact)
     _, stress = reading(model.space, model.outline, steel).of(0, u, tractions)
     edges = model.space.nodes[model.outline.nodes]
-    r, z = np.einsum("qi,eia->eqa", shapes(AT), edges).reshape(-1, 2).T
+    r, z = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), edges).reshape(-1, 2).T
     true = exact.displacement(*model.space.nodes.T)[:, 0]
     wrong = stress[: len(r), :, 0] - exact.stress(r, z)
     return float(np.abs(u[:, 0, 0] / true - 1.0).max()), float(np.abs(wrong).max() / P)

@@ -11,7 +11,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.singular.singularities import find_singularities
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 
 D, TAPER = 0.02, 0.05  # thin end, m; diameter per length
@@ -36,7 +36,7 @@ def test_a_long_taper_breaks_where_its_diameter_has_grown_by_half(steel: Materia
     nominal = 32.0 * 1000.0 * (x + D / 2.0) / (math.pi * (D + TAPER * x) ** 3)
     top = int(nominal.argmax())
     assert D + TAPER * x[top] == pytest.approx(1.5 * TAPER * tip, rel=1e-3)
-    asked = Asked(model="harmonic", tolerance=0.002)
+    asked = Requirement(model="harmonic", tolerance=0.002)
     (found,) = solve_pin(LONG, steel, ("end",), (replace(PUSH, distribution="cosine"),), asked)
     peak = found.peak
     assert peak.max_von_mises == pytest.approx(nominal[top], rel=2e-3)
@@ -92,7 +92,7 @@ FILLETED = Pin(
 def test_harmonic_and_solid_agree_at_the_end_of_a_cone(steel: Material) -> None:
     loads = PinLoads("c", ("B",), np.array([[[1000.0, 0.0, 800.0]]]), distribution="cosine")
     peaks = [
-        solve_pin(FILLETED, steel, ("start",), (loads,), Asked(model=model))[0].peak
+        solve_pin(FILLETED, steel, ("start",), (loads,), Requirement(model=model))[0].peak
         for model in ("harmonic", "solid")
     ]
     one, other = peaks

@@ -12,12 +12,12 @@ from fea.support.contact.records import JointForces
 from fea.support.lugs.lug import Lug
 from geometry import Pin
 
-STATIONS = 61  # along the pin, besides the ends of rings and segments
+STATION_COUNT = 61  # along the pin, besides the ends of rings and segments
 
 
 def stations(pin: Pin) -> Floats:
     """z at which results have section forces, m."""
-    return np.union1d(np.linspace(*pin.ends, STATIONS), pin.stations)
+    return np.union1d(np.linspace(*pin.ends, STATION_COUNT), pin.stations)
 
 
 def joint_forces(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fea.core.pin_loads import Floats
 from fea.support.contact.contact import Bands
 
-NEAR = 1e-6  # of the radius: how far off its ring a point may be by round-off
+RING_RADIUS_TOLERANCE = 1e-6  # of the radius: how far off its ring a point may be by round-off
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class CellPressure:
 
     def rings(self, points: Floats) -> NDArray[np.int64]:
         """Numbers of the rings on which points (N, 3) m lie, (N,); -1 on none."""
-        near = NEAR * self.bands.radius
+        near = RING_RADIUS_TOLERANCE * self.bands.radius
         half = 0.5 * self.bands.length + near
         r = np.hypot(points[:, 0], points[:, 1])[:, None]
         on = (np.abs(r - self.bands.radius) < near) & (

@@ -6,11 +6,11 @@ import numpy as np
 
 from fea.core.pin_loads import Floats
 from fea.support.contact.contact import Bands, ContactProblem
-from fea.support.contact.solve_joint import WAVES, JointModel
+from fea.support.contact.solve_joint import COUPLED_HARMONICS_PER_SECTOR, ContactModel
 from pinbase.arrays import Ints
 
 
-def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
+def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
     """Contact with each two rings of a band as one and half the sectors, and the rings (R, C) of
     which the coarse ones consist, 1 or 0.
     """
@@ -29,13 +29,13 @@ def on_coarser_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
         fine.bands.link,
     )
     sectors = model.cells.sectors // 2
-    coarse = mean.T @ model.flexibility[: WAVES * sectors] @ belongs
+    coarse = mean.T @ model.flexibility[: COUPLED_HARMONICS_PER_SECTOR * sectors] @ belongs
     tilt = [lug.tilt for lug in model.lugs]
     problem = ContactProblem(bands, coarse, model.tail[first], tilt, sectors)
     return problem, belongs
 
 
-def _pairs(model: JointModel) -> Ints:
+def _pairs(model: ContactModel) -> Ints:
     """Numbers (R,) of the coarse rings: two of a band each, none both flat and rounded, where a
     common gap would keep light loads off what is flat. One that is left over is alone where the
     rounding ends, or the third of the last flat ones.

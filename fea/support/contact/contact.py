@@ -35,15 +35,20 @@ from pinbase.arrays import Ints
 
 Mask = NDArray[np.bool_]
 
-MOST_STEPS = 60
-LARGER, LARGEST = 16.0, 1e12  # times the loads, where contact does not settle under them
-SMALLER, LEAST = 2.0, 1.01  # factors by which they become smaller again
-BALANCE = 1e-9  # of the largest force
-ROUND_OFF = 1e-12  # of the forces that would close the gaps
-CLOSE = 1e-12  # of the largest pressure or gap: what is round-off
-SOFT = 1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
-WAVES = 40  # times the sectors: harmonics of the half-plane that are summed
-KEPT = 4_000_000  # numbers: of what sets of cells answer
+MAX_ACTIVE_SET_STEPS = 60
+LOAD_GROWTH, MAX_LOAD_FACTOR = (
+    16.0,
+    1e12,
+)  # times the loads, where contact does not settle under them
+LOAD_REDUCTION, MIN_LOAD_REDUCTION = 2.0, 1.01  # factors by which they become smaller again
+BALANCE_TOLERANCE = 1e-9  # of the largest force
+CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
+SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: what is round-off
+SOFT_SPRING_STIFFNESS = (
+    1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
+)
+TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
+MAX_KEPT_NUMBERS = 4_000_000  # numbers: of what sets of cells answer
 
 
 @dataclass(frozen=True)
@@ -81,7 +86,7 @@ class Bands:
 
 
 @dataclass(frozen=True)
-class Pressed:
+class ContactState:
     """Pressure (R, M) in Pa and gap (R, M) in m on the cells; shift (B, 2) m of the lugs against
     the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set. angle:
     of the first cells' middle from the x axis, rad.
@@ -99,9 +104,9 @@ class Pressed:
         """Which cells are in contact."""
         return self.gap <= 0.0
 
-    def times(self, factor: float) -> Pressed:
+    def times(self, factor: float) -> ContactState:
         """Under so many times the loads, where contact without them has no gap to close."""
-        return Pressed(
+        return ContactState(
             factor * self.pressure,
             factor * self.gap,
             factor * self.shift,
@@ -110,7 +115,7 @@ class Pressed:
             self.angle,
         )
 
-    def turned(self, angle: float) -> Pressed:
+    def turned(self, angle: float) -> ContactState:
         """All of it turned about the axis by an angle, rad."""
         turn = rotation(angle).T
         return replace(
@@ -125,7 +130,7 @@ def rotation(angle: float) -> Floats:
 
 
 @dataclass(frozen=True)
-class Adjoined:
+class AdjointContact:
     """Contact of some cells: forces (U,) N and rigid motions (Y,), and what a sum of the forces
     loses by a gap at each of the cells (U,), and gains by what is asked of each motion (Y,).
     """
@@ -199,7 +204,7 @@ class ContactProblem:
         self._open = np.repeat(bands.gap, self.sectors)
         self._motions, tilts = self.rigid(bands, tilt)
         self._compliance = self._fixed + tilts @ tilts.T if tilts.size else self._fixed
-        self._soft = SOFT / np.abs(self._compliance).max()
+        self._soft = SOFT_SPRING_STIFFNESS / np.abs(self._compliance).max()
         # of the motions, (Y, Y): a turn counts as the shift at the far end
         self._scale = np.diag(np.square(self._motions).max(axis=0))
         self._answers: dict[bytes, _Answer] = {}
@@ -217,7 +222,7 @@ class ContactProblem:
 
     def tail_weights(self, first: int) -> Floats:
         """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
-        n = np.arange(first, WAVES * self.sectors)
+        n = np.arange(first, TAIL_HARMONICS_PER_SECTOR * self.sectors)
         each = self.factors(n) / n
         return np.asarray(np.bincount(n % self.sectors, each, self.sectors), dtype=np.float64)
 
@@ -255,7 +260,7 @@ class ContactProblem:
 
     def solve(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
-    ) -> Pressed:
+    ) -> ContactState:
         """Under forces (L, 2) N of the links on the pin, along x and y.
 
         couple: N m, along x and y, on the pin by anything but forces across at the bands, moments
@@ -268,17 +273,19 @@ class ContactProblem:
         found = self._settled(asked, facing if start is None else start.ravel().copy())
         found = found or self._from_larger(asked, facing)
         if found is None:
-            raise SolveError(f"contact does not settle in {MOST_STEPS} steps", "contact-unsettled")
+            raise SolveError(
+                f"contact does not settle in {MAX_ACTIVE_SET_STEPS} steps", "contact-unsettled"
+            )
         return found
 
-    def _settled(self, asked: Floats, active: Mask) -> Pressed | None:
+    def _settled(self, asked: Floats, active: Mask) -> ContactState | None:
         """From a set of cells in contact; None where the sets do not settle."""
         seen: set[bytes] = set()
-        for step in range(1, MOST_STEPS + 1):
+        for step in range(1, MAX_ACTIVE_SET_STEPS + 1):
             answer = self._answer(active)
             force, gap, motion = answer.under(asked)
-            wrong_force = active & (force < -CLOSE * np.abs(force).max(initial=0.0))
-            wrong_gap = ~active & (gap < -CLOSE * np.abs(gap).max(initial=0.0))
+            wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
+            wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
                 self._require_balance(force, asked, answer)
                 return self._found(force, gap, motion, step)
@@ -291,16 +298,16 @@ class ContactProblem:
             seen.add(key)
         return None
 
-    def _from_larger(self, asked: Floats, facing: Mask) -> Pressed | None:
+    def _from_larger(self, asked: Floats, facing: Mask) -> ContactState | None:
         """From loads so many times larger that contact settles, down to the given ones: with small
         loads and large gaps few cells touch, far from the first guess.
         """
         times, found = 1.0, None
-        while found is None and times < LARGEST:
-            times *= LARGER
+        while found is None and times < MAX_LOAD_FACTOR:
+            times *= LOAD_GROWTH
             found = self._settled(times * asked, facing.copy())
-        factor = SMALLER
-        while found is not None and times > 1.0 and factor > LEAST:
+        factor = LOAD_REDUCTION
+        while found is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
             less = max(1.0, times / factor)
             closer = self._settled(less * asked, found.active.ravel().copy())
             if closer is None:
@@ -313,7 +320,7 @@ class ContactProblem:
         """Of given cells in contact."""
         key = np.packbits(active).tobytes()
         if key not in self._answers:
-            if len(self._answers) * self._motions.size > KEPT:
+            if len(self._answers) * self._motions.size > MAX_KEPT_NUMBERS:
                 self._answers.clear()
             self._answers[key] = self._found_answer(active)
         return self._answers[key]
@@ -351,9 +358,9 @@ class ContactProblem:
         arm = np.sqrt(np.diag(self._scale))  # of each motion
         each = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
         lost = each.max(initial=0.0)
-        if lost <= BALANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+        if lost <= BALANCE_TOLERANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
             return
-        if lost <= ROUND_OFF * np.abs(answer.force).max():
+        if lost <= CLOSING_FORCE_ROUND_OFF * np.abs(answer.force).max():
             raise SolveError(
                 "the loads are so small for the clearance that contact is lost in round-off",
                 "loads-too-small",
@@ -362,7 +369,7 @@ class ContactProblem:
             "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
         )
 
-    def adjoint(self, active: Mask, wanted: Floats, asked: Floats) -> Adjoined:
+    def adjoint(self, active: Mask, wanted: Floats, asked: Floats) -> AdjointContact:
         """Of contact under what is asked of the rigid motions, with these cells (R, M) in contact:
         how a sum of their forces, each (U,) times `wanted`, goes with gaps, motions and loads.
         """
@@ -376,7 +383,7 @@ class ContactProblem:
         for _ in range(2):  # once more for round-off, as contact itself
             of_motion += np.asarray(np.linalg.lstsq(answer.system, lost)[0], dtype=np.float64)
             lost = G.T @ (own[rows] - answer.yielding[rows] @ of_motion)
-        return Adjoined(force, motion, own - answer.yielding @ of_motion, of_motion)
+        return AdjointContact(force, motion, own - answer.yielding @ of_motion, of_motion)
 
     def _facing(self, forces: Floats) -> Mask:
         """The cells that face the load of their band."""
@@ -384,10 +391,10 @@ class ContactProblem:
         size = np.linalg.norm(forces, axis=1)[self._link]
         return np.asarray((towards > 0.3 * size) & (size > 0.0))
 
-    def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> Pressed:
+    def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
         shape = (len(self.bands.z), self.sectors)
         count = self._count
-        return Pressed(
+        return ContactState(
             np.maximum(force / self.area, 0.0).reshape(shape),
             np.maximum(gap, 0.0).reshape(shape),
             motion[: 2 * count].reshape(count, 2)[self.bands.links],

@@ -9,9 +9,9 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.support.contact.edge_peak import contact_edges
 from fea.support.contact.solve_joint import JointContact
 from pinbase.arrays import Ints
@@ -20,7 +20,7 @@ from pinbase.arrays import Ints
 def contact_place(
     contact: JointContact,
     material: Material,
-    answer: HarmonicAnswer | CutAnswer,
+    answer: HarmonicField | CutField,
     loads: PinLoads,
     required: float | None,
     error: float,
@@ -30,7 +30,7 @@ def contact_place(
     what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
     outcome asks how far stress reaches.
     """
-    under = answer if isinstance(answer, CutAnswer) else _Plain(answer)
+    under = answer if isinstance(answer, CutField) else _Plain(answer)
     found = under.beneath(loads)
     limits = reached(material, required)
     instants = dict.fromkeys((found.instant, _instant(loads, contact)))
@@ -56,7 +56,7 @@ def contact_place(
 class _Plain:
     """A pin without cuts, asked as one with them is."""
 
-    answer: HarmonicAnswer
+    answer: HarmonicField
 
     def beneath(self, loads: PinLoads) -> Beneath:
         return beneath(self.answer.fields, loads, self.answer.singularities)

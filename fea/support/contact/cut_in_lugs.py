@@ -24,10 +24,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.peak import Note, Peak
-from fea.cut.evaluate import CutAnswer
+from fea.core.peak import Maximum, Reason
+from fea.cut.evaluate import CutField
 from fea.cut.region import zone
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.support.contact.bending import stations
 from fea.support.contact.cell_pressure import CellPressure
 from fea.support.contact.error_parts import with_parts
@@ -36,14 +36,14 @@ from fea.support.contact.solve_joint import JointContact
 from geometry import Cut, CutPin, Pin
 from pinbase.arrays import Floats
 
-ALONG, AROUND = 24, 720  # points of a band between the ends of a cut
-STIFFNESS = "stiffness of the lugs"
-TWICE = math.log(2.0)
-TELL = 5e-4  # of a lug's force: what is lost of it is reported
+AXIAL_POINTS, ANGULAR_POINTS = 24, 720  # points of a band between the ends of a cut
+STIFFNESS_VARIATION = "stiffness of the lugs"
+LOG_2 = math.log(2.0)
+MIN_REPORTED_LOSS = 5e-4  # of a lug's force: what is lost of it is reported
 
 
 @dataclass(frozen=True)
-class Neglected:
+class NeglectedCuts:
     """softer: by how much, relative, cuts raise the pin's bending compliance; pressed: the largest
     pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; moved: the
     largest part that may move away from holes; bands: those on which cuts are, by their names.
@@ -56,14 +56,16 @@ class Neglected:
     bands: dict[str, str]
 
     @property
-    def note(self) -> Note:
+    def note(self) -> Reason:
         """Of the cuts in lugs."""
         if not self.bands:
-            return Note()
+            return Reason()
         where = ", ".join(f"{cut} in lug {name}" for cut, name in self.bands.items())
         it, its = ("it", "its") if len(self.bands) == 1 else ("them", "their")
-        lost = f" ({self.lost:.1%} of the force of a lug presses there)" * (self.lost >= TELL)
-        return Note(
+        lost = f" ({self.lost:.1%} of the force of a lug presses there)" * (
+            self.lost >= MIN_REPORTED_LOSS
+        )
+        return Reason(
             f"; {where}: contact is that of the pin without {it}{lost}, and pressure at {its} "
             "edges is not resolved",
             ("cut-in-lug",),
@@ -71,15 +73,15 @@ class Neglected:
 
     def error(self, largest: float, at_cut: bool, over: tuple[Variation, ...]) -> float:
         """Of a maximum, Pa, with the maxima of the joint varied."""
-        factors = [v.max_von_mises / largest for v in over if v.what == STIFFNESS]
-        most = max((abs(math.log(x)) for x in factors if x > 0.0), default=TWICE)
-        relative = self.softer * most / TWICE + max(self.lost, self.moved)
+        factors = [v.max_von_mises / largest for v in over if v.what == STIFFNESS_VARIATION]
+        most = max((abs(math.log(x)) for x in factors if x > 0.0), default=LOG_2)
+        relative = self.softer * most / LOG_2 + max(self.lost, self.moved)
         return relative * largest + at_cut * self.pressed
 
 
 def neglected(
-    cut: CutPin, material: Material, contact: JointContact, pressure: CellPressure, of: CutAnswer
-) -> Neglected:
+    cut: CutPin, material: Material, contact: JointContact, pressure: CellPressure, of: CutField
+) -> NeglectedCuts:
     """At the single instant of a contact."""
     pressed, lost, bands = 0.0, dict[int, float](), dict[str, str]()
     for name, one in cut.cuts.items():
@@ -95,7 +97,7 @@ def neglected(
     force = {b: float(np.linalg.norm(forces[own == b].sum(axis=0))) for b in lost}
     share = max((part / force[b] for b, part in lost.items() if force[b] > 0.0), default=0.0)
     softer, moved = _softer(cut, material, contact, of), _moved(cut, contact)
-    return Neglected(softer, pressed, share, moved, bands)
+    return NeglectedCuts(softer, pressed, share, moved, bands)
 
 
 def _moved(cut: CutPin, contact: JointContact) -> float:
@@ -122,15 +124,15 @@ def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
     low, high = max(one.opens[0], on.z0), min(one.opens[1], on.z1)
     if low >= high:
         return np.zeros((0, 3)), 0.0
-    z = low + (np.arange(ALONG) + 0.5) * (high - low) / ALONG
-    angle = (np.arange(AROUND) + 0.5) * 2.0 * math.pi / AROUND
+    z = low + (np.arange(AXIAL_POINTS) + 0.5) * (high - low) / AXIAL_POINTS
+    angle = (np.arange(ANGULAR_POINTS) + 0.5) * 2.0 * math.pi / ANGULAR_POINTS
     angle, z = (x.ravel() for x in np.meshgrid(angle, z))
     points = np.stack([on.radius * np.cos(angle), on.radius * np.sin(angle), z], axis=1)
-    each = (high - low) / ALONG * on.radius * 2.0 * math.pi / AROUND
+    each = (high - low) / AXIAL_POINTS * on.radius * 2.0 * math.pi / ANGULAR_POINTS
     return points[one.takes(points, on.radius)], each
 
 
-def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutAnswer) -> float:
+def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutField) -> float:
     """The work of the bending moment at the cuts, where it is largest, on the turns that these add,
     over that of the whole pin; of passages at least that on the net section.
     """
@@ -160,7 +162,7 @@ def _inertia(pin: Pin, z: float) -> float:
     return math.pi * (shaft**4 - bore**4) / 4.0
 
 
-def at_a_cut(peak: Peak, of: CutAnswer) -> bool:
+def at_a_cut(peak: Maximum, of: CutField) -> bool:
     """Whether a maximum is about a cut."""
     ends = [zone(piece.piece) for piece in of.solution.pieces]
     where = peak.location
@@ -168,8 +170,12 @@ def at_a_cut(peak: Peak, of: CutAnswer) -> bool:
 
 
 def with_neglected(
-    peak: Peak, left: Neglected, of: CutAnswer, over: tuple[Variation, ...], asked: Asked
-) -> Peak:
+    peak: Maximum,
+    left: NeglectedCuts,
+    of: CutField,
+    over: tuple[Variation, ...],
+    asked: Requirement,
+) -> Maximum:
     """With what is neglected among the parts of its error, and a note about it."""
     if not peak.max_von_mises or peak.parts is None:
         return peak

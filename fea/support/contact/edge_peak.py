@@ -9,8 +9,9 @@ pressure rises towards the face of the lug as
 s the exponent of a sharp edge, q the power of the next term (fea.singular.lug_edge); b is what the
 radius r leaves of itself farther off, a field that grows towards the edge as the one conjugate to
 the first does. K and A follow from the force from the face to the ends of rings, which does not
-depend on how the peak is resolved: by least squares, forces being right to FORCES, and A not likely
-to change the pressure at a diameter from the edge by more than REGULAR times the first term.
+depend on how the peak is resolved: by least squares, forces being right to RING_FORCE_ERROR, and A
+not likely to change the pressure at a diameter from the edge by more than REGULAR_TERM_RATIO times
+the first term.
 
 Close by, both
 bodies are half-planes, one flat and then rounded by a radius r: pressure there is (y from the end
@@ -47,16 +48,18 @@ from fea.support.lugs.lug import Lug
 
 End = Literal["start", "end"]
 
-EXPONENTS = 0.11, 0.226, 0.5  # aluminium on steel, like on like, rigid
-C = 0.925, 0.965, 1.073
-B = 0.42, 0.45, 0.5
-WITHIN = 0.1  # relative, of resolved peaks (on usual cells 6 %)
-FORCES, REGULAR = 0.03, 0.5
-ROUND_OFF = 1e-9
-FROM = 2.0  # edge radii from the face: from there on forces are compared with the expansion
+EDGE_EXPONENTS = 0.11, 0.226, 0.5  # aluminium on steel, like on like, rigid
+PRESSURE_COEFFICIENTS = 0.925, 0.965, 1.073
+REACH_COEFFICIENTS = 0.42, 0.45, 0.5
+EDGE_PEAK_ERROR = 0.1  # relative, of resolved peaks (on usual cells 6 %)
+RING_FORCE_ERROR, REGULAR_TERM_RATIO = 0.03, 0.5
+STATION_ROUND_OFF = 1e-9
+MIN_FIT_DISTANCE = (
+    2.0  # edge radii from the face: from there on forces are compared with the expansion
+)
 # Largest von Mises stress below the surface over the largest pressure, by Poisson's ratio.
-POISSON = 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5
-BELOW = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.4763
+POISSON_RATIOS = 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5
+SUBSURFACE_STRESS_RATIOS = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.4763
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,7 @@ def _edge(lug: Lug, end: End, K: float, exponent: float, material: Material) -> 
         return edge
     return replace(
         edge, max_pressure=peak.pressure, max_von_mises=peak.von_mises,
-        error_estimate=WITHIN * peak.pressure,
+        error_estimate=EDGE_PEAK_ERROR * peak.pressure,
     )  # fmt: skip
 
 
@@ -112,19 +115,19 @@ def strength_at_edge(
     exponent s and the power q.
     """
     stations = np.concatenate([[0.0], np.cumsum(length)])
-    half, least = 0.5 * stations[-1] * (1.0 + ROUND_OFF), radius * (1.0 + ROUND_OFF)
+    half, least = 0.5 * stations[-1] * (1.0 + STATION_ROUND_OFF), radius * (1.0 + STATION_ROUND_OFF)
     inside = np.flatnonzero((stations > least) & (stations <= half))
-    far = inside[stations[inside] >= FROM * radius * (1.0 - ROUND_OFF)]
+    far = inside[stations[inside] >= MIN_FIT_DISTANCE * radius * (1.0 - STATION_ROUND_OFF)]
     at = far if len(far) > 1 else inside[-2:]  # a rounding that leaves little of the band flat
     if not len(at):
         return 0.0
     x, (s, q) = stations[at], powers
-    b = float(np.interp(s, EXPONENTS, B))
+    b = float(np.interp(s, EDGE_EXPONENTS, REACH_COEFFICIENTS))
     # The force from the face to x, over x^(1 - s) / (1 - s), of K and of A diameter^(s + q).
     of_k = 1.0 - b * (radius / x) ** (2.0 - 2.0 * s)
     of_a = (1.0 - s) / (1.0 + q) * (x / diameter) ** (s + q)
     terms = np.stack([of_k, of_a], axis=1)
-    likely = np.diag([0.0, (FORCES / REGULAR) ** 2])
+    likely = np.diag([0.0, (RING_FORCE_ERROR / REGULAR_TERM_RATIO) ** 2])
     weights = np.linalg.solve(terms.T @ terms + likely, terms.T)[0]
     force = np.cumsum(pressure.T * length, axis=1)[:, at - 1]
     return max(0.0, float((force * (1.0 - s) * x ** (s - 1.0) @ weights).max()))
@@ -133,9 +136,9 @@ def strength_at_edge(
 def edge_peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
     """Of a rounded edge."""
     r, soft = lug.edge_radius, material.plane_compliance + lug.bearing.plane_compliance
-    pressure = float(np.interp(exponent, EXPONENTS, C)) * (
+    pressure = float(np.interp(exponent, EDGE_EXPONENTS, PRESSURE_COEFFICIENTS)) * (
         K * K * r ** (-2.0 * exponent) / soft
     ) ** (1.0 / 3.0)
     nu = material.poisson_ratio
-    part = max(float(np.interp(nu, POISSON, BELOW)), 1.0 - 2.0 * nu)
+    part = max(float(np.interp(nu, POISSON_RATIOS, SUBSURFACE_STRESS_RATIOS)), 1.0 - 2.0 * nu)
     return EdgePeak(pressure, part * pressure, pressure * soft * r / 0.3818)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fea.core.peak import ErrorParts, Peak, accuracy
-from fea.solve.requirement import Asked
+from fea.core.peak import ErrorParts, Maximum, accuracy
+from fea.solve.requirement import Requirement
 
 
-def with_parts(peak: Peak, parts: ErrorParts, asked: Asked) -> Peak:
+def with_parts(peak: Maximum, parts: ErrorParts, asked: Requirement) -> Maximum:
     """With larger parts of the error, and the verdict that goes with them."""
     largest, error = peak.max_von_mises, peak.error_estimate
     if not largest or error is None or peak.parts is None:
@@ -29,7 +29,7 @@ def with_parts(peak: Peak, parts: ErrorParts, asked: Asked) -> Peak:
     )
 
 
-def with_cells(peak: Peak, relative: float, asked: Asked) -> Peak:
+def with_cells(peak: Maximum, relative: float, asked: Requirement) -> Maximum:
     """With the error of the cells, relative, among its parts."""
     largest = peak.max_von_mises
     if not largest or peak.parts is None:

@@ -38,7 +38,7 @@ from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.mesh.sizing import Grade
 from pinbase.arrays import Ints
 
-NONE = np.zeros(3)
+NO_SLOPE = np.zeros(3)
 OUTWARDS = np.array([1.0, 0.0, 0.0])
 
 
@@ -61,7 +61,7 @@ class RingBody:
 
     def forces(self, n: int) -> Floats:
         """On the unknowns, (unknowns, R), of pressures of one on the rings."""
-        return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NONE),) for r in self.rings])
+        return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NO_SLOPE),) for r in self.rings])
 
     def balanced(self, n: int, forces: Floats) -> Floats:
         """With the reaction of what guides it."""
@@ -75,7 +75,7 @@ class RingBody:
         """
         reactions = [
             tuple(Traction(name, 0.5 * length, *parts) for name in self.body.pin.connections)
-            for parts in ((ALONG_X, NONE), (NONE, ALONG_X))
+            for parts in ((ALONG_X, NO_SLOPE), (NO_SLOPE, ALONG_X))
         ]
         against = np.stack([generalised(outline.forces(one, 1)) for one in reactions], axis=1)
         modes = rigid_motions(outline.every_node, 1)

@@ -15,28 +15,32 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between, knots
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.section.section_stress import SectionAnswer
-from fea.solve.requirement import Asked, decided
+from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.section.section_stress import SectionField
+from fea.solve.requirement import Requirement, decided
 from fea.solve.solve_pin import singularities_of
-from fea.support.contact.contact import Pressed
+from fea.support.contact.contact import ContactState
 from fea.support.contact.pressure_loads import (
-    NEGLIGIBLE,
-    ROUGH,
-    Patterns,
+    MODE_TOLERANCE,
+    ROUGH_MODE_TOLERANCE,
     PressureLoads,
+    PressureModes,
     resultants,
 )
-from fea.support.contact.solve_joint import JointContact, JointModel
-from fea.support.contact.variations import CELLS, Comparison, compare
+from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.contact.variations import CELL_ERROR_SHARE, ResolutionComparison, compare
 
-MAY = 0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
-STRAIGHT = 0.01  # of the largest load: what an instant left out to begin with may be off its chord
-FEWEST = 16  # intervals to begin with
+CANDIDATE_FRACTION = (
+    0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
+)
+CHORD_TOLERANCE = (
+    0.01  # of the largest load: what an instant left out to begin with may be off its chord
+)
+MIN_INTERVALS = 16  # intervals to begin with
 
 
 @dataclass(frozen=True)
-class Near:
+class Candidates:
     """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
     is known), and which (T,) are so near to it that they may govern.
     """
@@ -50,15 +54,15 @@ class Near:
 class Compared:
     """Of a case, at the instants of the surface's largest stress and of the sections'."""
 
-    surface: Comparison
-    section: Comparison
+    surface: ResolutionComparison
+    section: ResolutionComparison
 
     @property
-    def row(self) -> Comparison:
+    def row(self) -> ResolutionComparison:
         """That of the larger one, of which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    def fine(self, material: Material, asked: Asked) -> bool:
+    def fine(self, material: Material, asked: Requirement) -> bool:
         """Whether finer cells would not help: they take little of the tolerance, or the required
         factor is decided whatever they do, for what lies beneath the contact, too.
         """
@@ -69,7 +73,7 @@ class Compared:
         own = cells[max(stress, key=lambda name: stress[name])]
         most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
         off = max(own, most)
-        if off <= CELLS * asked.tolerance:
+        if off <= CELL_ERROR_SHARE * asked.tolerance:
             return True
         low, high = largest / (1.0 + off), largest * (1.0 + off)
         below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
@@ -79,7 +83,10 @@ class Compared:
         )
 
     def near(
-        self, contact: JointContact, case: PinLoads, anew: Callable[[JointContact], Comparison]
+        self,
+        contact: JointContact,
+        case: PinLoads,
+        anew: Callable[[JointContact], ResolutionComparison],
     ) -> Compared:
         """With the surface at another instant, if that is not near."""
         if self.surface.is_at(contact.loads.links, case):
@@ -95,7 +102,7 @@ class PressedCases:
 
     def __init__(
         self,
-        model: JointModel,
+        model: ContactModel,
         cases: tuple[PinLoads, ...],
         between: Mapping[str, Between],
         besides: Mapping[str, PinLoads],
@@ -104,10 +111,10 @@ class PressedCases:
         self.model, self.cut = model, cut
         self.failed: dict[str, str] = {}
         self.instants: dict[str, PinLoads] = {}
-        self._known: dict[tuple[str, float], Pressed] = {}
+        self._known: dict[tuple[str, float], ContactState] = {}
         self._besides: dict[str, Floats] = {}
-        self.patterns: Patterns | None = None
-        self.sections: dict[str, SectionAnswer] = {}
+        self.patterns: PressureModes | None = None
+        self.sections: dict[str, SectionField] = {}
         for case in cases:
             instants = _instants(case, between.get(case.case))
             try:
@@ -120,13 +127,15 @@ class PressedCases:
                 continue
             self.instants[case.case] = instants
             rings = [self.on_rings(instants)]
-            self.sections[case.case] = SectionAnswer(model.pin, model.material, (), rings)
+            self.sections[case.case] = SectionField(model.pin, model.material, (), rings)
 
-    def near(self, asked: Asked) -> dict[str, Near]:
+    def near(self, asked: Requirement) -> dict[str, Candidates]:
         """By the stress of all instants, roughly, on the first mesh."""
         if all(len(links) == 1 for links in self.instants.values()):
-            return {case: Near(0, np.ones(1, dtype=bool)) for case in self.instants}
-        self.follow({case: Near(0, np.zeros(len(x), bool)) for case, x in self.instants.items()})
+            return {case: Candidates(0, np.ones(1, dtype=bool)) for case in self.instants}
+        self.follow(
+            {case: Candidates(0, np.zeros(len(x), bool)) for case, x in self.instants.items()}
+        )
         loads = [self.press(links) for links in self.instants.values()]
         model, out = self.model, {}
         own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
@@ -134,24 +143,24 @@ class PressedCases:
         problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
         section = harmonic_solution(problem, 0, 1.0)
         for x, zones in zip(loads, own, strict=True):
-            answer = HarmonicAnswer(section, zones)
+            answer = HarmonicField(section, zones)
             largest, instant = answer.largest(x)
-            may = answer.maxima(x, MAY * largest) > MAY * largest
+            may = answer.maxima(x, CANDIDATE_FRACTION * largest) > CANDIDATE_FRACTION * largest
             if self.cut:  # any may govern where it is cut
                 may[:] = True
-            out[x.case] = Near(instant, may, largest)
+            out[x.case] = Candidates(instant, may, largest)
         return out
 
-    def follow(self, near: Mapping[str, Near]) -> None:
+    def follow(self, near: Mapping[str, Candidates]) -> None:
         """Make the patterns: good ones of what may govern, rough ones of other instants."""
-        parts = [(waves, NEGLIGIBLE) for waves in self._besides.values()]
+        parts = [(waves, MODE_TOLERANCE) for waves in self._besides.values()]
         for case, links in self.instants.items():
             waves, may = self.model.waves(self._at(links)), near[case].may
-            parts += [(waves[:, may], NEGLIGIBLE), (waves[:, ~may], ROUGH)]
+            parts += [(waves[:, may], MODE_TOLERANCE), (waves[:, ~may], ROUGH_MODE_TOLERANCE)]
         if parts:
             self.patterns = self.model.patterns(parts, self.patterns)
 
-    def _at(self, links: PinLoads) -> list[Pressed]:
+    def _at(self, links: PinLoads) -> list[ContactState]:
         """Contact at the loads' instants."""
         if links.times is None:
             return self.model.pressed(links)
@@ -177,7 +186,7 @@ class PressedCases:
         here = links.at(np.array([instant]))
         return self.model.joined(self._at(here), self.press(here))
 
-    def compared(self, near: Mapping[str, Near], asked: Asked) -> dict[str, Compared]:
+    def compared(self, near: Mapping[str, Candidates], asked: Requirement) -> dict[str, Compared]:
         """By case, at the instants of the largest stress of the surface on the first mesh and of
         sections.
         """
@@ -201,6 +210,6 @@ def _instants(case: PinLoads, between: Between | None) -> PinLoads:
     """
     if between is None or case.times is None or len(case) < 2:
         return case
-    case = case.at(knots(case, STRAIGHT, FEWEST))
+    case = case.at(knots(case, CHORD_TOLERANCE, MIN_INTERVALS))
     assert case.times is not None
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))

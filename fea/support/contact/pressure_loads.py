@@ -17,8 +17,8 @@ from fea.core.pin_loads import Floats, PinLoads, UnitLoad
 from fea.core.pressed import PressedArcs
 from geometry import Pin
 
-NEGLIGIBLE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
-ROUGH = 3e-2  # the same for instants that cannot govern
+MODE_TOLERANCE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
+ROUGH_MODE_TOLERANCE = 3e-2  # the same for instants that cannot govern
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class PressureLoads(PinLoads):
 
 
 @dataclass(frozen=True)
-class Patterns:
+class PressureModes:
     """Patterns (K, R) in Pa over the rings of a pin, one array for each harmonic from 0 on."""
 
     pin: Pin
@@ -121,12 +121,12 @@ def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads)
     return made
 
 
-def patterns_of(
+def pressure_modes(
     pin: Pin,
     rings: tuple[str, ...],
     parts: Sequence[tuple[Floats, float]],
-    known: Patterns | None = None,
-) -> Patterns:
+    known: PressureModes | None = None,
+) -> PressureModes:
     """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, as cases:
     each with what is negligible, of the largest amplitude of the part. known: patterns that are
     there already; they come first.
@@ -142,7 +142,7 @@ def patterns_of(
         instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
         most = np.abs(instants * size).max(axis=0)
         found.append(np.concatenate([old, patterns[most > 1.0]]))
-    return Patterns(pin, rings, tuple(found))
+    return PressureModes(pin, rings, tuple(found))
 
 
 def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:

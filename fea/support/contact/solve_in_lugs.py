@@ -20,42 +20,46 @@ from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between
-from fea.core.peak import Note, Peak, decides
+from fea.core.peak import Maximum, Reason, meets_limit
 from fea.core.pin_loads import PinLoads
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.cut.region import RingedCutPin
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.section.place import FoundSection, found_section
 from fea.section.row import row_of, with_contact
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import Progress, Solution, imbalance, solve_pin
 from fea.support.contact.cell_pressure import CellPressure
 from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import neglected, with_neglected
 from fea.support.contact.error_parts import with_cells
-from fea.support.contact.pressed_cases import Compared, Near, PressedCases
+from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.records import JointResult
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
-from fea.support.contact.variations import Comparison, compare
-from fea.support.contact.what_contact_says import joint_result
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
+from fea.support.contact.variations import ResolutionComparison, compare
+from fea.support.contact.what_contact_says import contact_result
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import whole_names
 from geometry import ArgumentError, CutPin, Pin, PinLike
 
-SETS = Cells(), Cells(12, 48, 16), Cells(16, 64, 20)  # until one is fine enough
-ROUGH_CELLS = Cells(4, 24, 8)  # may decide a required factor
-MOST_CELLS = 6000  # a dense matrix of them takes 300 MB
-CONTACT = Note("contact, harmonic: the pin is held by its lugs", ("contact",))
-CUT_CONTACT = Note(
+RESOLUTIONS = (
+    Resolution(),
+    Resolution(12, 48, 16),
+    Resolution(16, 64, 20),
+)  # until one is fine enough
+ROUGH = Resolution(4, 24, 8)  # may decide a required factor
+MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
+CONTACT_REASON = Reason("contact, harmonic: the pin is held by its lugs", ("contact",))
+CUT_CONTACT_REASON = Reason(
     "contact, harmonic with local solids about the cuts: the pin is held by its lugs", ("contact",)
 )
 
 
 @dataclass(frozen=True)
-class InLugs:
+class PinProblem:
     """A pin in its lugs, to be solved under the loads of its links in some cases. between: of those
     that are motions, the loads at any times. besides: by case, other loads under which its stress
     will be asked for. cut: the pin with its cuts, of which `pin` is the profile.
@@ -83,17 +87,17 @@ class LugSolution:
     pressed: Callable[[PinLoads], PinLoads]
     pressure: CellPressure | None = None
     rings: Pin | None = None
-    model: JointModel | None = None
+    model: ContactModel | None = None
 
 
 def solve_in_lugs(
-    given: InLugs, asked: Asked, progress: Progress = lambda _: None
+    given: PinProblem, asked: Requirement, progress: Progress = lambda _: None
 ) -> tuple[LugSolution, ...]:
     """All cases of a pin, each on cells as fine as necessary.
 
     Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
     """
-    near: Mapping[str, Near] = {}
+    near: Mapping[str, Candidates] = {}
     done = _refused(given)
     left = tuple(case for case in given.cases if case.case not in done)
     sets = _sets(asked)
@@ -101,25 +105,25 @@ def solve_in_lugs(
         if not left:
             break
         progress(f"pin {given.pin.name}, flexibility of {cells.rings} rings of each lug")
-        model = JointModel(given.pin, given.material, given.lugs, cells)
+        model = ContactModel(given.pin, given.material, given.lugs, cells)
         progress(f"pin {given.pin.name}, contact")
         contact = PressedCases(model, left, given.between, given.besides, cut=given.cut is not None)
         if not contact.instants.keys() <= near.keys():
             near = contact.near(asked)
         contact.follow(near)
         compared = contact.compared(near, asked)
-        last = finer is None or _count(model, finer) > MOST_CELLS
+        last = finer is None or _count(model, finer) > MAX_CELLS
         fine = {c: x for c, x in compared.items() if last or x.fine(given.material, asked)}
         for case, found in _Stress(given, contact).solved(fine, asked, progress).items():
             if last or _enough(found.solution.peak, given.material, asked):
                 done[case] = found
-        if finer is None or cells is not ROUGH_CELLS:
+        if finer is None or cells is not ROUGH:
             done |= {case: _failed(given, case, why) for case, why in contact.failed.items()}
         left = tuple(case for case in left if case.case not in done)
     return tuple(done[case.case] for case in given.cases)
 
 
-def _refused(given: InLugs) -> dict[str, LugSolution]:
+def _refused(given: PinProblem) -> dict[str, LugSolution]:
     """The cases whose loads no contact can carry, before anything is meshed. Raises: ArgumentError
     for lugs that do not fit.
     """
@@ -135,14 +139,14 @@ def _refused(given: InLugs) -> dict[str, LugSolution]:
     return out
 
 
-def _sets(asked: Asked) -> tuple[Cells, ...]:
+def _sets(asked: Requirement) -> tuple[Resolution, ...]:
     """Cells, one after the other."""
     if asked.cells is not None:
-        return (ROUGH_CELLS if asked.cells == "rough" else SETS[0],)
-    return (ROUGH_CELLS, *SETS) if asked.goal == "decide" else SETS
+        return (ROUGH if asked.cells == "rough" else RESOLUTIONS[0],)
+    return (ROUGH, *RESOLUTIONS) if asked.goal == "decide" else RESOLUTIONS
 
 
-def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
+def _enough(peak: Maximum, material: Material, asked: Requirement) -> bool:
     """Whether finer cells would not decide the required factor either, or it is not asked for."""
     strength, required = material.yield_strength, asked.required
     if asked.goal == "value" or strength is None or required is None:
@@ -150,22 +154,22 @@ def _enough(peak: Peak, material: Material, asked: Asked) -> bool:
     return peak.verdict == "singular" or not _cells_matter(peak, strength / required)
 
 
-def _cells_matter(peak: Peak, limit: float) -> bool:
+def _cells_matter(peak: Maximum, limit: float) -> bool:
     """Whether a limit (Pa) is within the error, and would not be if cells had none."""
-    if peak.parts is None or decides(peak, limit) is not None:
-        return decides(peak, limit) is None
+    if peak.parts is None or meets_limit(peak, limit) is not None:
+        return meets_limit(peak, limit) is None
     low, high = peak.lower_end, peak.upper_end
     return not low + peak.parts.cells <= limit < high - peak.parts.cells
 
 
-def _count(model: JointModel, cells: Cells) -> int:
+def _count(model: ContactModel, cells: Resolution) -> int:
     """How many there would be, roughly."""
     return len(model.rings) * cells.rings // model.cells.rings * cells.sectors
 
 
-def _failed(given: InLugs, name: str, why: str) -> LugSolution:
+def _failed(given: PinProblem, name: str, why: str) -> LugSolution:
     (case,) = (case for case in given.cases if case.case == name)
-    peak = Peak(given.pin.name, name, "harmonic", "failed", why)
+    peak = Maximum(given.pin.name, name, "harmonic", "failed", why)
     return LugSolution(Solution(peak, None, case), None, lambda links: links)
 
 
@@ -173,11 +177,11 @@ def _failed(given: InLugs, name: str, why: str) -> LugSolution:
 class _Stress:
     """Under the pressures of a pin's cases, which contact found on some cells."""
 
-    given: InLugs
+    given: PinProblem
     contact: PressedCases
 
     def solved(
-        self, compared: dict[str, Compared], asked: Asked, progress: Progress
+        self, compared: dict[str, Compared], asked: Requirement, progress: Progress
     ) -> dict[str, LugSolution]:
         """Stress of the cases that were compared, on the same meshes."""
         live = [case for case in self.given.cases if case.case in compared]
@@ -187,7 +191,7 @@ class _Stress:
         def between(of_links: Between) -> Between:
             return lambda times: self.contact.press(of_links(times))
 
-        why = CUT_CONTACT if self.given.cut else CONTACT
+        why = CUT_CONTACT_REASON if self.given.cut else CONTACT_REASON
         cells = {case: x.surface.cells.surface for case, x in compared.items()}
         asked = replace(asked, model="harmonic", because=why, besides=cells)
         try:
@@ -230,7 +234,7 @@ class _Stress:
         )
 
     def _solution(
-        self, case: PinLoads, solution: Solution, known: Compared, asked: Asked
+        self, case: PinLoads, solution: Solution, known: Compared, asked: Requirement
     ) -> LugSolution:
         model, material = self.contact.model, self.given.material
         if solution.answer is None:
@@ -253,9 +257,9 @@ class _Stress:
         (pressed,) = contact.contact
         pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
         cut, answer = self.given.cut, solution.answer
-        assert isinstance(answer, HarmonicAnswer | CutAnswer)
+        assert isinstance(answer, HarmonicField | CutField)
         error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
-        if cut is not None and isinstance(answer, CutAnswer):
+        if cut is not None and isinstance(answer, CutField):
             left = neglected(cut, material, contact, pressure, answer)
             peak = with_neglected(peak, left, answer, over.variations, asked)
             peak = row_of(peak, None, material, asked.tolerance)
@@ -265,22 +269,22 @@ class _Stress:
         place = contact_place(contact, material, answer, solved, asked.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
         over = known.row.range(row, place.beneath)
-        joint = joint_result(contact, over, solution.loads, known.row.left_out)
+        joint = contact_result(contact, over, solution.loads, known.row.left_out)
         if cut is not None:
             return LugSolution(solution, joint, self.contact.press, pressure)
         return LugSolution(solution, joint, self.contact.press, pressure, model.pin, model)
 
-    def _by_mesh(self, answer: HarmonicAnswer | CutAnswer, known: Comparison) -> float:
+    def _by_mesh(self, answer: HarmonicField | CutField, known: ResolutionComparison) -> float:
         """By how much what lies beneath contact differs from that on the first mesh, relative."""
-        fields = answer.solution.uncut if isinstance(answer, CutAnswer) else answer.fields
+        fields = answer.solution.uncut if isinstance(answer, CutField) else answer.fields
         there = beneath(fields, self.contact.press(known.links), answer.singularities).value
         return abs(known.stress.beneath / there - 1.0) if there else 0.0
 
-    def _compared_anew(self, asked: Asked) -> Callable[[JointContact], Comparison]:
+    def _compared_anew(self, asked: Requirement) -> Callable[[JointContact], ResolutionComparison]:
         of = self.contact
         return lambda contact: compare(of.model, [contact], asked, of.patterns)[0]
 
-    def _section(self, case: PinLoads, cells: float, asked: Asked) -> FoundSection:
+    def _section(self, case: PinLoads, cells: float, asked: Requirement) -> FoundSection:
         """The largest stress of sections of a case; cells: its error by these, relative."""
         between, loads = self.given.between.get(case.case), self.contact.instants[case.case]
         on_rings = None if between is None else lambda times: self.contact.on_rings(between(times))
@@ -292,7 +296,7 @@ class _Stress:
             cells,
         )
 
-    def _at_row(self, solution: Solution, peak: Peak, case: PinLoads) -> Solution:
+    def _at_row(self, solution: Solution, peak: Maximum, case: PinLoads) -> Solution:
         """With the loads at all samples of a case, at the instant of its row."""
         loads, links = solution.loads, self.contact.press(case)
         if loads.times is None:
@@ -305,7 +309,7 @@ class _Stress:
         return replace(solution, peak=peak, loads=loads, instant=instant)
 
 
-def links_at(given: InLugs, case: PinLoads, section: FoundSection) -> PinLoads:
+def links_at(given: PinProblem, case: PinLoads, section: FoundSection) -> PinLoads:
     """The loads of the links at the instant of a section."""
     time, between = section.time, given.between.get(case.case)
     if time is None or case.times is None:
@@ -315,7 +319,7 @@ def links_at(given: InLugs, case: PinLoads, section: FoundSection) -> PinLoads:
     return case.at(np.flatnonzero(case.times == time)[:1])
 
 
-def _named(model: JointModel, peak: Peak) -> Peak:
+def _named(model: ContactModel, peak: Maximum) -> Maximum:
     """With the names of the whole pin's surfaces, for those of its rings."""
     names, note, zones = whole_names(model.whole, model.ends), peak.note, []
     for zone in peak.singular_at:
@@ -325,7 +329,7 @@ def _named(model: JointModel, peak: Peak) -> Peak:
     return replace(peak, note=note, singular_at=tuple(zones))
 
 
-def _imbalance(model: JointModel, case: PinLoads) -> tuple[float, float] | None:
+def _imbalance(model: ContactModel, case: PinLoads) -> tuple[float, float] | None:
     """Force and couple that links leave over, relative; a structure takes them."""
     if model.on_structure:
         return None

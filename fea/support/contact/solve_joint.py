@@ -21,7 +21,7 @@ from fea.core.pressed import PressedArcs, Rings
 from fea.harmonic.kept_fields import FirstMesh
 from fea.singular.lug_edge import lug_edge_exponent
 from fea.support.contact.bending import bending_moment, mass_per_length
-from fea.support.contact.contact import Bands, ContactProblem, Pressed, rotation
+from fea.support.contact.contact import Bands, ContactProblem, ContactState, rotation
 from fea.support.contact.flexibility import (
     RingBody,
     half_plane,
@@ -30,13 +30,13 @@ from fea.support.contact.flexibility import (
     wavy_flexibility,
 )
 from fea.support.contact.pressure_loads import (
-    NEGLIGIBLE,
-    Patterns,
+    MODE_TOLERANCE,
     PressureLoads,
+    PressureModes,
     amplitudes,
-    patterns_of,
+    pressure_modes,
 )
-from fea.support.lugs.changes import softer
+from fea.support.lugs.changes import with_stiffness
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_numbers
 from fea.support.lugs.lug import Bushing, Lug
@@ -44,15 +44,17 @@ from fea.support.lugs.rings import annulus, beside_fillets, ring_ends, ringed, r
 from geometry import Pin
 from pinbase.arrays import Ints
 
-SAME = 1e-13  # relative: loads that differ by no more are the same
-SAME_SIZE = 12  # digits to which lugs of the same size agree
-LARGEST = 1.0 - 1e-6  # of the largest: a force that is as good as it
-WAVES = 4  # times the sectors: harmonics in which neighbouring rings feel each other
+EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
+LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
+LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
+COUPLED_HARMONICS_PER_SECTOR = (
+    4  # times the sectors: harmonics in which neighbouring rings feel each other
+)
 Alike = tuple[float, Material, Bushing | None, bytes, Material]
 
 
 @dataclass(frozen=True)
-class Cells:
+class Resolution:
     """How finely contact is resolved. rings: of a band with sharp edges (lugs.rings); sectors:
     round it; highest: harmonic of elasticity that is computed; across: elements over the pin's
     diameter where flexibilities are found; beside: of an edge's radius, the length of the rings
@@ -81,7 +83,7 @@ class JointContact:
     lugs: tuple[Lug, ...]
     bands: Bands
     angles: Floats
-    contact: tuple[Pressed, ...]
+    contact: tuple[ContactState, ...]
     loads: PressureLoads
     mass: Floats
 
@@ -115,7 +117,7 @@ class JointContact:
         )
 
 
-class JointModel:
+class ContactModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances. first: its
     first mesh for stress. on_pin, on_lugs: the meshes of the flexibilities; of equal lugs one.
 
@@ -123,7 +125,7 @@ class JointModel:
     """
 
     def __init__(
-        self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Cells = Cells()
+        self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Resolution = Resolution()
     ) -> None:
         self.cells, self.first = cells, FirstMesh()
         self._shape(pin, material, lugs)
@@ -160,7 +162,7 @@ class JointModel:
             self._cut, self.pin = cut, ringed(pin, self.ends)
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
 
-    def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> JointModel:
+    def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> ContactModel:
         """Another pin in other lugs on such cells, of which no flexibility is found.
 
         Raises: ArgumentError as for any.
@@ -174,7 +176,7 @@ class JointModel:
     @property
     def high(self) -> Ints:
         """Harmonics that are felt by neighbouring rings alone."""
-        return np.arange(self.cells.highest + 1, WAVES * self.cells.sectors)
+        return np.arange(self.cells.highest + 1, COUPLED_HARMONICS_PER_SECTOR * self.cells.sectors)
 
     def eye(self, lug: Lug, ends: Floats) -> Pin:
         """Of a lug, with its rings."""
@@ -188,7 +190,7 @@ class JointModel:
     def likeness(self, lug: Lug, ends: Floats) -> Alike:
         """What the flexibility of a lug's rings, and of the pin against them, depends on."""
         bore = 2.0 * self.whole.band(lug.connection).radius
-        size = np.round(np.append(ends, bore) / lug.outer_diameter, SAME_SIZE)
+        size = np.round(np.append(ends, bore) / lug.outer_diameter, LUG_SIZE_DIGITS)
         return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
 
     def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
@@ -213,7 +215,7 @@ class JointModel:
         """
         return np.concatenate([self.of_pin + self.of_lugs, self.wavy.sum(axis=0)])
 
-    def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> JointModel:
+    def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> ContactModel:
         """The same pin in lugs of other clearance, edge radius and tilt, each so many times softer:
         with the flexibilities at hand.
         """
@@ -221,7 +223,7 @@ class JointModel:
         other = copy.copy(self)
         for known in ("contact", "flexibility", "bands", "on_shaft"):
             other.__dict__.pop(known, None)
-        other.lugs = tuple(softer(*both) for both in zip(lugs, softness, strict=True))
+        other.lugs = tuple(with_stiffness(*both) for both in zip(lugs, softness, strict=True))
         if set(softness) == {1.0}:
             tilts = [lug.tilt for lug in lugs]
             other.__dict__["flexibility"] = self.flexibility
@@ -275,20 +277,20 @@ class JointModel:
         """
         found = self.pressed(loads)
         waves = self.waves(found)
-        patterns = self.patterns([(waves, NEGLIGIBLE)])
+        patterns = self.patterns([(waves, MODE_TOLERANCE)])
         return self.joined(found, patterns.loads(waves, loads, self.arcs(found)))
 
-    def waves(self, found: Sequence[Pressed]) -> Floats:
+    def waves(self, found: Sequence[ContactState]) -> Floats:
         """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
         return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
 
     def patterns(
-        self, parts: Sequence[tuple[Floats, float]], known: Patterns | None = None
-    ) -> Patterns:
+        self, parts: Sequence[tuple[Floats, float]], known: PressureModes | None = None
+    ) -> PressureModes:
         """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, each
         with what is negligible; the known ones first.
         """
-        return patterns_of(self.pin, self.rings, parts, known)
+        return pressure_modes(self.pin, self.rings, parts, known)
 
     @cached_property
     def on_shaft(self) -> Rings:
@@ -304,18 +306,18 @@ class JointModel:
             np.concatenate(edge), np.concatenate(exponent),
         )  # fmt: skip
 
-    def arcs(self, found: Sequence[Pressed], rings: Rings | None = None) -> PressedArcs:
+    def arcs(self, found: Sequence[ContactState], rings: Rings | None = None) -> PressedArcs:
         """Where contact presses at some instants. rings: of the cells, where they are others."""
         cells, angles = [x.pressure > 0.0 for x in found], [x.angle for x in found]
         return PressedArcs.of(rings or self.on_shaft, cells, angles)
 
-    def joined(self, found: Sequence[Pressed], loads: PressureLoads) -> JointContact:
+    def joined(self, found: Sequence[ContactState], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""
         contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
         cut, angles = contact.bands, contact.angles
         return JointContact(self.pin, self.lugs, cut, angles, tuple(found), loads, mass)
 
-    def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[Pressed]:
+    def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[ContactState]:
         """Contact at each of their instants, on cells that turn with the largest force of a link:
         what turns as a whole is one solution. Each starts from that under the most similar loads;
         without any gap to close, loads in proportion are one solution, too. problem: with other
@@ -333,11 +335,11 @@ class JointModel:
         scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
         arm = couples / self.pin.length
         like = np.concatenate([forces.reshape(len(forces), -1), arm], axis=1) / scale[:, None]
-        found: list[Pressed] = []
+        found: list[ContactState] = []
         for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
             apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
             near = int(apart.argmin()) if t else None
-            if near is not None and apart[near] <= SAME:
+            if near is not None and apart[near] <= EQUAL_LOAD_TOLERANCE:
                 found.append(found[near].times(float(scale[t] / scale[near])))
                 continue
             start = None if near is None else found[near].active
@@ -369,6 +371,6 @@ class JointModel:
 def _directions(forces: Floats) -> list[float]:
     """Angles (T) in rad of the largest of forces (T, L, 2), the first of equal ones."""
     size = np.linalg.norm(forces, axis=2)
-    first = (size >= LARGEST * size.max(axis=1, keepdims=True)).argmax(axis=1)
+    first = (size >= LARGEST_FORCE_SHARE * size.max(axis=1, keepdims=True)).argmax(axis=1)
     x, y = forces[np.arange(len(forces)), first].T
     return [float(angle) for angle in np.arctan2(y, x)]

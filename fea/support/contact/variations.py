@@ -16,29 +16,33 @@ import numpy as np
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.section.section_stress import SectionAnswer
-from fea.solve.requirement import Asked
+from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.section.section_stress import SectionField
+from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import singularities_of
 from fea.support.contact.coarser_cells import on_coarser_cells
-from fea.support.contact.contact import ContactProblem, Pressed
-from fea.support.contact.pressure_loads import NEGLIGIBLE, Patterns, PressureLoads, stacked
+from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.pressure_loads import MODE_TOLERANCE, PressureLoads, PressureModes, stacked
 from fea.support.contact.records import JointRange, Variation
-from fea.support.contact.solve_joint import JointContact, JointModel
-from fea.support.lugs.changes import changes
-from fea.support.lugs.rings import USUAL
+from fea.support.contact.solve_joint import ContactModel, JointContact
+from fea.support.lugs.changes import joint_variations
+from fea.support.lugs.rings import USUAL_RING_COUNT
 
-CELLS = 0.6  # of the tolerance: what the cells may take
+CELL_ERROR_SHARE = 0.6  # of the tolerance: what the cells may take
 # Orders of the error in the length of cells, on the surface and beneath, and in sections: what is
 # off is 0.52, 0.66 and 0.25 at most of the change by cells twice as large, where that is noticed
 # (benchmarks/joints/cells.py).
-ORDER, IN_SECTIONS = 1.4, 2.0
+SURFACE_CELL_ORDER, SECTION_CELL_ORDER = 1.4, 2.0
 # Relative, of the usual number of rings, and less of more: by so much the stress beside the edges
 # of lugs goes up and down with where rings happen to end, whatever two sets of cells tell.
-SCATTER = 0.01
-CHANCE = 0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
+RING_SCATTER = 0.01
+MIN_CELL_ERROR = (
+    0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
+)
 # of the landing gear to 2 %, while both are 4 to 5 % off)
-ROUGHLY = 1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
+VARIATION_MODE_TOLERANCE = (
+    1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
+)
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ class AtPlaces:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ResolutionComparison:
     """At one instant, on the first mesh: stress there, and by how much, relative, it may differ for
     the cells. links: the loads. over: what is changed of the joint, the larger of surface and
     section and what lies beneath contact relative to those of the joint as given; left_out: what
@@ -93,27 +97,29 @@ class _Joint:
     """
 
     waves: Floats
-    found: list[Pressed]
+    found: list[ContactState]
 
 
 def compare(
-    model: JointModel,
+    model: ContactModel,
     at: Sequence[JointContact],
-    asked: Asked,
-    known: Patterns | None = None,
+    asked: Requirement,
+    known: PressureModes | None = None,
     vary: Sequence[bool] | None = None,
-) -> tuple[Comparison, ...]:
+) -> tuple[ResolutionComparison, ...]:
     """Joints in contact, each at one instant. known: patterns of the pressures on them; vary: by
     instant, whether joints with something changed are looked at, by default all.
     """
     if not at:
         return ()
     vary = (True,) * len(at) if vary is None else vary
-    few = model.cells.rings < USUAL  # twice as large cells are too large to tell changes apart
+    few = (
+        model.cells.rings < USUAL_RING_COUNT
+    )  # twice as large cells are too large to tell changes apart
     exact = _on_both_cells(model, at)
     over, varied, missing = _varied(model, at, few, vary)
-    parts = [(one.waves, NEGLIGIBLE) for both in exact for one in both]
-    parts += [(one.waves, ROUGHLY) for one in itertools.chain(*varied)]
+    parts = [(one.waves, MODE_TOLERANCE) for both in exact for one in both]
+    parts += [(one.waves, VARIATION_MODE_TOLERANCE) for one in itertools.chain(*varied)]
     patterns = model.patterns(parts, known)
     out = []
     every = [
@@ -134,34 +140,34 @@ def compare(
         )
         cells = _by_cells(first, twice, model.cells.rings)
         left_out = f"not included: {'; '.join(why)}" if why else ""
-        out.append(Comparison(first, cells, contact.loads.links, ratios, left_out))
+        out.append(ResolutionComparison(first, cells, contact.loads.links, ratios, left_out))
     return tuple(out)
 
 
 def _by_cells(own: AtPlaces, twice: AtPlaces, rings: int) -> AtPlaces:
     """The error of cells, relative, by the stress on them and on cells twice as large."""
-    chance = CHANCE * (rings < USUAL)
-    beside = max(SCATTER * USUAL / rings, chance)
+    chance = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
+    beside = max(RING_SCATTER * USUAL_RING_COUNT / rings, chance)
 
     def error(name: str, order: float, least: float) -> float:
         x, y = getattr(own, name), getattr(twice, name)
         return max(abs(y / x - 1.0) / (2.0**order - 1.0), least) if x and y else 0.0
 
     return AtPlaces(
-        error("surface", ORDER, beside),
-        error("section", IN_SECTIONS, chance),
-        error("beneath", ORDER, beside),
+        error("surface", SURFACE_CELL_ORDER, beside),
+        error("section", SECTION_CELL_ORDER, chance),
+        error("beneath", SURFACE_CELL_ORDER, beside),
     )
 
 
 def _loads(
-    model: JointModel, patterns: Patterns, one: _Joint, contact: JointContact
+    model: ContactModel, patterns: PressureModes, one: _Joint, contact: JointContact
 ) -> PressureLoads:
     return patterns.loads(one.waves, contact.loads.links, model.arcs(one.found))
 
 
 def _at_places(
-    model: JointModel, asked: Asked, every: Sequence[Sequence[PressureLoads]]
+    model: ContactModel, asked: Requirement, every: Sequence[Sequence[PressureLoads]]
 ) -> list[AtPlaces]:
     """On the first mesh, of loads of one instant each."""
     each = list(itertools.chain(*every))
@@ -169,9 +175,9 @@ def _at_places(
     singular = singularities_of(model.pin, model.material, (), (whole,), asked.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
-    answer = HarmonicAnswer(section, singular)
+    answer = HarmonicField(section, singular)
     on_rings = [one.on_rings for one in each]
-    sections = SectionAnswer(model.pin, model.material, (), on_rings)
+    sections = SectionField(model.pin, model.material, (), on_rings)
     return [
         AtPlaces(
             answer.largest(one)[0],
@@ -182,7 +188,7 @@ def _at_places(
     ]
 
 
-def _on_both_cells(model: JointModel, at: Sequence[JointContact]) -> list[tuple[_Joint, _Joint]]:
+def _on_both_cells(model: ContactModel, at: Sequence[JointContact]) -> list[tuple[_Joint, _Joint]]:
     """Each contact, and the same on cells twice as large."""
     cells = on_coarser_cells(model)
     return [
@@ -194,18 +200,20 @@ def _on_both_cells(model: JointModel, at: Sequence[JointContact]) -> list[tuple[
     ]
 
 
-def _coarse(model: JointModel, links: PinLoads, problem: ContactProblem, belongs: Floats) -> _Joint:
+def _coarse(
+    model: ContactModel, links: PinLoads, problem: ContactProblem, belongs: Floats
+) -> _Joint:
     found = model.pressed(links, problem)
     found = [replace(x, pressure=belongs @ x.pressure) for x in found]
     return _Joint(model.waves(found), found)
 
 
-def _own_cells(model: JointModel) -> tuple[ContactProblem, Floats]:
+def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
     return model.contact, np.eye(len(model.rings))
 
 
 def _varied(
-    model: JointModel, at: Sequence[JointContact], own: bool, vary: Sequence[bool]
+    model: ContactModel, at: Sequence[JointContact], own: bool, vary: Sequence[bool]
 ) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
     """Of each contact, what is changed of the joint, contact then, and what could not be changed:
     lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
@@ -214,7 +222,7 @@ def _varied(
     names: list[list[Variation]] = [[] for _ in at]
     found: list[list[_Joint]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
-    for change in changes(model.whole, model.lugs):
+    for change in joint_variations(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
         cells = _own_cells(other) if own else on_coarser_cells(other)
         for contact, over, changed, why, so in zip(at, names, found, missing, vary, strict=True):

@@ -10,7 +10,7 @@ from fea.support.contact.records import BandContact, JointRange, JointResult
 from fea.support.contact.solve_joint import JointContact
 
 
-def joint_result(
+def contact_result(
     contact: JointContact,
     over: JointRange | None,
     case: PinLoads,

@@ -2,13 +2,13 @@
 
 Where the beam's von Mises stress is s at a point, that of contact is taken to be between
 
-    s (1 - PLAIN) - k dM    and    s (1 + PLAIN + near) + k dM + LOCAL p
+    s (1 - PLAIN) - k dM    and    s (1 + PLAIN + near) + k dM + PRESSURE_FACTOR p
 
 k dM is bending stress by the error of the moment, a part of the largest one: of the model
 (moment_error), for clearance and for rounded edges, both of which the beam leaves out. near is
 SHOULDER at shoulders. p = q / d, for a tube times radius over wall, is the pressure of the lug
-there; q is its load per length, at most that farther than EDGE diameters from the lug's edges. With
-clearance p is larger in the ratio of the largest pressures of plane contact.
+there; q is its load per length, at most that farther than EDGE_DISTANCE diameters from the lug's
+edges. With clearance p is larger in the ratio of the largest pressures of plane contact.
 
 What is bounded is the row's number by contact, the larger of surface and section (fea.core.places).
 The upper bound holds for what lies beneath contact as well, of which a beam knows nothing: so what
@@ -24,23 +24,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fea.beam.error_model import PLAIN
+from fea.beam.error_model import PLAIN_SECTION_ERROR
 from fea.core.pin_loads import Floats
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation, moment_error
 from fea.support.foundation.plane_contact import largest_pressure
 from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.lug import Lug
 
-LOCAL = 0.8  # von Mises stress over the pressure
-EDGE = 0.1  # of the diameter: pressure nearer to a lug's edge is a peak that is not resolved
-CLEARANCE = 0.08  # of the largest moment, at a clearance of p / E diameters, p the mean pressure
-MOST_CLEARANCE = 100.0  # p / E diameters: what was measured
-ROUNDING = 2.5  # of the largest moment, per diameter of the edges' radius
-MOST_ROUNDING = 0.05  # of the diameter
+PRESSURE_FACTOR = 0.8  # von Mises stress over the pressure
+EDGE_DISTANCE = (
+    0.1  # of the diameter: pressure nearer to a lug's edge is a peak that is not resolved
+)
+CLEARANCE_ERROR = (
+    0.08  # of the largest moment, at a clearance of p / E diameters, p the mean pressure
+)
+MAX_RELATIVE_CLEARANCE = 100.0  # p / E diameters: what was measured
+ROUNDING_ERROR = 2.5  # of the largest moment, per diameter of the edges' radius
+MAX_EDGE_ROUNDING = 0.05  # of the diameter
 
 
 @dataclass(frozen=True)
-class Bounded:
+class StressBounds:
     """The largest von Mises stress, Pa, at (r, z) in m and theta, at the instant of that index.
     bounds: of that with contact; None where nothing is known of them, and `why`. moment_part: error
     of the largest moment, relative, inf where nothing is known of it.
@@ -62,14 +66,14 @@ class Bounded:
         return max(self.maximum - self.bounds[0], self.bounds[1] - self.maximum)
 
 
-def bounded(stress: FoundationStress, found: JointFoundation) -> Bounded:
+def stress_bounds(stress: FoundationStress, found: JointFoundation) -> StressBounds:
     """Over all instants."""
     top, model = stress.von_mises(found), stress.model
     point, t = top.place
     s = top.von_mises
     place = float(stress.r[point]), float(stress.z[point])
-    out = Bounded(float(s[point, t]), None, place, float(top.theta[point, t]), t)
-    loose = _looseness(model, found, t)
+    out = StressBounds(float(s[point, t]), None, place, float(top.theta[point, t]), t)
+    loose = _relative_clearance(model, found, t)
     part = _moment_part(model, loose)
     lacking = stress.lacking(found, s)
     if lacking or not math.isfinite(part):
@@ -81,8 +85,8 @@ def bounded(stress: FoundationStress, found: JointFoundation) -> Bounded:
     largest = np.linalg.norm(found.bending_moment(z), axis=2).max(axis=1)
     moved = np.outer(stress.bending, part * largest)
     pressed, alone = _contact_stress(stress, found, loose)
-    high = (s * (1.0 + PLAIN + stress.near)[:, None] + moved + pressed).max()
-    low = max(0.0, out.maximum * (1.0 - PLAIN) - float(moved[point, t]))
+    high = (s * (1.0 + PLAIN_SECTION_ERROR + stress.near)[:, None] + moved + pressed).max()
+    low = max(0.0, out.maximum * (1.0 - PLAIN_SECTION_ERROR) - float(moved[point, t]))
     return replace(out, bounds=(low, max(float(high), alone)), moment_part=part)
 
 
@@ -90,7 +94,7 @@ def _diameters(model: FoundationModel) -> Floats:
     return np.array([2.0 * model.whole.band(lug.connection).radius for lug in model.lugs])
 
 
-def _looseness(model: FoundationModel, found: JointFoundation, instant: int) -> float:
+def _relative_clearance(model: FoundationModel, found: JointFoundation, instant: int) -> float:
     """The largest clearance, in p / E diameters; p is the mean pressure on the most loaded band."""
     d = _diameters(model)
     play = max(lug.clearance / x for lug, x in zip(model.lugs, d, strict=True))
@@ -113,9 +117,9 @@ def _moment_part(model: FoundationModel, loose: float) -> float:
     own = moment_error(model.given, model.material, model.lugs)
     edges = np.array([lug.edge_radius for lug in model.lugs])
     rounding = float((edges / _diameters(model)).max())
-    if loose > MOST_CLEARANCE or rounding > MOST_ROUNDING:
+    if loose > MAX_RELATIVE_CLEARANCE or rounding > MAX_EDGE_ROUNDING:
         return math.inf
-    return own + CLEARANCE * math.sqrt(loose) + ROUNDING * rounding
+    return own + CLEARANCE_ERROR * math.sqrt(loose) + ROUNDING_ERROR * rounding
 
 
 def _contact_stress(
@@ -128,7 +132,7 @@ def _contact_stress(
         [_of_lug(model, lug, load, bands.band == b) for b, lug in enumerate(model.lugs)], axis=1
     )
     gap = 0.5 * loose / (1.0 - model.material.poisson_ratio**2)
-    each *= LOCAL * largest_pressure(gap) / largest_pressure(0.0)
+    each *= PRESSURE_FACTOR * largest_pressure(gap) / largest_pressure(0.0)
     reach = 0.5 * bands.length + 1e-9 * model.whole.length
     on = np.abs(stress.z[:, None] - bands.z) <= reach
     here = (on[:, None] * each).max(axis=2)
@@ -140,7 +144,7 @@ def _of_lug(model: FoundationModel, lug: Lug, load: Floats, own: Floats) -> Floa
     band = model.whole.band(lug.connection)
     segment = model.whole.segments[model.whole.labels.index(lug.connection)]
     z, length = model.bands.z[own], model.bands.length[own]
-    deep = band.length / 2.0 - np.abs(z - band.middle) >= EDGE * segment.diameter
+    deep = band.length / 2.0 - np.abs(z - band.middle) >= EDGE_DISTANCE * segment.diameter
     mean = load[:, own] @ length / band.length
     most = np.maximum(mean, load[:, own][:, deep].max(axis=1, initial=0.0))
     wall = segment.diameter - segment.bore

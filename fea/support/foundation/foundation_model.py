@@ -3,9 +3,9 @@
 Every lug is a row of springs between its bore and the pin's section, guided along the pin by the
 lug, which shifts freely, so that its link's force is exact, and tilts with its stiffness. The
 springs are those of frictionless contact in plane strain (plane_contact), of the pin's bore and the
-lug's width; in three dimensions the neighbourhood shares a local load, which one number, SHARE,
-accounts for. All is linear: a pin is factorised once, and serves any number of instants, directions
-and cases.
+lug's width; in three dimensions the neighbourhood shares a local load, which one number,
+COMPLIANCE_SHARE, accounts for. All is linear: a pin is factorised once, and serves any number of
+instants, directions and cases.
 
 The springs act both ways, as a pin that fits its bore without clearance bears on one side or the
 other. Clearance and the rounding of edges are left out: at a mean pressure of 100 MPa a clearance
@@ -40,22 +40,30 @@ from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import graded, ring, ringed
 from geometry import Pin, Segment
 
-SHARE = 0.70  # of the plane's compliance, fitted to the largest moments of 60 pins at random
+COMPLIANCE_SHARE = (
+    0.70  # of the plane's compliance, fitted to the largest moments of 60 pins at random
+)
 
 # Error of the largest bending moment, of contact without clearance over this model's, less 1: what
 # 19 in 20 of 180 pins at random are within (python -m benchmarks foundation).
-PLAIN_ERROR = 0.06
-SINGLE_SHEAR = (
+PLAIN_MOMENT_ERROR = 0.06
+SINGLE_SHEAR_ERROR = (
     0.04  # more with two lugs: the moment is small, and where in the lugs loads are counts
 )
-TUBE, TUBE_ERROR = 0.4, 0.04  # bore over diameter beyond which the section deforms; more with it
-LONG, LONG_ERROR = 1.8, 0.05  # a middle lug's thickness over the diameter; more with a thicker one
-THICKNESS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
-WIDTH = 1.6, 4.0  # of the lug, over the diameter
-BORE = 0.0, 0.7  # over the diameter
-MODULI = 1.0 / 3.0, 3.0  # of the lug, over the pin's
-BALANCED = 1e-6  # of the largest force and the length: a couple below it is none
-ROUND_OFF = 1e-9
+TUBE_BORE_RATIO, TUBE_ERROR = (
+    0.4,
+    0.04,
+)  # bore over diameter beyond which the section deforms; more with it
+LONG_LUG_RATIO, LONG_LUG_ERROR = (
+    1.8,
+    0.05,
+)  # a middle lug's thickness over the diameter; more with a thicker one
+THICKNESS_LIMITS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
+WIDTH_LIMITS = 1.6, 4.0  # of the lug, over the diameter
+BORE_LIMITS = 0.0, 0.7  # over the diameter
+MODULUS_RATIO_LIMITS = 1.0 / 3.0, 3.0  # of the lug, over the pin's
+COUPLE_TOLERANCE = 1e-6  # of the largest force and the length: a couple below it is none
+LIMIT_ROUND_OFF = 1e-9
 
 Ints = NDArray[np.int64]
 Stiffness = Callable[[Segment, Material, Lug], float]
@@ -64,7 +72,9 @@ Stiffness = Callable[[Segment, Material, Lug], float]
 def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> float:
     """Of the foundation of a pin's segment in a lug, N/m^2: force per length over deflection."""
     radii = segment.bore / 2.0, segment.diameter / 2.0
-    return plane_stiffness(radii, material, lug.outer_diameter / 2.0, lug.material) / SHARE
+    return (
+        plane_stiffness(radii, material, lug.outer_diameter / 2.0, lug.material) / COMPLIANCE_SHARE
+    )
 
 
 @dataclass(frozen=True)
@@ -218,7 +228,7 @@ class FoundationModel:
         """Raises: SolveError where a couple is left over, which a lug that is free would react."""
         bands = self.bands
         arm = (bands.z - bands.middles[bands.band])[:, None]
-        least = BALANCED * self.pin.length * np.abs(asked).max(initial=0.0)
+        least = COUPLE_TOLERANCE * self.pin.length * np.abs(asked).max(initial=0.0)
         for b, lug in enumerate(self.lugs):
             own = bands.band == b
             left = np.abs((moment + arm * force)[:, own].sum(axis=1)).max(initial=0.0)
@@ -243,18 +253,23 @@ def moment_error(pin: Pin, material: Material, lugs: Sequence[Lug]) -> float:
     thick = [band.length / pin.smallest_diameter for band in bands]
     wide = [lug.outer_diameter / 2.0 / b.radius for lug, b in zip(every, bands, strict=True)]
     bore = max(s.bore / s.diameter for s in pin.segments)
-    measured = (thick, THICKNESS), (wide, WIDTH), ([bore], BORE), (stiff, MODULI)
+    measured = (
+        (thick, THICKNESS_LIMITS),
+        (wide, WIDTH_LIMITS),
+        ([bore], BORE_LIMITS),
+        (stiff, MODULUS_RATIO_LIMITS),
+    )
     inside = all(_within(values, limits) for values, limits in measured)
     if len(every) < 2 or not inside:
         return math.inf
-    error = PLAIN_ERROR + (SINGLE_SHEAR if len(every) == 2 else 0.0)
-    error += TUBE_ERROR if bore > TUBE else 0.0
-    return error + (LONG_ERROR if max(thick[1:-1], default=0.0) > LONG else 0.0)
+    error = PLAIN_MOMENT_ERROR + (SINGLE_SHEAR_ERROR if len(every) == 2 else 0.0)
+    error += TUBE_ERROR if bore > TUBE_BORE_RATIO else 0.0
+    return error + (LONG_LUG_ERROR if max(thick[1:-1], default=0.0) > LONG_LUG_RATIO else 0.0)
 
 
 def _within(values: Sequence[float], limits: tuple[float, float]) -> bool:
     low, high = limits
-    return all(low * (1.0 - ROUND_OFF) <= x <= high * (1.0 + ROUND_OFF) for x in values)
+    return all(low * (1.0 - LIMIT_ROUND_OFF) <= x <= high * (1.0 + LIMIT_ROUND_OFF) for x in values)
 
 
 def _bands(pin: Pin, rings: Sequence[str], each: int) -> Bands:

@@ -24,8 +24,10 @@ from fea.core.pin_loads import Floats
 from fea.support.contact.contact import Bands, ContactProblem
 from fea.support.contact.flexibility import half_plane
 
-HIGHEST, SECTORS = 16, 60
-_GAUSS, _WEIGHT = np.polynomial.legendre.leggauss(8)  # exact for the powers of r, near for 1 / r
+MAX_PLANE_HARMONIC, PLANE_CONTACT_SECTORS = 16, 60
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(
+    8
+)  # exact for the powers of r, near for 1 / r
 
 
 @lru_cache(maxsize=512)  # eyes of a study are much alike
@@ -41,7 +43,9 @@ def plane_stiffness(
     flexible = pin_harmonics(inner, r, pin) + lug_harmonics(r, outer, lug)
     bands = Bands(np.zeros(1), np.ones(1), np.array([r]), np.zeros(1, dtype=np.int64), np.zeros(1))
     tail = np.array([half_plane(pin, r) + half_plane(lug, r)])
-    problem = ContactProblem(bands, flexible[:, None, None], tail, (math.inf,), SECTORS)
+    problem = ContactProblem(
+        bands, flexible[:, None, None], tail, (math.inf,), PLANE_CONTACT_SECTORS
+    )
     return 1.0 / abs(float(problem.solve(np.array([[1.0, 0.0]])).shift[0, 0]))
 
 
@@ -68,16 +72,16 @@ def half_angle(gap: float) -> float:
 
 
 def pin_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """C_n (HIGHEST + 1,), m/Pa, inwards under pressure on a pin's surface."""
+    """C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, inwards under pressure on a pin's surface."""
     hole = inner / outer  # lengths over the loaded radius, so that powers stay within range
-    high = [-_many(n, hole, material) for n in range(2, HIGHEST + 1)]
+    high = [-_many(n, hole, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return outer * np.array([_even(hole, material), _section(hole, material), *high])
 
 
 def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """C_n (HIGHEST + 1,), m/Pa, outwards under pressure in a lug's bore."""
+    """C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, outwards under pressure in a lug's bore."""
     wide = outer / inner
-    high = [_many(n, wide, material) for n in range(2, HIGHEST + 1)]
+    high = [_many(n, wide, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return inner * np.array([_even(wide, material), _eye(wide, material), *high])
 
 
@@ -133,9 +137,9 @@ def _section(hole: float, material: Material) -> float:
         own = np.array([alpha, beta]) * r**2
         return np.asarray(_powers(1, r, kappa, solid)[:2] @ found / (2.0 * mu) + own)
 
-    at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS
+    at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS_POINTS
     along = np.array([0.5 * (u - v) for u, v in map(moved, at.tolist())])
-    mean = (_WEIGHT * at) @ along / (_WEIGHT @ at)
+    mean = (_GAUSS_WEIGHTS * at) @ along / (_GAUSS_WEIGHTS @ at)
     return float(mean - moved(1.0)[0])
 
 

@@ -16,25 +16,29 @@ from typing import Literal
 
 import numpy as np
 
-from fea.beam.error_model import PLAIN
-from fea.beam.maximum import Highest
+from fea.beam.error_model import PLAIN_SECTION_ERROR
+from fea.beam.maximum import VonMisesMaxima
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
-from fea.core.peak import ErrorParts, Note, Peak, Refinement, accuracy
-from fea.core.pin_loads import Amounts, AnyLoads, Floats, PinLoads, UnitLoad
+from fea.core.peak import ErrorParts, Maximum, Reason, Refinement, accuracy
+from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
 from fea.core.solution import Picture
 from fea.section.place import FoundSection
-from fea.section.section_stress import AtSection, SectionAnswer
+from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import find_singularities
-from fea.solve.requirement import DECIDED, Asked
+from fea.solve.requirement import DECIDED_TEXT, Requirement
 from fea.solve.solve_pin import Solution
 from fea.support.contact.bending import joint_forces, stations
 from fea.support.contact.records import BandContact, JointRange, JointResult
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.support.foundation.bounds import LOCAL, Bounded, bounded
-from fea.support.foundation.foundation_model import PLAIN_ERROR, FoundationModel, JointFoundation
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.support.foundation.bounds import PRESSURE_FACTOR, StressBounds, stress_bounds
+from fea.support.foundation.foundation_model import (
+    PLAIN_MOMENT_ERROR,
+    FoundationModel,
+    JointFoundation,
+)
 from fea.support.foundation.plane_contact import half_angle
 from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange
@@ -43,18 +47,23 @@ from fea.support.lugs.fit import beyond_foundations
 Joints = Literal["auto", "contact", "foundation"]
 Progress = Callable[[str], None]
 
-REQUESTED = Note("foundation: requested", ("requested",))
-ENOUGH = Note("foundation: its error is within the tolerance", ("foundation-within-tolerance",))
-DECIDES = Note(f"foundation: {DECIDED}", ("foundation-decides",))
-LEAVES_OUT = (
+REQUESTED_REASON = Reason("foundation: requested", ("requested",))
+WITHIN_TOLERANCE_REASON = Reason(
+    "foundation: its error is within the tolerance", ("foundation-within-tolerance",)
+)
+DECIDES_REASON = Reason(f"foundation: {DECIDED_TEXT}", ("foundation-decides",))
+FOUNDATION_OMISSIONS = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
     "measured effect on the surface and beneath contact, but not the peaks at the edges of lugs."
 )
-GOVERNS = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
+MIN_GOVERNING_RATIO = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
 
 
 def solve_joints(
-    given: InLugs, asked: Asked, joints: Joints = "auto", progress: Progress = lambda _: None
+    given: PinProblem,
+    asked: Requirement,
+    joints: Joints = "auto",
+    progress: Progress = lambda _: None,
 ) -> tuple[LugSolution, ...]:
     """All cases of a pin: by a beam on foundations where that is requested, or enough; else by
     contact.
@@ -63,9 +72,9 @@ def solve_joints(
     """
     found: dict[str, LugSolution] = {}
     if joints == "foundation":
-        found = _on_foundations(given, asked, REQUESTED, progress)
+        found = _on_foundations(given, asked, REQUESTED_REASON, progress)
     elif joints == "auto" and _may_be_enough(given, asked):
-        tried = _on_foundations(given, asked, ENOUGH, progress)
+        tried = _on_foundations(given, asked, WITHIN_TOLERANCE_REASON, progress)
         found = {case: solution for case, solution in tried.items() if _enough(solution)}
         if _bounded_everywhere(given, asked):
             found |= {
@@ -80,21 +89,23 @@ def solve_joints(
     return tuple(found[case.case] for case in given.cases)
 
 
-def _may_be_enough(given: InLugs, asked: Asked) -> bool:
+def _may_be_enough(given: PinProblem, asked: Requirement) -> bool:
     known = given.material.yield_strength is not None and asked.required is not None
-    may = asked.tolerance >= PLAIN + PLAIN_ERROR or (asked.goal == "decide" and known)
+    may = asked.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
+        asked.goal == "decide" and known
+    )
     beyond = beyond_foundations(given.pin, given.lugs)
     return asked.model == "auto" and may and not beyond
 
 
-def _bounded_everywhere(given: InLugs, asked: Asked) -> bool:
+def _bounded_everywhere(given: PinProblem, asked: Requirement) -> bool:
     """Whether no sharp corner of the pin or edge of a lug makes its stress singular."""
     nu = given.material.poisson_ratio
     rounded = all(lug.edge_radius > 0.0 for lug in given.lugs)
     return rounded and not find_singularities(given.pin, (), (), nu, asked.distance)
 
 
-def _is_safe(peak: Peak, material: Material, asked: Asked) -> bool:
+def _is_safe(peak: Maximum, material: Material, asked: Requirement) -> bool:
     """Whether the required factor is reached whatever contact does. Of a pin that fails it matters
     by how much.
     """
@@ -107,8 +118,11 @@ def _is_safe(peak: Peak, material: Material, asked: Asked) -> bool:
 
 def _because(found: LugSolution) -> LugSolution:
     peak = found.solution.peak
-    reasons = tuple(code for code in peak.reasons if code not in ENOUGH.codes) + DECIDES.codes
-    peak = replace(peak, why=DECIDES.text, reasons=reasons)
+    reasons = (
+        tuple(code for code in peak.reasons if code not in WITHIN_TOLERANCE_REASON.codes)
+        + DECIDES_REASON.codes
+    )
+    peak = replace(peak, why=DECIDES_REASON.text, reasons=reasons)
     return replace(found, solution=replace(found.solution, peak=peak))
 
 
@@ -117,22 +131,24 @@ def _enough(found: LugSolution) -> bool:
     is largest at the edges of lugs and on stubby pins.
     """
     peak, answer = found.solution.peak, found.solution.answer
-    if peak.verdict != "converged" or not isinstance(answer, FoundationAnswer):
+    if peak.verdict != "converged" or not isinstance(answer, FoundationField):
         return False
-    return (peak.max_von_mises or 0.0) >= GOVERNS * LOCAL * answer.largest_load(found)
+    return (
+        peak.max_von_mises or 0.0
+    ) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * answer.largest_load(found)
 
 
-class FoundationAnswer:
+class FoundationField:
     """What beams on foundations found, for any loads of the pin's links."""
 
     def __init__(self, stress: FoundationStress, case: PinLoads) -> None:
         self.stress, self.case = stress, case
 
-    def maxima(self, loads: AnyLoads, _: float = 0.0) -> Floats:
+    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
         return np.asarray(self._von_mises(loads).von_mises.max(axis=0))
 
-    def largest(self, loads: AnyLoads) -> tuple[float, int]:
+    def largest(self, loads: Loads) -> tuple[float, int]:
         """The largest of these (Pa), and the index of its instant."""
         top = self._von_mises(loads)
         return float(top.von_mises[top.place]), top.place[1]
@@ -146,7 +162,7 @@ class FoundationAnswer:
         """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
         return self.stress.harmonics(self.stress.model.solve(loads))
 
-    def _von_mises(self, loads: AnyLoads) -> Highest:
+    def _von_mises(self, loads: Loads) -> VonMisesMaxima:
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)
         return self.stress.von_mises(self.stress.model.solve(links, whole))
@@ -165,7 +181,7 @@ def _governing(solution: Solution) -> PinLoads:
     return solution.loads.at(np.array([solution.instant]))
 
 
-def _as_loads(amounts: Amounts, like: PinLoads) -> PinLoads:
+def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
     """Forces and moments of unit loads such as those of other loads."""
     none = np.zeros((len(amounts), 2))
 
@@ -188,7 +204,7 @@ def _as_loads(amounts: Amounts, like: PinLoads) -> PinLoads:
 
 
 def _on_foundations(
-    given: InLugs, asked: Asked, why: Note, progress: Progress
+    given: PinProblem, asked: Requirement, why: Reason, progress: Progress
 ) -> dict[str, LugSolution]:
     progress(f"pin {given.pin.name}, beam on foundations")
     over = FoundationRange(given.pin, given.material, given.lugs, asked.distance, assumed=False)
@@ -196,20 +212,20 @@ def _on_foundations(
 
 
 def _solved(
-    over: FoundationRange, given: InLugs, case: PinLoads, asked: Asked, why: Note
+    over: FoundationRange, given: PinProblem, case: PinLoads, asked: Requirement, why: Reason
 ) -> LugSolution:
     try:
         return _of_case(over, given, case, asked, why)
     except SolveError as error:
-        peak = Peak(given.pin.name, case.case, "foundation", "failed", str(error))
+        peak = Maximum(given.pin.name, case.case, "foundation", "failed", str(error))
         return LugSolution(Solution(peak, None, case), None, lambda links: links)
 
 
 def _of_case(
-    over: FoundationRange, given: InLugs, case: PinLoads, asked: Asked, why: Note
+    over: FoundationRange, given: PinProblem, case: PinLoads, asked: Requirement, why: Reason
 ) -> LugSolution:
     start, rise, stress = time.perf_counter(), 0.0, over.own
-    answer = FoundationAnswer(stress, case)
+    answer = FoundationField(stress, case)
     if between := given.between.get(case.case):
         case = through_time(answer, case, between, asked.tolerance)
         rise = rise_between(answer, case, between)
@@ -234,15 +250,15 @@ class FoundPlaces:
     and of what lies beneath contact.
     """
 
-    surface: Bounded
+    surface: StressBounds
     section: AtSection
-    both: Bounded
+    both: StressBounds
 
     @classmethod
     def of(cls, stress: FoundationStress, every: JointFoundation) -> FoundPlaces:
         """Of a case at all its instants; sections by the line loads of the foundations."""
-        sections = SectionAnswer(every.pin, stress.model.material, (), [every.loads])
-        both, surface = (bounded(x, every) for x in (stress, stress.on_surface))
+        sections = SectionField(every.pin, stress.model.material, (), [every.loads])
+        both, surface = (stress_bounds(x, every) for x in (stress, stress.on_surface))
         return cls(surface, sections.place(every.loads), both)
 
     @property
@@ -250,7 +266,7 @@ class FoundPlaces:
         return "section" if self.section.value > self.surface.maximum else "surface"
 
     @property
-    def row(self) -> Bounded:
+    def row(self) -> StressBounds:
         """Of the larger one."""
         of, at = self.surface, self.section
         if self.governs == "surface":
@@ -259,7 +275,7 @@ class FoundPlaces:
         both = self.both
         return replace(both, maximum=at.value, place=place, theta=theta, instant=at.instant)
 
-    def said(self, peak: Peak, case: PinLoads, material: Material, tolerance: float) -> Places:
+    def said(self, peak: Maximum, case: PinLoads, material: Material, tolerance: float) -> Places:
         """As results have them; peak: of the row."""
         of, at, strength = self.surface, self.section, material.yield_strength
         error = of.maximum if of.error is None else of.error
@@ -271,7 +287,7 @@ class FoundPlaces:
         return Places(self.governs, surface, section.place(tolerance, used))
 
 
-def point_of(of: Bounded) -> tuple[float, float, float]:
+def point_of(of: StressBounds) -> tuple[float, float, float]:
     r, z = of.place
     return r * math.cos(of.theta), r * math.sin(of.theta), z
 
@@ -281,17 +297,22 @@ def _time(case: PinLoads, instant: int) -> float | None:
 
 
 def _peak(
-    over: FoundationRange, case: str, found: Bounded, rise: float, asked: Asked, why: Note
-) -> Peak:
+    over: FoundationRange,
+    case: str,
+    found: StressBounds,
+    rise: float,
+    asked: Requirement,
+    why: Reason,
+) -> Maximum:
     """With an error of the whole value where it is not known."""
     parts = ErrorParts(0.0, rise, model=found.maximum if found.error is None else found.error)
     relative = parts.total / found.maximum if found.maximum else 0.0
     known = found.error is not None and relative <= asked.tolerance
     own = accuracy(relative, asked.tolerance, known)
     if found.error is None:
-        own = Note(f"no error is known: {found.why}", ("no-error-known",))
-    own = own + Note(f". {LEAVES_OUT.rstrip('.')}", ("model-form",))
-    return Peak(
+        own = Reason(f"no error is known: {found.why}", ("no-error-known",))
+    own = own + Reason(f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",))
+    return Maximum(
         pin=over.own.model.given.name,
         case=case,
         model="foundation",

@@ -15,22 +15,24 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.beam.error_model import SHOULDER
-from fea.beam.maximum import Highest, highest
+from fea.beam.error_model import NOTCH_ERROR
+from fea.beam.maximum import VonMisesMaxima, von_mises_maxima
 from fea.beam.round_section import circle
 from fea.beam.stress import TZ, ZZ, notch_stress, section_stress
 from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT
 from fea.core.pin_loads import Floats
-from fea.singular.singularities import Singularity, find_singularities, outside
+from fea.singular.singularities import Zone, find_singularities, outside
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from geometry import Pin
 
-NEAR = 0.5  # of the diameter: so far a sharp shoulder is felt
-BESIDE = 0.15  # of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3
+SHOULDER_REACH = 0.5  # of the diameter: so far a sharp shoulder is felt
+MIN_FILLET_EDGE_DISTANCE = (
+    0.15  # of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3
+)
 # times the bound at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
-NEGLIGIBLE = 1e-6  # of the largest
-EACH = 17  # points of a segment at a radius, besides the ends of rings
+NEGLIGIBLE_STRESS_SHARE = 1e-6  # of the largest
+POINTS_PER_RADIUS = 17  # points of a segment at a radius, besides the ends of rings
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class FoundationStress:
         local = [_at(pin, notch, nu) for notch in every]
         r, z, per_force = (np.concatenate(parts) for parts in zip(*shaft, *local, strict=True))
         near = _near(corners, r, z)
-        near[len(r) - len(local) :] = SHOULDER
+        near[len(r) - len(local) :] = NOTCH_ERROR
         keep = outside(corners, r, z)
         free = keep[len(r) - len(local) :]
         left = tuple(n for n, out in zip(every, free, strict=True) if out)
@@ -80,9 +82,9 @@ class FoundationStress:
         """Stress along the axis per bending moment, (S,) 1/m^3."""
         return np.abs(self.per_force[:, ZZ, MOMENT])
 
-    def von_mises(self, found: JointFoundation) -> Highest:
+    def von_mises(self, found: JointFoundation) -> VonMisesMaxima:
         """At all points and instants, the largest over the circumference."""
-        return highest(self.harmonics(found))
+        return von_mises_maxima(self.harmonics(found))
 
     def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
         """Of the notches that loads reach, why there is no factor, or none that holds. von_mises:
@@ -90,13 +92,19 @@ class FoundationStress:
         """
         first = len(self.z) - len(self.notches)
         torque = np.abs(found.along(self.z[first:])[1]).max(axis=0)
-        turned = torque > NEGLIGIBLE * np.abs(found.loads.moments).max(initial=0.0)
-        reached = von_mises[first:].max(axis=1) > NEGLIGIBLE * von_mises.max()
+        turned = torque > NEGLIGIBLE_STRESS_SHARE * np.abs(found.loads.moments).max(initial=0.0)
+        reached = von_mises[first:].max(axis=1) > NEGLIGIBLE_STRESS_SHARE * von_mises.max()
         pin, edges = self.model.whole, _edges(self.model)
         return [
-            f"{n.why}, nearer than {BESIDE:g} diameters to the edge of a lug" if beside else n.why
+            f"{n.why}, nearer than {MIN_FILLET_EDGE_DISTANCE:g} diameters to the edge of a lug"
+            if beside
+            else n.why
             for n, t, any_ in zip(self.notches, turned, reached, strict=True)
-            if (beside := any_ and _distance(pin, n, edges) < BESIDE * pin.segments[n.on].diameter)
+            if (
+                beside := any_
+                and _distance(pin, n, edges)
+                < MIN_FILLET_EDGE_DISTANCE * pin.segments[n.on].diameter
+            )
             or (any_ and n.bending is None)
             or (t and n.torsion is None)
         ]
@@ -119,7 +127,7 @@ Points = tuple[Floats, Floats, Floats]  # r, z and per_force
 def _shaft(pin: Pin, cuts: Floats, nu: float) -> Iterator[Points]:
     """Along every segment, at its surface and its bore or axis."""
     for (a, b), segment in zip(pairwise(pin.stations), pin.segments, strict=True):
-        z = np.union1d(np.linspace(a, b, EACH), cuts[(cuts >= a) & (cuts <= b)])
+        z = np.union1d(np.linspace(a, b, POINTS_PER_RADIUS), cuts[(cuts >= a) & (cuts <= b)])
         for r in (segment.diameter / 2.0, segment.bore / 2.0):
             amplitudes = section_stress(circle(segment), r, nu)
             yield np.full(len(z), r), z, np.broadcast_to(amplitudes, (len(z), 6, 4))
@@ -146,8 +154,8 @@ def _distance(pin: Pin, notch: Notch, edges: Floats) -> float:
     return float(away.min())
 
 
-def _near(corners: tuple[Singularity, ...], r: Floats, z: Floats) -> NDArray[np.float64]:
+def _near(corners: tuple[Zone, ...], r: Floats, z: Floats) -> NDArray[np.float64]:
     out = np.zeros(len(r))
     for corner in corners:
-        out[np.hypot(r - corner.r, z - corner.z) <= 2.0 * NEAR * corner.r] = SHOULDER
+        out[np.hypot(r - corner.r, z - corner.z) <= 2.0 * SHOULDER_REACH * corner.r] = NOTCH_ERROR
     return out

@@ -24,9 +24,13 @@ from scipy.linalg import expm
 
 from fea.core.pin_loads import Floats
 
-U, PSI, M, V, SUM, TWICE, ONE = range(7)  # SUM: the integral of k u, TWICE: that of SUM
-STATES = 4
-WAVE = 1.0  # most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
+U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(
+    7
+)  # REACTION_INTEGRAL: the integral of k u, REACTION_DOUBLE_INTEGRAL: that of REACTION_INTEGRAL
+STATE_COUNT = 4
+MAX_FOUNDATION_LENGTHS = (
+    1.0  # most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
+)
 
 
 @dataclass(frozen=True)
@@ -63,7 +67,7 @@ def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
     """Stations (m) with pieces (N,) cut where they are long for the foundation they are on."""
     length = np.diff(stations)
     waves = length * (foundation * bending / 4.0) ** 0.25
-    counts = np.maximum(1, np.ceil(waves / WAVE)).astype(int)
+    counts = np.maximum(1, np.ceil(waves / MAX_FOUNDATION_LENGTHS)).astype(int)
     cuts = [
         a + h * np.arange(n) / n
         for a, h, n in zip(stations[:-1], length, counts.tolist(), strict=True)
@@ -104,19 +108,19 @@ class _System:
         self.beam, self.middles, self.tilt, self.still = beam, middles, tilt, still
         self.lengths = np.diff(beam.stations)
         self.steps = expm(_rates(beam) * self.lengths[:, None, None])
-        self.motions = STATES * (len(beam) + 1)  # where the lugs' begin
+        self.motions = STATE_COUNT * (len(beam) + 1)  # where the lugs' begin
         self.size = self.motions + 2 * len(middles)
         self.starts = np.stack([self._against(i, 0) for i in range(len(beam))])
 
     def solve(self) -> Response:
         matrix, loads = np.zeros((self.size, self.size)), np.zeros((self.size, self._loads))
         for i, step in enumerate(self.steps):
-            rows = slice(STATES * i, STATES * (i + 1))
-            matrix[rows] = self._against(i, 1) - step[:STATES, :STATES] @ self.starts[i]
-            loads[rows, -1] = step[:STATES, ONE]
-        last = self.motions - STATES
+            rows = slice(STATE_COUNT * i, STATE_COUNT * (i + 1))
+            matrix[rows] = self._against(i, 1) - step[:STATE_COUNT, :STATE_COUNT] @ self.starts[i]
+            loads[rows, -1] = step[:STATE_COUNT, UNIT_LOAD]
+        last = self.motions - STATE_COUNT
         free = [M, V, last + M, last + V]  # nothing acts on the ends
-        matrix[last + np.arange(STATES), free] = 1.0
+        matrix[last + np.arange(STATE_COUNT), free] = 1.0
         self._hold(matrix[self.motions :], loads[self.motions :])
         return self._response(np.asarray(np.linalg.solve(matrix, loads), dtype=np.float64))
 
@@ -125,10 +129,10 @@ class _System:
         return len(self.middles) + 1
 
     def _against(self, i: int, end: int) -> Floats:
-        """State at the start (0) or end (1) of a piece against its lug, (STATES, size)."""
-        out, lug = np.zeros((STATES, self.size)), int(self.beam.lug[i])
-        at = STATES * (i + end)
-        out[:, at : at + STATES] = np.eye(STATES)
+        """State at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
+        out, lug = np.zeros((STATE_COUNT, self.size)), int(self.beam.lug[i])
+        at = STATE_COUNT * (i + end)
+        out[:, at : at + STATE_COUNT] = np.eye(STATE_COUNT)
         if lug >= 0:
             shift, arm = self.motions + 2 * lug, self.beam.stations[i + end] - self.middles[lug]
             out[:2, shift : shift + 2] = [[-1.0, -arm], [0.0, -1.0]]
@@ -154,24 +158,31 @@ class _System:
         """
         force, couple = np.zeros(self.size + 1), np.zeros(self.size + 1)
         for i in np.flatnonzero(self.beam.lug == lug).tolist():
-            whole = np.column_stack([self.starts[i], np.zeros(STATES)])
-            sums = self.steps[i][[SUM, TWICE], :STATES] @ whole
-            sums[:, -1] = self.steps[i][[SUM, TWICE], ONE]
+            whole = np.column_stack([self.starts[i], np.zeros(STATE_COUNT)])
+            sums = (
+                self.steps[i][[REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], :STATE_COUNT] @ whole
+            )
+            sums[:, -1] = self.steps[i][[REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], UNIT_LOAD]
             force -= sums[0]
             couple -= (self.beam.stations[i + 1] - self.middles[lug]) * sums[0] - sums[1]
         return force, couple
 
     def _response(self, x: Floats) -> Response:
-        sums = self.steps[:, [SUM, TWICE], :STATES] @ (self.starts @ x)  # (N, 2, P)
-        sums[:, :, -1] += self.steps[:, [SUM, TWICE], ONE]
+        sums = self.steps[:, [REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], :STATE_COUNT] @ (
+            self.starts @ x
+        )  # (N, 2, P)
+        sums[:, :, -1] += self.steps[:, [REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL], UNIT_LOAD]
         half = 0.5 * self.lengths[:, None]
         return Response(-sums[:, 0], sums[:, 1] - half * sums[:, 0])
 
 
 def _rates(beam: SupportedBeam) -> Floats:
-    """Derivatives of (u, psi, M, V, SUM, TWICE, 1), (N, 7, 7)."""
+    """Derivatives of (u, psi, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, 1), (N, 7, 7)."""
     out = np.zeros((len(beam), 7, 7))
     out[:, U, PSI], out[:, U, V], out[:, PSI, M] = 1.0, beam.shear, beam.bending
-    out[:, M, V], out[:, V, U], out[:, V, ONE] = -1.0, beam.foundation, -beam.mass
-    out[:, SUM, U], out[:, TWICE, SUM] = beam.foundation, 1.0
+    out[:, M, V], out[:, V, U], out[:, V, UNIT_LOAD] = -1.0, beam.foundation, -beam.mass
+    out[:, REACTION_INTEGRAL, U], out[:, REACTION_DOUBLE_INTEGRAL, REACTION_INTEGRAL] = (
+        beam.foundation,
+        1.0,
+    )
     return out

@@ -17,10 +17,10 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.records import JointRange, JointResult, Variation
-from fea.support.foundation.bounds import Bounded, bounded
+from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.stress import FoundationStress
-from fea.support.lugs.changes import changes, softer
+from fea.support.lugs.changes import joint_variations, with_stiffness
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin
@@ -56,7 +56,7 @@ class FoundationRange:
 
         Raises: SolveError as FoundationModel.solve.
         """
-        own = bounded(self.own, self.own.model.solve(loads))
+        own = stress_bounds(self.own, self.own.model.solve(loads))
         if own.bounds is None:
             return None, own.why
         over, left_out = [], []
@@ -105,20 +105,20 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
     return JointResult("prescribed", range=found, remark=remark)
 
 
-def _tried(stress: FoundationStress, loads: PinLoads) -> Bounded | None:
+def _tried(stress: FoundationStress, loads: PinLoads) -> StressBounds | None:
     """None where lugs that are free to tilt leave a couple on the pin."""
     try:
-        return bounded(stress, stress.model.solve(loads))
+        return stress_bounds(stress, stress.model.solve(loads))
     except SolveError:
         return None
 
 
 def _varied(own: FoundationStress) -> Iterator[Varied]:
     model = own.model
-    for change in changes(model.whole, model.lugs):
+    for change in joint_variations(model.whole, model.lugs):
         if change.length is not None:
             other = model.with_clearances(list(change.lugs))
         else:
             both = zip(change.lugs, change.softness, strict=True)
-            other = FoundationModel(model.given, model.material, [softer(*x) for x in both])
+            other = FoundationModel(model.given, model.material, [with_stiffness(*x) for x in both])
         yield Varied(change.what, change.value, change.length, own.in_lugs(other))

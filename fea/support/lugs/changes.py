@@ -15,10 +15,10 @@ from fea.core.material import Material
 from fea.support.lugs.lug import Lug
 from geometry import Pin
 
-FIT = 0.002  # of the diameter: a free running fit, where no clearance is given
-SOFTER = 2.0
-LOW, HIGH = "low end of its range", "high end of its range"
-ENDS = (0, 1)
+DEFAULT_FIT_CLEARANCE = 0.002  # of the diameter: a free running fit, where no clearance is given
+DEFAULT_STIFFNESS_FACTOR = 2.0
+LOW_END_TEXT, HIGH_END_TEXT = "low end of its range", "high end of its range"
+RANGE_ENDS = (0, 1)
 
 
 @dataclass(frozen=True)
@@ -34,26 +34,26 @@ class JointChange:
     length: float | None = None
 
 
-def changes(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
+def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
     """Of the lugs on a pin's bands, one thing at a time; not what changes nothing."""
     same = (1.0,) * len(lugs)
     found = []
-    for end in ENDS:
-        loose, words = zip(*(_loose(pin, lug, end) for lug in lugs), strict=True)
+    for end in RANGE_ENDS:
+        loose, words = zip(*(_with_clearance(pin, lug, end) for lug in lugs), strict=True)
         size = max(lug.clearance for lug in loose)
         found.append(JointChange("clearance", _in_words(words), loose, same, size))
-    for end in ENDS:
+    for end in RANGE_ENDS:
         stiff, words = zip(*(_stiffness(lug, end) for lug in lugs), strict=True)
         by = tuple(1.0 / times for times in stiff)
         found.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
-    for end in ENDS:
+    for end in RANGE_ENDS:
         tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
         found.append(JointChange("tilt", _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
     return (change for change in found if (change.lugs, change.softness) != unchanged)
 
 
-def softer(lug: Lug, times: float) -> Lug:
+def with_stiffness(lug: Lug, times: float) -> Lug:
     """Also its bushing."""
 
     def made(material: Material) -> Material:
@@ -63,25 +63,25 @@ def softer(lug: Lug, times: float) -> Lug:
     return replace(lug, material=made(lug.material), bushing=bushing)
 
 
-def _loose(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:
+def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:
     if lug.range.clearance is not None:
-        return replace(lug, clearance=lug.range.clearance[end]), (LOW, HIGH)[end]
+        return replace(lug, clearance=lug.range.clearance[end]), (LOW_END_TEXT, HIGH_END_TEXT)[end]
     if end == 0:
         return replace(lug, clearance=0.0), "none"
     if lug.clearance:
         return replace(lug, clearance=2.0 * lug.clearance), "twice the given"
-    fit = FIT * 2.0 * pin.band(lug.connection).radius
-    return replace(lug, clearance=fit), f"{FIT:g} of the diameter"
+    fit = DEFAULT_FIT_CLEARANCE * 2.0 * pin.band(lug.connection).radius
+    return replace(lug, clearance=fit), f"{DEFAULT_FIT_CLEARANCE:g} of the diameter"
 
 
 def _stiffness(lug: Lug, end: int) -> tuple[float, str]:
-    times = (lug.range.stiffness or (1.0 / SOFTER, SOFTER))[end]
+    times = (lug.range.stiffness or (1.0 / DEFAULT_STIFFNESS_FACTOR, DEFAULT_STIFFNESS_FACTOR))[end]
     return times, f"times {times:g}"
 
 
 def _tilted(lug: Lug, end: int) -> tuple[Lug, str]:
     if lug.range.tilt is not None:
-        return replace(lug, tilt=lug.range.tilt[end]), (LOW, HIGH)[end]
+        return replace(lug, tilt=lug.range.tilt[end]), (LOW_END_TEXT, HIGH_END_TEXT)[end]
     return replace(lug, tilt=(0.0, math.inf)[end]), ("free", "guided")[end]
 
 

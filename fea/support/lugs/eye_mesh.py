@@ -11,23 +11,23 @@ from fea.core.pin_loads import Floats
 from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
 
-GROWTH = 1.6  # of each layer over the one before, from the bore outwards
-HALVES = 2.0  # with one element pressure at a rounded edge is 6 % high, at a bushing 3 %
+LAYER_GROWTH = 1.6  # of each layer over the one before, from the bore outwards
+MIN_WALL_ELEMENTS = 2.0  # with one element pressure at a rounded edge is 6 % high, at a bushing 3 %
 
 
 def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> MeridianMesh:
     """Of a lug's annulus, one surface for each segment outside and in the bore.
 
     across: elements over the bore's diameter where it is pressed, of which each ring, and what is
-    between bore and interface, has HALVES at least. interface: a radius (m) along which elements
-    end.
+    between bore and interface, has MIN_WALL_ELEMENTS at least. interface: a radius (m) along which
+    elements end.
     """
     bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
     ends = [bore, *([] if interface is None else [interface]), outer]
     size, rings = 2.0 * bore / across, np.diff(eye.stations)
-    first = min(size, min(float(rings.min()), ends[1] - bore) / HALVES)
+    first = min(size, min(float(rings.min()), ends[1] - bore) / MIN_WALL_ELEMENTS)
     r = np.concatenate([[bore], *_layers(ends, first)])
-    along = (_even(s, e, min(size, (e - s) / HALVES)) for s, e in _rings(eye))
+    along = (_even(s, e, min(size, (e - s) / MIN_WALL_ELEMENTS)) for s, e in _rings(eye))
     z = np.concatenate([[0.0], *along])
     grid = MeshTri2.from_mesh(MeshQuad.init_tensor(r, z).to_meshtri(style="x"))
     return MeridianMesh.of(grid, _edges(eye, grid), np.zeros(0, dtype=np.int64))
@@ -49,11 +49,11 @@ def _layers(ends: list[float], size: float) -> list[Floats]:
     """
     found, step = [], size
     for start, end in pairwise(ends):
-        ratio = 1.0 + (end - start) * (GROWTH - 1.0) / step
-        count = max(1, int(np.ceil(np.log(ratio) / np.log(GROWTH) - 1e-9)))
-        parts = GROWTH ** np.arange(count)
+        ratio = 1.0 + (end - start) * (LAYER_GROWTH - 1.0) / step
+        count = max(1, int(np.ceil(np.log(ratio) / np.log(LAYER_GROWTH) - 1e-9)))
+        parts = LAYER_GROWTH ** np.arange(count)
         found.append(start + (end - start) * np.cumsum(parts) / parts.sum())
-        step *= GROWTH**count
+        step *= LAYER_GROWTH**count
     return found
 
 

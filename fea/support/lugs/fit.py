@@ -19,9 +19,9 @@ from fea.core.pin_loads import Floats
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Band, Pin, PinLike
 
-MOST_CLEARANCE = 0.1  # of the pin's diameter
-MOST_INTERFERENCE = 5.0  # times what yields pin, bushing or lug
-LEAST_WALL = 1e-3  # of an eye or a bushing, of the pin's diameter
+MAX_CLEARANCE = 0.1  # of the pin's diameter
+MAX_INTERFERENCE_RATIO = 5.0  # times what yields pin, bushing or lug
+MIN_WALL = 1e-3  # of an eye or a bushing, of the pin's diameter
 
 Wall = tuple[float, float, Material]  # inner and outer radius, m
 
@@ -73,7 +73,7 @@ def fitted(pin: Pin, material: Material, lugs: Sequence[Lug]) -> tuple[Lug, ...]
 def _require_walls(lug: Lug, band: Band) -> None:
     d, what = 2.0 * band.radius, f"lug {lug.connection}"
     wall = (lug.outer_diameter - d) / 2.0
-    if wall < LEAST_WALL * d:
+    if wall < MIN_WALL * d:
         raise ArgumentError(
             f"{what}: its outer diameter is {lug.outer_diameter / d:.4g} of the pin's; it must be "
             "wider than the pin",
@@ -81,13 +81,13 @@ def _require_walls(lug: Lug, band: Band) -> None:
         )
     if lug.bushing is None:
         return
-    if lug.bushing.thickness < LEAST_WALL * d:
+    if lug.bushing.thickness < MIN_WALL * d:
         raise ArgumentError(
             f"{what}: its bushing's thickness is {lug.bushing.thickness / d:.2g} of the pin's "
             "diameter, too thin to model; leave it out",
             "bushing-too-thin",
         )
-    if wall - lug.bushing.thickness < LEAST_WALL * d:
+    if wall - lug.bushing.thickness < MIN_WALL * d:
         raise ArgumentError(
             f"{what}: its bushing is {lug.bushing.thickness / wall:.4g} times as thick as the wall "
             "between the pin and the outer diameter; make it thinner or the lug wider",
@@ -97,10 +97,10 @@ def _require_walls(lug: Lug, band: Band) -> None:
 
 def _require_gap(lug: Lug, band: Band) -> None:
     what, d = f"lug {lug.connection}", 2.0 * band.radius
-    if lug.clearance > MOST_CLEARANCE * d:
+    if lug.clearance > MAX_CLEARANCE * d:
         raise ArgumentError(
             f"{what}: its clearance is {lug.clearance / d:.3g} of the pin's diameter; at most "
-            f"{MOST_CLEARANCE:g} is a joint",
+            f"{MAX_CLEARANCE:g} is a joint",
             "clearance-too-large",
         )
     if lug.edge_radius > band.length / 2.0:
@@ -113,12 +113,12 @@ def _require_gap(lug: Lug, band: Band) -> None:
 
 def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> None:
     interference = -lug.clearance
-    most = MOST_INTERFERENCE * yielding_interference(lug, band.radius, bore, material)
+    most = MAX_INTERFERENCE_RATIO * yielding_interference(lug, band.radius, bore, material)
     if interference > most:
-        times = MOST_INTERFERENCE * interference / most
+        times = MAX_INTERFERENCE_RATIO * interference / most
         raise ArgumentError(
             f"lug {lug.connection}: its interference is {times:.3g} times what makes pin, "
-            f"bushing or lug yield; linear elasticity ends at {MOST_INTERFERENCE:g} times",
+            f"bushing or lug yield; linear elasticity ends at {MAX_INTERFERENCE_RATIO:g} times",
             "interference-too-large",
         )
 

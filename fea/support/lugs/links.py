@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from fea.core.equilibrium import MOST
+from fea.core.equilibrium import MAX_IMBALANCE
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
 from geometry import Pin
@@ -47,7 +47,7 @@ def link_forces(
     if structure:
         return np.concatenate([out, -left[:, None]], axis=1)
     largest = np.linalg.norm(left, axis=1).max(initial=0.0)
-    if whole and largest > MOST * np.linalg.norm(out, axis=2).max(initial=1e-300):
+    if whole and largest > MAX_IMBALANCE * np.linalg.norm(out, axis=2).max(initial=1e-300):
         raise SolveError(
             f"pin {pin.name}, case {loads.case}: the forces of its links have "
             f"a resultant of {largest:.3g} N, which no contact reacts: load all its links, or name "

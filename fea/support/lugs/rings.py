@@ -12,15 +12,19 @@ import numpy as np
 from fea.core.pin_loads import Floats
 from geometry import Band, Pin, Segment
 
-USUAL = 8  # rings of a band with sharp edges, if it is not long
-LONGEST = 0.25  # ring, of the diameter, if there are so many
-FINER = 2.5  # times as long each part of an outermost ring that is cut is with the next one
-PEAK = 0.25  # of a fillet's radius from where it begins: its largest stress is not nearer
-LEAST = 1e-3  # ring, of the diameter
+USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
+MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many
+RING_PART_RATIO = (
+    2.5  # times as long each part of an outermost ring that is cut is with the next one
+)
+FILLET_PEAK_OFFSET = (
+    0.25  # of a fillet's radius from where it begins: its largest stress is not nearer
+)
+MIN_RING_LENGTH = 1e-3  # ring, of the diameter
 # Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
 # begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
 # on each is so many times longer. Rings that grow from the start on are up to 13 % off.
-OUTWARDS, INWARDS, GROWTH = 0.08, 0.03, 1.6
+OUTWARD_EVEN_LENGTH, INWARD_EVEN_LENGTH, RING_GROWTH = 0.08, 0.03, 1.6
 
 
 def ring_ends(
@@ -39,10 +43,12 @@ def ring_ends(
     the length, m, of the outermost rings at both ends at most, which are cut in parts for it where
     edges are sharp; where they are rounded contact ends in short ones anyway.
     """
-    coarser = USUAL / count
-    longest = 2.0 * LONGEST * band.radius * coarser
+    coarser = USUAL_RING_COUNT / count
+    longest = 2.0 * MAX_RING_LENGTH * band.radius * coarser
     if beside is not None and edge_radius:
-        return _to_the_peak(band.length, edge_radius, beside * coarser, GROWTH**coarser, longest)
+        return _to_the_peak(
+            band.length, edge_radius, beside * coarser, RING_GROWTH**coarser, longest
+        )
     flat = band.length - 2.0 * edge_radius
     inner = np.zeros(1)
     if flat > 1e-9 * band.length:
@@ -61,7 +67,7 @@ def _parts(length: float, most: float) -> Floats:
     """Ends but the far one of the parts of an outermost ring, from the edge on: the first part no
     longer than `most`, each so many times as long as those before it together.
     """
-    count = 0 if length <= most else math.ceil(math.log(length / most) / math.log(FINER))
+    count = 0 if length <= most else math.ceil(math.log(length / most) / math.log(RING_PART_RATIO))
     return np.asarray(
         [0.0, *(length * (most / length) ** (k / (count or 1)) for k in range(count, 0, -1))]
     )
@@ -74,7 +80,8 @@ def beside_fillets(pin: Pin, band: Band) -> tuple[float, float]:
     near = [
         min(
             (
-                max(math.dist(x.at, (band.radius, z)) - x.reach, 0.0) + PEAK * x.radius
+                max(math.dist(x.at, (band.radius, z)) - x.reach, 0.0)
+                + FILLET_PEAK_OFFSET * x.radius
                 for x in pin.roundings
                 if x.inner
             ),
@@ -82,7 +89,7 @@ def beside_fillets(pin: Pin, band: Band) -> tuple[float, float]:
         )
         for z in (band.z0, band.z1)
     ]
-    least = LEAST * 2.0 * band.radius
+    least = MIN_RING_LENGTH * 2.0 * band.radius
     return max(near[0], least), max(near[1], least)
 
 
@@ -90,8 +97,8 @@ def _to_the_peak(
     length: float, radius: float, beside: float, growth: float, longest: float
 ) -> Floats:
     first = beside * radius
-    outside = _from_edge(radius, OUTWARDS * radius, first, growth, longest)[::-1]
-    flat = _from_edge(length / 2.0 - radius, INWARDS * radius, first, growth, longest)
+    outside = _from_edge(radius, OUTWARD_EVEN_LENGTH * radius, first, growth, longest)[::-1]
+    flat = _from_edge(length / 2.0 - radius, INWARD_EVEN_LENGTH * radius, first, growth, longest)
     ends = np.cumsum([0.0, *outside, *flat])
     return np.concatenate([ends[:-1], [length / 2.0], length - ends[-2::-1]])
 

@@ -1,9 +1,9 @@
 """Meshes of sections of almost the same shape: one of them is meshed, and its nodes are moved.
 
-Every dimension is rounded to one of STEPS values in each factor of two. That shape is meshed as
-fine as asked for, by amounts that are rounded too, and kept. On the shape itself every node of the
-outline keeps its place on its own edge (outline_motion), exactly, and those inside move by a
-harmonic function. Where the rounded shape has other edges, or edges of quite another
+Every dimension is rounded to one of DIMENSION_STEPS values in each factor of two. That shape is
+meshed as fine as asked for, by amounts that are rounded too, and kept. On the shape itself every
+node of the outline keeps its place on its own edge (outline_motion), exactly, and those inside
+move by a harmonic function. Where the rounded shape has other edges, or edges of quite another
 length (what a fillet leaves of a shoulder is a small difference of large dimensions), or moved
 elements are poor, the edges are rounded instead; where that does no better, the shape itself is
 meshed. So the mesh depends on the shape alone, whatever was meshed before it.
@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.mesh.gmsh_session import ONE_AT_A_TIME
+from geometry.mesh.gmsh_session import GMSH_LOCK
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import (
-    SMALLEST_JACOBIAN,
+    MIN_JACOBIAN_RATIO,
     MeridianMesh,
     SharedByMeshes,
     meridian_mesh,
@@ -38,12 +38,14 @@ from pinbase.arrays import Floats, Ints
 if TYPE_CHECKING:
     import scipy.sparse as sp
 
-STEPS = 12  # rounded dimensions in a factor of two
-SIZES = 8  # rounded sizes of elements in a factor of two
-PLACES = 32  # rounded places on the smallest diameter
-MOST = 1.4  # times which an edge may be longer or shorter than that of the rounded shape
-DIGITS = 9  # of ratios that are the same for all shapes
-NODES = 20_000  # that are kept
+DIMENSION_STEPS = 12  # rounded dimensions in a factor of two
+SIZE_STEPS = 8  # rounded sizes of elements in a factor of two
+PLACE_STEPS = 32  # rounded places on the smallest diameter
+MAX_EDGE_STRETCH = (
+    1.4  # times which an edge may be longer or shorter than that of the rounded shape
+)
+RATIO_DIGITS = 9  # of ratios that are the same for all shapes
+MAX_KEPT_NODES = 20_000  # that are kept
 
 
 def near_mesh(
@@ -78,7 +80,9 @@ def _moved(
         except KeyError:  # one that is at no vertex of the outline
             return None
         grades = tuple(between.grade(grade) for grade in finer)
-        found = _KEPT.mesh((between.other, size, there, grades, quiet)).on(pin, reaches, between)
+        found = _KEPT_MESHES.mesh((between.other, size, there, grades, quiet)).on(
+            pin, reaches, between
+        )
         if found is not None:
             return found
     return None
@@ -149,14 +153,14 @@ def _rounded(s: Segment) -> Segment:
     )
 
 
-def step(x: float, steps: int = STEPS) -> float:
+def step(x: float, steps: int = DIMENSION_STEPS) -> float:
     """The nearest of so many values in a factor of two."""
     return float(2.0 ** (round(math.log2(x) * steps) / steps)) if x > 0.0 else x
 
 
 def _digits(x: float) -> float:
     """Without what round-off makes of a ratio."""
-    return float(f"{x:.{DIGITS}g}")
+    return float(f"{x:.{RATIO_DIGITS}g}")
 
 
 @dataclass(frozen=True)
@@ -193,13 +197,13 @@ class _Between:
 
     def grade(self, grade: Grade) -> Grade:
         """On the rounded shape, rounded."""
-        part = self.other.smallest_diameter / PLACES
+        part = self.other.smallest_diameter / PLACE_STEPS
         points = tuple(
             (part * round(float(np.interp(r, *self.r)) / part),
              part * round(float(np.interp(z, *self.z)) / part))
             for r, z in grade.points
         )  # fmt: skip
-        near, flat = (step(x, SIZES) for x in (grade.near, grade.flat))
+        near, flat = (step(x, SIZE_STEPS) for x in (grade.near, grade.flat))
         return Grade(points, near, flat, grade.growth)
 
 
@@ -207,7 +211,7 @@ def _alike(one: Edge, other: Edge) -> bool:
     if one.name != other.name or isinstance(one, Arc) != isinstance(other, Arc):
         return False
     ratio = math.dist(one.start, one.end) / math.dist(other.start, other.end)
-    return 1.0 / MOST < ratio < MOST
+    return 1.0 / MAX_EDGE_STRETCH < ratio < MAX_EDGE_STRETCH
 
 
 class _RoundedMesh:
@@ -242,7 +246,7 @@ class _RoundedMesh:
         nodes[rows] = at
         nodes[self.mesh.axis, 0] = 0.0
         found = replace(self.mesh, nodes=nodes, shared=self._shared)
-        return found if found.distortion().min() > SMALLEST_JACOBIAN else None
+        return found if found.distortion().min() > MIN_JACOBIAN_RATIO else None
 
 
 def _harmonic(
@@ -269,22 +273,22 @@ _Key = tuple[Pin, SectionSize, tuple[Spot, ...], tuple[Grade, ...], tuple[int, .
 
 
 class _Kept:
-    """Meshes of rounded shapes that were asked for last, NODES of them at most."""
+    """Meshes of rounded shapes that were asked for last, MAX_KEPT_NODES of them at most."""
 
     def __init__(self) -> None:
         self._meshes = OrderedDict[_Key, _RoundedMesh]()
         self._nodes = 0
 
     def mesh(self, key: _Key) -> _RoundedMesh:
-        with ONE_AT_A_TIME:
+        with GMSH_LOCK:
             found = self._meshes.pop(key, None)
             if found is None:
                 found = _RoundedMesh(key[0], meridian_mesh(*key), key[2])
                 self._nodes += len(found.mesh.nodes)
             self._meshes[key] = found
-            while len(self._meshes) > 1 and self._nodes > NODES:
+            while len(self._meshes) > 1 and self._nodes > MAX_KEPT_NODES:
                 self._nodes -= len(self._meshes.popitem(last=False)[1].mesh.nodes)
             return found
 
 
-_KEPT = _Kept()
+_KEPT_MESHES = _Kept()

@@ -21,8 +21,8 @@ from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.profile import RZ, Arc, Edge, meridian
 from pinbase.arrays import Floats, Ints
 
-STEPS = 1e-4, 1e-6  # of a dimension: the next one where the first gives another shape
-LEAST_CUT, MOST_CUT = 0.001, 0.999  # of an edge, as gmsh is given them
+RELATIVE_STEPS = 1e-4, 1e-6  # of a dimension: the next one where the first gives another shape
+MIN_CUT_POSITION, MAX_CUT_POSITION = 0.001, 0.999  # of an edge, as gmsh is given them
 
 
 @dataclass(frozen=True)
@@ -37,12 +37,12 @@ class OtherShapeError(Exception):
     """With the dimension a little larger or smaller the outline has other edges."""
 
 
-PLACES = -2.0, -1.0, 1.0, 2.0  # steps at which differences are taken
+DIFFERENCE_STEPS = -2.0, -1.0, 1.0, 2.0  # steps at which differences are taken
 
 
 def rate(at: Callable[[float], Floats], step: float) -> Floats:
     """Derivative at 0 by central differences of fourth order."""
-    return rate_of([at(x * step) for x in PLACES], step)
+    return rate_of([at(x * step) for x in DIFFERENCE_STEPS], step)
 
 
 def rate_of(values: Sequence[Floats], step: float) -> Floats:
@@ -54,7 +54,7 @@ def rate_of(values: Sequence[Floats], step: float) -> Floats:
 @dataclass(frozen=True)
 class NodeMotion:
     """Of the outline's nodes, (B, 2) m per m of a dimension, by its key. pins: with the dimension
-    at PLACES times `step` (m) more.
+    at DIFFERENCE_STEPS times `step` (m) more.
     """
 
     key: str
@@ -98,17 +98,19 @@ class OutlineNodes:
 
         Raises: OtherShapeError where there is no such pin on both sides of it.
         """
-        for part in STEPS:
+        for part in RELATIVE_STEPS:
             step = part * dimension.value
             try:
-                pins = tuple(dimension.changed(dimension.value + x * step) for x in PLACES)
+                pins = tuple(
+                    dimension.changed(dimension.value + x * step) for x in DIFFERENCE_STEPS
+                )
                 return self.among(dimension.key, pins, step)
             except (GeometryError, OtherShapeError):
                 continue
         raise OtherShapeError
 
     def among(self, key: str, pins: tuple[Pin, ...], step: float) -> NodeMotion:
-        """With pins at PLACES times a step. Raises: OtherShapeError."""
+        """With pins at DIFFERENCE_STEPS times a step. Raises: OtherShapeError."""
         return NodeMotion(key, rate_of([self.at(pin) for pin in pins], step), pins, step)
 
     def _cuts(self, edge: Edge) -> list[tuple[int, float]]:
@@ -121,8 +123,12 @@ class OutlineNodes:
             for end, at in enumerate((edge.start, edge.end))
             if (ratio := self._reach.get(at)) and (part := ratio * at[0] / length)
         ]
-        found = sorted((x for x in found if LEAST_CUT < x[1] < MOST_CUT), key=lambda x: x[1])
-        return found if len(found) < 2 or found[1][1] - found[0][1] > LEAST_CUT else found[:1]
+        found = sorted(
+            (x for x in found if MIN_CUT_POSITION < x[1] < MAX_CUT_POSITION), key=lambda x: x[1]
+        )
+        return (
+            found if len(found) < 2 or found[1][1] - found[0][1] > MIN_CUT_POSITION else found[:1]
+        )
 
 
 def _cuts_of(place: _Place, outline: tuple[Edge, ...], reach: Mapping[RZ, float]) -> list[float]:

@@ -11,13 +11,13 @@ from assess.plastic.records import LimitLoad
 from assess.strength.bending_arms import BendingArms, bending_arms
 from assess.strength.collapse import collapse_margin
 from assess.strength.lug_checks import lug_checks
-from assess.strength.margin import PinMargin, not_made
+from assess.strength.margin import PinMargin, skipped
 from assess.strength.model_stress import model_margins
 from assess.strength.nominal_stress import nominal_margins
 from assess.strength.pin_checks import formula_margins, pin_checks
 from assess.strength.records import HandCheck
 from assess.strength.situation import LoadFactors, Situation, with_solved, with_supports
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.records import JointResult
 from fea.support.lugs.fit import on_structure
@@ -26,8 +26,8 @@ from geometry import CutPin, Pin
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 
-FORMULAS = "checks by formula"
-FACTORS = ("limit_factor", "ultimate_factor", "fitting_factor")
+FORMULA_CHECKS = "checks by formula"
+LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,11 @@ class Checked:
 
 
 def checked(
-    study: Study, task: Task, peak: Peak, joint: JointResult | None, limit: LimitLoad | None = None
+    study: Study,
+    task: Task,
+    peak: Maximum,
+    joint: JointResult | None,
+    limit: LimitLoad | None = None,
 ) -> Checked:
     """By formula and by the model. A pin that is cut is checked as if it were not."""
     factors = load_factors(study)
@@ -67,11 +71,11 @@ def checked(
             else:
                 margins += formula_margins(s, checks)
                 arms = _arms(s, task, peak, joint)
-    lacking = {FORMULAS: why} if why else {}
+    lacking = {FORMULA_CHECKS: why} if why else {}
     if isinstance(profile, Pin):
         lacking |= _held_lugs(study, task)
     for method, needs in lacking.items():
-        margins.append(not_made(method, "", "limit", factors.at("limit"), needs))
+        margins.append(skipped(method, "", "limit", factors.at("limit"), needs))
     return Checked(checks, tuple(PinMargin(peak.pin, peak.case, m) for m in margins), arms)
 
 
@@ -84,7 +88,7 @@ def load_factors(study: Study) -> LoadFactors:
 def factor_assumption(study: Study, found: Sequence[Checked]) -> tuple[str, ...]:
     """A sentence on the factors that the study does not give, if any margin depends on them."""
     table = study.table.analysis
-    assumed = [key for key in FACTORS if key not in table.model_fields_set]
+    assumed = [key for key in LOAD_FACTOR_KEYS if key not in table.model_fields_set]
     if not assumed or not any(x.margins for x in found):
         return ()
     values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
@@ -139,7 +143,7 @@ def _held_lugs(study: Study, task: Task) -> dict[str, str]:
     return {f"lug of {name}: net section, shear-out, bearing": why for name in names}
 
 
-def _arms(s: Situation, task: Task, peak: Peak, joint: JointResult | None) -> BendingArms:
+def _arms(s: Situation, task: Task, peak: Maximum, joint: JointResult | None) -> BendingArms:
     """At the governing instant, which is one of the joint's."""
     now = s.by_formula.at(np.array([0]))
     if peak.time is not None and s.joint is None and peak.case in task.between:

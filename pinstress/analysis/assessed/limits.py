@@ -11,7 +11,7 @@ from math import inf
 
 from assess.plastic.records import LimitLoad
 from assess.plastic.solve import Rung, limit_load
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.solve.solve_pin import Solution
 from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import Pin
@@ -20,10 +20,10 @@ from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 
-ON_FOUNDATIONS = 'not for a pin on elastic foundations: use joints = "contact"'
+NOT_ON_FOUNDATIONS_NOTE = 'not for a pin on elastic foundations: use joints = "contact"'
 
 
-UNASKED = 20.0  # s of processor time of a limit load that was not asked for
+UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that was not asked for
 
 
 def limit_rung(study: Study, pin: str) -> Rung | None:
@@ -43,7 +43,7 @@ def rung_of(plan: Plan, pin: str) -> Rung | None:
 def limit_seconds(plan: Plan) -> float:
     """Processor time that a limit load may take, s: endless where someone asked for it."""
     asked = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
-    return inf if asked else UNASKED
+    return inf if asked else UNASKED_LIMIT_LOAD_SECONDS
 
 
 def limit_loads(
@@ -66,7 +66,7 @@ def _limit_load(
     assert loads is not None
     if in_lugs is not None and isinstance(pin, Pin):
         if in_lugs.rings is None:
-            return LimitLoad("none", note=ON_FOUNDATIONS)
+            return LimitLoad("none", note=NOT_ON_FOUNDATIONS_NOTE)
         pin, loads = in_lugs.rings, in_lugs.pressed(loads)
     clamps = tuple(pin.surface(name) for name in task.clamps)
     seconds = limit_seconds(plan)
@@ -76,7 +76,7 @@ def _limit_load(
         return LimitLoad("none", note=str(error))
 
 
-def limit_asked(peak: Peak, task: Task, rung: Rung) -> bool:
+def limit_asked(peak: Maximum, task: Task, rung: Rung) -> bool:
     """Whether the limit load of a row is computed."""
     factor = peak.safety_factor(task.material.yield_strength)
     if factor is None or peak.governing is None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 T = TypeVar("T")
 Array = NDArray[Any]
 
-TEXT = "text"  # the name of the JSON; arrays are called by their numbers
+JSON_ENTRY = "text"  # the name of the JSON; arrays are called by their numbers
 
 
 def pack(value: object) -> bytes:
@@ -29,7 +29,7 @@ def pack(value: object) -> bytes:
     text = json.dumps(_written(value, arrays), separators=(",", ":"))
     file = io.BytesIO()
     named: dict[str, Array] = {f"{i}": array for i, array in enumerate(arrays)}
-    named[TEXT] = np.frombuffer(text.encode(), np.uint8)
+    named[JSON_ENTRY] = np.frombuffer(text.encode(), np.uint8)
     np.savez(file, **named)  # type: ignore[arg-type]
     return file.getvalue()
 
@@ -41,7 +41,7 @@ def unpack(kind: type[T], data: bytes) -> T:
     """
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
-    value: T = _read(kind, json.loads(arrays.pop(TEXT).tobytes()), arrays)
+    value: T = _read(kind, json.loads(arrays.pop(JSON_ENTRY).tobytes()), arrays)
     return value
 
 

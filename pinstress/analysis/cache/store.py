@@ -26,16 +26,25 @@ from pinstress.analysis.cache.serialise import pack, unpack
 
 T = TypeVar("T")
 
-VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or OFF: none
-OFF = "off"
-LIMIT = 10**9  # bytes of all files; the longest unused go first
+CACHE_VARIABLE = "PINSTRESS_CACHE"  # the folder; empty or CACHE_OFF: none
+CACHE_OFF = "off"
+MAX_CACHE_SIZE = 10**9  # bytes of all files; the longest unused go first
 # Packages that have a hand in an answer.
-ROOMS = ("assess", "fea", "geometry", "pinbase", "pinstress", "reports")
+SOURCE_PACKAGES = ("assess", "fea", "geometry", "pinbase", "pinstress", "reports")
 # On which answers depend.
-PACKAGES = ("pinstress", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "cvxopt", "pymetis")
-MAGIC = b"pinstress\n"
-KEY, PARTIAL = re.compile(r"[0-9a-f]{64}"), ".partial"
-OURS = re.compile(rf"{KEY.pattern}(\w+{re.escape(PARTIAL)})?")
+REQUIRED_PACKAGES = (
+    "pinstress",
+    "numpy",
+    "scipy",
+    "scikit-fem",
+    "gmsh",
+    "meshio",
+    "cvxopt",
+    "pymetis",
+)
+FILE_SIGNATURE = b"pinstress\n"
+KEY_PATTERN, PARTIAL_SUFFIX = re.compile(r"[0-9a-f]{64}"), ".partial"
+CACHE_FILE_PATTERN = re.compile(rf"{KEY_PATTERN.pattern}(\w+{re.escape(PARTIAL_SUFFIX)})?")
 
 log = logging.getLogger(__name__)
 
@@ -46,7 +55,7 @@ class Cache:
 
     folder: Path
     program: str
-    limit: int = LIMIT
+    limit: int = MAX_CACHE_SIZE
 
     def key(self, asked: object) -> str:
         """The name of the answer to what is asked (of what pinstress.analysis.cache.serialise
@@ -79,10 +88,10 @@ class Cache:
             if len(content) > self.limit:
                 return
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-            descriptor, partial = tempfile.mkstemp(PARTIAL, key, self.folder)
+            descriptor, partial = tempfile.mkstemp(PARTIAL_SUFFIX, key, self.folder)
             try:
                 with open(descriptor, "wb") as file:
-                    file.write(MAGIC + _seal(key, content) + content)
+                    file.write(FILE_SIGNATURE + _seal(key, content) + content)
                 os.replace(partial, path)
             except BaseException:
                 Path(partial).unlink(missing_ok=True)
@@ -97,7 +106,7 @@ class Cache:
         found, room = [], self.limit
         with suppress(OSError):  # it is not there, or not ours
             for entry in os.scandir(self.folder):
-                if OURS.fullmatch(entry.name) and _ours(entry.path):
+                if CACHE_FILE_PATTERN.fullmatch(entry.name) and _ours(entry.path):
                     with suppress(FileNotFoundError):  # another run was quicker
                         seen = entry.stat(follow_symlinks=False)
                         found.append((seen.st_mtime_ns, seen.st_size, entry.path))
@@ -107,7 +116,7 @@ class Cache:
                     Path(path).unlink(missing_ok=True)
 
     def _path(self, key: str) -> Path:
-        if not KEY.fullmatch(key):
+        if not KEY_PATTERN.fullmatch(key):
             raise ValueError(f"{key!r:.100} is not the name of an entry")
         return self.folder / key
 
@@ -116,8 +125,8 @@ def user_cache() -> Cache | None:
     """The user's: in the folder that PINSTRESS_CACHE names, else where the system keeps caches
     (XDG_CACHE_HOME). None when it is switched off or there is no such folder.
     """
-    named = os.environ.get(VARIABLE)
-    if named is not None and named.strip().lower() in ("", OFF):
+    named = os.environ.get(CACHE_VARIABLE)
+    if named is not None and named.strip().lower() in ("", CACHE_OFF):
         return None
     try:
         folder = Path(named).expanduser() if named else _usual()
@@ -137,10 +146,10 @@ def program() -> str:
     """Hash of what results depend on in addition to the task: versions, and the source itself, so
     that whoever changes a formula does not meet the answers of the old one.
     """
-    made_by = [(name, _version(name)) for name in PACKAGES], portable()
+    made_by = [(name, _version(name)) for name in REQUIRED_PACKAGES], portable()
     found = hashlib.sha256(repr(made_by).encode())
     root = Path(__file__).parents[3]
-    for room in ROOMS:
+    for room in SOURCE_PACKAGES:
         for path in sorted((root / room).rglob("*.py")):
             name = path.relative_to(root).as_posix()
             found.update(name.encode() + hashlib.sha256(path.read_bytes()).digest())
@@ -160,21 +169,21 @@ def _seal(key: str, content: bytes) -> bytes:
 
 
 def _split(data: bytes) -> tuple[bytes, bytes]:
-    if not data.startswith(MAGIC):
+    if not data.startswith(FILE_SIGNATURE):
         raise ValueError("not ours")
-    end = len(MAGIC) + hashlib.sha256().digest_size
-    return data[len(MAGIC) : end], data[end:]
+    end = len(FILE_SIGNATURE) + hashlib.sha256().digest_size
+    return data[len(FILE_SIGNATURE) : end], data[end:]
 
 
 def _ours(path: str) -> bool:
     """Whether a file of such a name is ours: it begins so, or is partial, as only we call it."""
-    if path.endswith(PARTIAL):
+    if path.endswith(PARTIAL_SUFFIX):
         return True
     try:
         if not stat.S_ISREG(os.lstat(path).st_mode):  # a link, a folder
             return False
         with open(path, "rb") as file:
-            begin = file.read(len(MAGIC))
+            begin = file.read(len(FILE_SIGNATURE))
     except OSError:  # gone
         return False
-    return begin == MAGIC
+    return begin == FILE_SIGNATURE

@@ -9,21 +9,21 @@ from importlib.metadata import version
 import numpy as np
 
 from assess.strength.records import BeamCheck
-from fea.core.peak import Peak, decides
+from fea.core.peak import Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
-from fea.section.section_stress import SectionAnswer
+from fea.section.section_stress import SectionField
 from fea.solve.solve_pin import Solution
 from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.contact.records import JointResult
 from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import CutPin, Pin
 from pinstress.analysis.assessed.checked import Checked, factor_assumption
-from pinstress.analysis.cache.store import PACKAGES
+from pinstress.analysis.cache.store import REQUIRED_PACKAGES
 from pinstress.analysis.gather.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
 from pinstress.analysis.plan import Plan, all_loads
-from pinstress.analysis.stored import Solved
+from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.drawn_cuts import cut_shapes
 from pinstress.study.model.pins import far_ends, outline, weight
@@ -34,11 +34,11 @@ from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.tables import ReportTable
 from reports.data import results as plain
-from reports.data.changes import Change
+from reports.data.changes import Remedy
 from reports.data.dependence import depends_on
 from reports.data.sensitivities import PinSensitivities
 
-WITHOUT_FRICTION = (
+WITHOUT_FRICTION_NOTE = (
     "Pins slide in their lugs without friction, which would lower their bending (by 15 to 24 % on "
     "a clevis with coefficients of 0.1 to 0.3): the safe side while a load grows, not in a cycle."
 )
@@ -52,7 +52,7 @@ def _in_lugs(study: Study) -> bool:
     )
 
 
-def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
+def results_of(plan: Plan, found: list[PinOutcome]) -> plain.Results:
     """A plan's results from what was found of its tasks."""
     study = plan.study
     found = [
@@ -99,14 +99,14 @@ def results_of(plan: Plan, found: list[Solved]) -> plain.Results:
     return _in_study_units(results, study)
 
 
-def _worst_changes(found: list[Solved]) -> tuple[Change, ...]:
+def _worst_changes(found: list[PinOutcome]) -> tuple[Remedy, ...]:
     """One for each pin, for the worst of its cases; the pin with the worst first."""
     rows = sorted((x.change for x in found if x.change), key=lambda change: change.load_factor)
     return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
 
 
 def _in_order(
-    found: list[Solved], pins: list[str], cases: list[str], every: bool
+    found: list[PinOutcome], pins: list[str], cases: list[str], every: bool
 ) -> tuple[PinSensitivities, ...]:
     """As the rows are; without `every` one for each pin, for the worst of its cases."""
     rows = [row for made in found for row in made.sensitivities]
@@ -131,7 +131,7 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
 def _results(
     study: Study,
     loads: dict[str, CaseLoads],
-    rows: list[tuple[Task, Peak, JointResult | None, Checked]],
+    rows: list[tuple[Task, Maximum, JointResult | None, Checked]],
     beam: BeamCheck | None,
     published: Published,
     tolerance: float,
@@ -162,10 +162,10 @@ def _results(
         assumptions=(
             *table.assumptions,
             *factor_assumption(study, strength),
-            *((WITHOUT_FRICTION,) if _in_lugs(study) else ()),
+            *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Hardly meant: {q}" for q in study.questions),
         ),
-        versions={name: version(name) for name in PACKAGES},
+        versions={name: version(name) for name in REQUIRED_PACKAGES},
         study_text=study.text,
         inputs=inputs(study),
         title_block=_title_block(table.report),
@@ -181,7 +181,7 @@ def _pin_result(
     study: Study,
     loads: dict[str, CaseLoads],
     task: Task,
-    peak: Peak,
+    peak: Maximum,
     joint: JointResult | None,
     found: Checked,
     published: Published,
@@ -235,7 +235,7 @@ def _held(task: Task, joint: JointResult | None) -> str:
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
-def _factors(peak: Peak, strength: float | None) -> tuple[float, float | None] | None:
+def _factors(peak: Maximum, strength: float | None) -> tuple[float, float | None] | None:
     """Factor of safety over the interval of the maximum; None above, where no stress is left."""
     if peak.interval is None or strength is None:
         return None
@@ -252,12 +252,12 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
     )
 
 
-def _meets(peak: Peak, strength: float | None, required: float | None) -> bool | None:
+def _meets(peak: Maximum, strength: float | None, required: float | None) -> bool | None:
     """Whether the required factor, or yield, is reached; None where that is open."""
-    return None if strength is None else decides(peak, strength / (required or 1.0))
+    return None if strength is None else meets_limit(peak, strength / (required or 1.0))
 
 
-def _shape(task: Task, peaks: list[Peak]) -> plain.PinShape:
+def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
     pin, density = task.pin, task.material.density
     held = {pin.surface(c) for c in task.clamps}
     segments = tuple(
@@ -311,11 +311,11 @@ def _maxima(task: Task, found: Solution | LugSolution, loads: PinLoads) -> plain
     if places is None or places.section is None or pin is None:
         return surface
     feels = acting.on_rings if isinstance(acting, PressureLoads) else acting
-    sections = SectionAnswer(pin, task.material, clamps, (feels,))
+    sections = SectionField(pin, task.material, clamps, (feels,))
     return np.maximum(surface, sections.maxima(feels))
 
 
-def _spread(peak: Peak) -> tuple[float, float] | None:
+def _spread(peak: Maximum) -> tuple[float, float] | None:
     if peak.interval is None or not peak.max_von_mises:
         return None
     low, high = peak.interval

@@ -7,25 +7,27 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from assess.fatigue.assess import FatigueMaterial, assess
-from assess.fatigue.proportional import BY_SIDE
+from assess.fatigue.proportional import SIGNED_SHEAR_RULE
 from assess.fatigue.records import PointFatigue, PointHistory
-from assess.strength.margin import RATIO, Margin, PinMargin, not_made
-from fea.core.peak import decides
+from assess.strength.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
+from fea.core.peak import meets_limit
 from fea.support.lugs.lug import Lug
 from pinbase.errors import ArgumentError
 from pinstress.analysis.plan import Plan
-from pinstress.analysis.stored import Solved
+from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.fatigue import fatigue_material, spectrum
 from pinstress.study.schema.fatigue import FatigueTable
-from reports.data.headline import FATIGUE
+from reports.data.headline import FATIGUE_LIFE
 from reports.data.results import Fatigue
 
-FACTORS = (
+FACTORS_NOT_APPLIED_NOTE = (
     "Factors for surface, size, temperature, corrosion and surface treatment are not applied: the "
     "S-N data must include them."
 )
-ZERO = "Every case begins and ends at zero load, and so does every motion."
-SUPPORT = "Support by the stress gradient and the size of the highly stressed surface is left out."
+ZERO_LOAD_NOTE = "Every case begins and ends at zero load, and so does every motion."
+GRADIENT_SUPPORT_NOTE = (
+    "Support by the stress gradient and the size of the highly stressed surface is left out."
+)
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class _Open:
     needs: str
 
 
-def fatigue_of(plan: Plan, found: list[Solved]) -> tuple[Fatigue | None, list[PinMargin]]:
+def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, list[PinMargin]]:
     """Of all critical points, the worst first, and the margins; None and none without a spectrum.
 
     Whatever fails here fails for a pin, whose fatigue is then not decided: other results stay.
@@ -90,20 +92,20 @@ def _margins(found: Fatigue, needs: dict[str, str]) -> Iterator[PinMargin]:
             continue
         allowed = 1.0 / found.life
         margin = Margin(
-            FATIGUE,
+            FATIGUE_LIFE,
             point.method,
             "limit",
             point.damage,
             allowed,
             1.0,
-            RATIO,
+            RATIO_DIMENSION,
             at=f"point {point.point}",
             basis=f"damage per {found.unit}",
         )
         yield PinMargin(pin, "", margin)
     for pin, what in needs.items():
-        none = not_made(FATIGUE, found.method, "limit", 1.0, what)
-        yield PinMargin(pin, "", replace(none, dimension=RATIO))
+        none = skipped(FATIGUE_LIFE, found.method, "limit", 1.0, what)
+        yield PinMargin(pin, "", replace(none, dimension=RATIO_DIMENSION))
 
 
 def _material(plan: Plan, pin: str) -> FatigueMaterial:
@@ -145,7 +147,7 @@ def _points(
     return points, failed
 
 
-def _missing(plan: Plan, found: list[Solved], pin: str, table: FatigueTable) -> _Open | None:
+def _missing(plan: Plan, found: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
     """What of the spectrum no stress of the pin is known of."""
     sequences = plan.study.table.sequence
     cases: dict[str, None] = {}
@@ -181,7 +183,7 @@ def _named(cases: list[str], verb: str = "was") -> str:
 
 
 def _left_out(
-    plan: Plan, found: list[Solved], table: FatigueTable, points: list[PointFatigue]
+    plan: Plan, found: list[PinOutcome], table: FatigueTable, points: list[PointFatigue]
 ) -> tuple[str, ...]:
     elastic = {p.pin for p in points if p.method != "fkm-p-ram"}
     singular = dict.fromkeys(p.pin for made in found for p in made.peaks if p.verdict == "singular")
@@ -189,11 +191,11 @@ def _left_out(
         task.pin.name
         for task, made in zip(plan.tasks, found, strict=True)
         if task.pin.name in elastic
-        and any(decides(p, task.material.yield_strength or inf) is False for p in made.peaks)
+        and any(meets_limit(p, task.material.yield_strength or inf) is False for p in made.peaks)
     ]
     tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
     left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
-    shear = dict.fromkeys(p.pin for p in points if BY_SIDE in p.note)
+    shear = dict.fromkeys(p.pin for p in points if SIGNED_SHEAR_RULE in p.note)
     sentences = [
         ("No fatigue data of the material: pin", _without_data(plan, table)),
         ("Shear that alternates is signed by its direction, as no principal stress is larger than "
@@ -211,4 +213,8 @@ def _left_out(
         ("Cracks may start in singular zones, where stress is not evaluated: pin", singular),
     ]  # fmt: skip
     said = [f"{text} {', '.join(names)}." for text, names in sentences if names]
-    return (*said, ZERO, SUPPORT if table.method == "fkm-p-ram" else FACTORS)
+    return (
+        *said,
+        ZERO_LOAD_NOTE,
+        GRADIENT_SUPPORT_NOTE if table.method == "fkm-p-ram" else FACTORS_NOT_APPLIED_NOTE,
+    )

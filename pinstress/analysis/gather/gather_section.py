@@ -11,10 +11,15 @@ from fea.harmonic.half_section import MeridianPlane
 from geometry.shape.chords import needed
 from reports.data.surface import HalfSection, Mask
 
-STATIONS, ROWS = 200, 33  # at most 2.5 times as many stations, of which few are needed
-NEAR = 1e-6  # of the length: how close to a shoulder, on both sides of it, stress is read
-WITHIN = 7e-3  # of the maximum
-ROUND = 2e-3  # of the radius
+SECTION_STATIONS, SECTION_ROWS = (
+    200,
+    33,
+)  # at most 2.5 times as many stations, of which few are needed
+SHOULDER_OFFSET = (
+    1e-6  # of the length: how close to a shoulder, on both sides of it, stress is read
+)
+SECTION_STRESS_TOLERANCE = 7e-3  # of the maximum
+RADIUS_TOLERANCE = 2e-3  # of the radius
 
 
 def half_section(
@@ -29,14 +34,16 @@ def half_section(
     inner, outer = plane.walls(stations)
     k = int(np.searchsorted(stations, z))
     own = np.clip((r - inner[k]) / (outer[k] - inner[k]), 0.0, 1.0)
-    part = np.union1d(np.sin(np.linspace(0.0, 0.5 * np.pi, ROWS)), [own])
+    part = np.union1d(np.sin(np.linspace(0.0, 0.5 * np.pi, SECTION_ROWS)), [own])
     j = int(np.searchsorted(part, own))
     grid = _grid(stations, inner, outer, part)
     found = plane.von_mises(loads, instant, angle, grid)
     if loads.pressed is None:
         found = np.minimum(found, maximum)
     found[0, k, j] = maximum
-    allowed = np.broadcast_to(np.where(plane.outside(grid), WITHIN * maximum, np.inf), found.shape)
+    allowed = np.broadcast_to(
+        np.where(plane.outside(grid), SECTION_STRESS_TOLERANCE * maximum, np.inf), found.shape
+    )
     walls = np.stack([inner, outer], axis=1)
     rows = _needed(stations, found, allowed, k, walls)
     found, allowed = (np.swapaxes(x[:, rows], 1, 2) for x in (found, allowed))
@@ -49,10 +56,10 @@ def _stations(plane: MeridianPlane) -> Floats:
     """Along z, close together where the mesh is, twice at shoulders."""
     r, z = plane.skin.T
     low, high = float(z.min()), float(z.max())
-    near = NEAR * (high - low)
+    near = SHOULDER_OFFSET * (high - low)
     faces = z[:-1][(np.abs(np.diff(z)) < near) & (np.abs(np.diff(r)) > near)]
-    fine = np.round((z - low) / (high - low) * 2 * STATIONS) / (2 * STATIONS)
-    along = low + (high - low) * np.union1d(fine, np.linspace(0.0, 1.0, STATIONS // 2))
+    fine = np.round((z - low) / (high - low) * 2 * SECTION_STATIONS) / (2 * SECTION_STATIONS)
+    along = low + (high - low) * np.union1d(fine, np.linspace(0.0, 1.0, SECTION_STATIONS // 2))
     clear = np.abs(along[:, None] - faces).min(axis=1) > 2.0 * near
     both = np.concatenate([[low, high], along[clear], faces - near, faces + near])
     return np.unique(np.clip(both, low, high))
@@ -60,9 +67,9 @@ def _stations(plane: MeridianPlane) -> Floats:
 
 def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
     """Points (Z, R, 2), r and z, none of them outside by round-off."""
-    safe = 1.0 - NEAR
+    safe = 1.0 - SHOULDER_OFFSET
     r = inner[:, None] + (outer - inner)[:, None] * (0.5 + safe * (part - 0.5))
-    near = NEAR * (z[-1] - z[0])
+    near = SHOULDER_OFFSET * (z[-1] - z[0])
     within = np.clip(z, z[0] + near, z[-1] - near)
     return np.stack([r, np.broadcast_to(within[:, None], r.shape)], axis=2)
 
@@ -74,6 +81,8 @@ def _needed(
     values, within = (np.moveaxis(x, 1, 0).reshape(len(at), -1) for x in (found, allowed))
     if radii is not None:
         values = np.concatenate([values, radii], axis=1)
-        within = np.concatenate([within, np.full(radii.shape, ROUND * radii.max())], axis=1)
+        within = np.concatenate(
+            [within, np.full(radii.shape, RADIUS_TOLERANCE * radii.max())], axis=1
+        )
     # A pin without any stress allows nothing, and misses nothing.
     return needed(at, values, within + np.finfo(float).tiny, np.arange(len(at)) == own)

@@ -9,11 +9,11 @@ from math import atan2
 import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
-from fea.core.solution import Answer
-from fea.cut.evaluate import CutAnswer
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.core.solution import StressField
+from fea.cut.evaluate import CutField
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.half_section import MeridianPlane
-from fea.solid.evaluate import SolidAnswer
+from fea.solid.evaluate import SolidField
 from fea.solve.solve_pin import Solution
 from fea.solve.surface_fields import (
     amounts,
@@ -26,11 +26,11 @@ from fea.solve.surface_fields import (
 from fea.support.contact.cell_pressure import CellPressure
 from pinbase.arrays import Ints
 from pinstress.analysis.gather.gather_section import half_section
-from pinstress.analysis.gather_fields import shown_at
+from pinstress.analysis.gather_fields import at_samples
 from pinstress.analysis.thinning import fewer_loads, meridian_points
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
-from reports.data.surface import SECTORS, LoadCourse, Mask, Surface, SurfaceCase
+from reports.data.surface import SURFACE_SECTORS, LoadCourse, Mask, Surface, SurfaceCase
 
 
 def surfaces_of(
@@ -51,13 +51,13 @@ def surfaces_of(
     return tuple(surface for surface in found if surface is not None)
 
 
-def _unit_fields(answer: Answer | None) -> object:
+def _unit_fields(answer: StressField | None) -> object:
     """What answers from one mesh share."""
-    if isinstance(answer, SolidAnswer):
+    if isinstance(answer, SolidField):
         return answer.solution.fields
-    if isinstance(answer, CutAnswer):
+    if isinstance(answer, CutField):
         return answer.solution
-    return answer.fields if isinstance(answer, HarmonicAnswer) else None
+    return answer.fields if isinstance(answer, HarmonicField) else None
 
 
 def _surface(
@@ -102,8 +102,8 @@ def _surface(
     )
 
 
-def _plane(answer: Answer) -> MeridianPlane | None:
-    if not isinstance(answer, HarmonicAnswer):
+def _plane(answer: StressField) -> MeridianPlane | None:
+    if not isinstance(answer, HarmonicField):
         return None
     return MeridianPlane(answer.fields, answer.singularities)
 
@@ -112,7 +112,7 @@ def _case(
     case: CaseLoads, task: Task, solution: Solution, plane: MeridianPlane | None
 ) -> SurfaceCase:
     """At the case's samples and the governing instant."""
-    shown, answer = shown_at(solution, case), solution.answer
+    shown, answer = at_samples(solution, case), solution.answer
     assert answer is not None
     maxima = answer.maxima(shown.loads)
     top, at = float(maxima[shown.instant]), largest_at(answer, shown.loads, shown.instant)
@@ -137,12 +137,12 @@ def _unread(
     """Of points (J,) of a meridian, from the angle of a location on."""
     assert solution.answer is not None
     start = 0.0 if at is None else atan2(at[1], at[0])
-    turns = start + 2.0 * np.pi * np.arange(SECTORS) / SECTORS
-    return unread(solution.answer, shown_at(solution, case).loads, points, turns)
+    turns = start + 2.0 * np.pi * np.arange(SURFACE_SECTORS) / SURFACE_SECTORS
+    return unread(solution.answer, at_samples(solution, case).loads, points, turns)
 
 
-def _zones(answer: Answer) -> Floats:
-    found = answer.singularities if isinstance(answer, HarmonicAnswer | CutAnswer) else ()
+def _zones(answer: StressField) -> Floats:
+    found = answer.singularities if isinstance(answer, HarmonicField | CutField) else ()
     return np.array([(p.r, p.z, p.radius) for p in found]).reshape(-1, 3)
 
 

@@ -12,9 +12,9 @@ from pinbase.arrays import Floats
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import DropCase
-from reports.data.drop import PEAKS, DropPeak, DropRecord
+from reports.data.drop import PEAK_QUANTITIES, DropPeak, DropRecord
 
-STROKES = 101  # at which force over stroke is drawn
+STROKE_SAMPLES = 101  # at which force over stroke is drawn
 
 
 def drop_record(study: Study, name: str, loads: CaseLoads) -> DropRecord:
@@ -42,7 +42,7 @@ def drop_record(study: Study, name: str, loads: CaseLoads) -> DropRecord:
         energies={f.name: getattr(h.energies, f.name) for f in fields(h.energies)},
         peaks={
             key: DropPeak(words, peaks[key].value, peaks[key].time, dimension)
-            for key, (words, dimension) in PEAKS.items()
+            for key, (words, dimension) in PEAK_QUANTITIES.items()
         },
         load_factor=landing.load_factor,
         imbalance=float(np.abs(h.energies.imbalance).max()),
@@ -69,8 +69,8 @@ def _over_stroke(landing: Landing) -> tuple[Floats, Floats, Floats]:
     """
     spans = [span for span in landing.spans if span.mode.strut]
     most = landing.peaks["stroke"].value
-    strokes = np.linspace(0.0, most, STROKES)
-    nothing = np.full(STROKES, np.nan)
+    strokes = np.linspace(0.0, most, STROKE_SAMPLES)
+    nothing = np.full(STROKE_SAMPLES, np.nan)
     if not most:
         return strokes, nothing, nothing
     turn = landing.peaks["stroke"].time

@@ -44,7 +44,7 @@ LEG_VECTORS = {  # of loads.LegDynamics, and what they are
 }
 
 
-LEG = {
+LEG_DIMENSIONS = {
     "omega": "rad/s",
     "alpha": "rad/s^2",
     "v": "velocity",
@@ -305,7 +305,7 @@ def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
     return plain.LegTable(
         name,
         times,
-        {key: quantity(key, LEG[kind]) for key, kind in LEG_VECTORS.items()},
+        {key: quantity(key, LEG_DIMENSIONS[kind]) for key, kind in LEG_VECTORS.items()},
         {"beta": beta, **{key: quantity(key, "energy") for key in LEG_SCALARS}},
         axes,
     )

@@ -18,7 +18,9 @@ from reports.data import results as plain
 from reports.format.numbers import engineering
 
 T = TypeVar("T")
-JUMPS = 1e-6  # of the linkage's size: a joint that is so far off where the next case begins
+JUMP_TOLERANCE = (
+    1e-6  # of the linkage's size: a joint that is so far off where the next case begins
+)
 
 
 def _joined(parts: Sequence[Any]) -> Any:
@@ -189,7 +191,7 @@ def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) 
     for one, two in pairwise(order):
         end, begin = (motions[s.case].joint_position for s in (one, two))
         size = float(np.ptp(begin[0], axis=0).max()) or 1.0
-        if np.abs(end[-1] - begin[0]).max() > JUMPS * size:
+        if np.abs(end[-1] - begin[0]).max() > JUMP_TOLERANCE * size:
             found[f"{one.case} and {two.case}"] = None
     return f" The linkage jumps between {'; '.join(found)}." if found else ""
 

@@ -14,23 +14,26 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
-from fea.core.solution import Answer
+from fea.core.solution import StressField
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Asked, Solution
+from fea.solve.solve_pin import Requirement, Solution
 from geometry import GeometryError, Pin
 from pinstress.analysis.remedies.secant import NoSizeError, smallest
 from pinstress.study.model.pins import slenderness
 from pinstress.study.model.tasks import Task
-from reports.data.changes import Change
+from reports.data.changes import Remedy
 
-FIRST = Rung("harmonic")
-ENOUGH = 0.04  # of the factor: what the first mesh is worth
-SHARES, ROUNDS = 17, 3  # of an impulse tried at a time, each time between the last two
+FIRST_RUNG = Rung("harmonic")
+FIRST_MESH_TOLERANCE = 0.04  # of the factor: what the first mesh is worth
+IMPULSE_SHARES, SEARCH_ROUNDS = (
+    17,
+    3,
+)  # of an impulse tried at a time, each time between the last two
 SIZED_BY_COMMAND = "diameters are found by pinstress size"
 
 
 @dataclass(frozen=True)
-class Failing:
+class FailingCase:
     """A case whose factor is too small: its solution, and what part of all loads is permissible, by
     the upper end of its stress where that is a range, and by what lies beneath contact.
     """
@@ -40,7 +43,7 @@ class Failing:
     part: float
 
 
-def change(asked: Asked, task: Task, solutions: tuple[Solution, ...]) -> Change | None:
+def change(asked: Requirement, task: Task, solutions: tuple[Solution, ...]) -> Remedy | None:
     """What to change of a pin, for the worst of its cases; None where none is below the required
     factor (below yield where none is required) with its error, nor beneath contact.
     """
@@ -53,12 +56,12 @@ def change(asked: Asked, task: Task, solutions: tuple[Solution, ...]) -> Change 
     if max(own, _beneath(worst)) <= strength / required:
         return None
     high = max(peak.upper_end, _beneath(worst))
-    failing = Failing(task, worst, strength / required / high)
+    failing = FailingCase(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
     problem = _problem(asked, failing)
     times, why = _diameters(problem, failing, required)
     share = None if impulse is None else _share(failing, impulse.loads)
-    return Change(
+    return Remedy(
         pin=peak.pin,
         case=peak.case,
         required=required,
@@ -79,7 +82,7 @@ def _beneath(solution: Solution) -> float:
     return contact.upper_end if contact else 0.0
 
 
-def _share(failing: Failing, loads: PinLoads) -> float | None:
+def _share(failing: FailingCase, loads: PinLoads) -> float | None:
     """The part of an impulse's force that is permissible with the other loads. loads: without and
     with the impulse.
     """
@@ -89,24 +92,24 @@ def _share(failing: Failing, loads: PinLoads) -> float | None:
     if failing.task.lugs:
         return failing.part
     low, high = 0.0, 1.0
-    for _ in range(ROUNDS):
-        shares = np.linspace(low, high, SHARES)
+    for _ in range(SEARCH_ROUNDS):
+        shares = np.linspace(low, high, IMPULSE_SHARES)
         bad = _maxima(answer, loads, shares) > failing.part * whole
-        first = int(bad.argmax()) if bad.any() else SHARES - 1
+        first = int(bad.argmax()) if bad.any() else IMPULSE_SHARES - 1
         if not first:
             return None
         low, high = float(shares[first - 1]), float(shares[first])
     return low
 
 
-def _maxima(answer: Answer, loads: PinLoads, shares: Floats) -> Floats:
+def _maxima(answer: StressField, loads: PinLoads, shares: Floats) -> Floats:
     part = shares[:, None, None]
     forces, moments = (x[0] + part * (x[1] - x[0]) for x in (loads.forces, loads.moments))
     body = np.broadcast_to(loads.body[0], (len(shares), 3))
     return answer.maxima(replace(loads, forces=forces, moments=moments, body=body))
 
 
-def _problem(asked: Asked, failing: Failing) -> Problem | None:
+def _problem(asked: Requirement, failing: FailingCase) -> Problem | None:
     """The governing instant on one mesh; None where contact or a solid would take too long."""
     task, loads = failing.task, failing.solution.peak.governing
     if task.lugs or not isinstance(task.pin, Pin) or loads is None:
@@ -115,7 +118,7 @@ def _problem(asked: Asked, failing: Failing) -> Problem | None:
 
 
 def _diameters(
-    problem: Problem | None, failing: Failing, required: float
+    problem: Problem | None, failing: FailingCase, required: float
 ) -> tuple[float | None, str]:
     """By how much all diameters must be larger, or why no pin does that is longer than wide."""
     pin = failing.task.pin
@@ -136,13 +139,13 @@ def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> flo
     most = slenderness(pin)
     if most <= 1.0:
         raise NoSizeError("it is wider than long already")
-    before = result_on(problem, FIRST).maximum
+    before = result_on(problem, FIRST_RUNG).maximum
 
     def factor_at(scale: float) -> float:
         if scale == 1.0:
             return factor
         wide = replace(problem, pin=widened(pin, min(scale, most)))
-        found = factor * before / result_on(wide, FIRST).maximum
+        found = factor * before / result_on(wide, FIRST_RUNG).maximum
         if scale > most and found < required:
             raise NoSizeError(
                 f"a pin as wide as long, {most:.2g} times its diameters, has a factor of only "
@@ -150,7 +153,7 @@ def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> flo
             )
         return found
 
-    return min(smallest(factor_at, required, close=ENOUGH).scale, most)
+    return min(smallest(factor_at, required, close=FIRST_MESH_TOLERANCE).scale, most)
 
 
 def widened(pin: Pin, scale: float) -> Pin:

@@ -12,9 +12,9 @@ from pinstress.study.model.pins import by_corners
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import PinTable
 
-Change = Callable[[PinTable, float], PinTable]
-LINES = "meridian", "bore_meridian"
-Z, R, RADIUS = range(3)  # of a corner
+TableChange = Callable[[PinTable, float], PinTable]
+MERIDIAN_KEYS = "meridian", "bore_meridian"
+Z_INDEX, R_INDEX, RADIUS_INDEX = range(3)  # of a corner
 
 
 def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
@@ -32,13 +32,13 @@ def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
         yield Dimension(key, value, partial(_changed, pin.name, table, changes))
 
 
-def _changed(name: str, table: PinTable, changes: list[Change], value: float) -> Pin:
+def _changed(name: str, table: PinTable, changes: list[TableChange], value: float) -> Pin:
     for change in changes:
         table = change(table, value)
     return by_corners(name, table)
 
 
-def _corner(line: str, corner: int, at: int) -> Change:
+def _corner(line: str, corner: int, at: int) -> TableChange:
     def change(table: PinTable, value: float) -> PinTable:
         corners = list(getattr(table, line))
         numbers = corners[corner]
@@ -48,7 +48,7 @@ def _corner(line: str, corner: int, at: int) -> Change:
     return change
 
 
-def _band(name: str, end: int) -> Change:
+def _band(name: str, end: int) -> TableChange:
     def change(table: PinTable, value: float) -> PinTable:
         band = table.band[name]
         first, last = band.z or (0.0, 0.0)
@@ -58,12 +58,12 @@ def _band(name: str, end: int) -> Change:
     return change
 
 
-def _along(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
+def _along(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
     """z: of all corners and bands at one z together."""
-    found: list[tuple[float, str, Change]] = []
-    for line in LINES:
+    found: list[tuple[float, str, TableChange]] = []
+    for line in MERIDIAN_KEYS:
         for k, corner in enumerate(getattr(table, line) or ()):
-            found.append((corner[Z], f"{line}[{k + 1}][1]", _corner(line, k, Z)))
+            found.append((corner[Z_INDEX], f"{line}[{k + 1}][1]", _corner(line, k, Z_INDEX)))
     for name, band in table.band.items():
         for end, z in enumerate(band.z or ()):
             found.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
@@ -73,19 +73,19 @@ def _along(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
             yield some[0][1], z, [change for _, __, change in some]
 
 
-def _across(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
+def _across(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
     """r: of neighbours where it is equal together."""
-    for line in LINES:
+    for line in MERIDIAN_KEYS:
         corners = enumerate(getattr(table, line) or ())
-        for r, run in groupby(corners, lambda one: one[1][R]):
+        for r, run in groupby(corners, lambda one: one[1][R_INDEX]):
             some = [k for k, _ in run]
             where = f"{some[0] + 1}" if not some[1:] else f"{some[0] + 1}-{some[-1] + 1}"
             if r:
-                yield f"{line}[{where}][2]", r, [_corner(line, k, R) for k in some]
+                yield f"{line}[{where}][2]", r, [_corner(line, k, R_INDEX) for k in some]
 
 
-def _radii(table: PinTable) -> Iterator[tuple[str, float, list[Change]]]:
-    for line in LINES:
+def _radii(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
+    for line in MERIDIAN_KEYS:
         for k, corner in enumerate(getattr(table, line) or ()):
-            if len(corner) > RADIUS and corner[RADIUS]:
-                yield f"{line}[{k + 1}][3]", corner[RADIUS], [_corner(line, k, RADIUS)]
+            if len(corner) > RADIUS_INDEX and corner[RADIUS_INDEX]:
+                yield f"{line}[{k + 1}][3]", corner[RADIUS_INDEX], [_corner(line, k, RADIUS_INDEX)]

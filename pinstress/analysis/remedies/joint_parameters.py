@@ -13,13 +13,15 @@ from assess.derivatives.in_lugs import Joint, JointParameter
 from geometry import Pin
 from geometry.shape.dimensions import Dimension
 from pinstress.analysis.remedies.dimensions import dimensions_of
-from pinstress.study.model.lugs import lugs_about
+from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import LugTable
 
-LOOSE = 1e-3  # of the pin's radius: what steps of a clearance are parts of, as it may be none
+CLEARANCE_SCALE = (
+    1e-3  # of the pin's radius: what steps of a clearance are parts of, as it may be none
+)
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,7 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
         given = table.lug.get(name)
         bushing = given and given.bushing
         for key, value, scale in (
-            ("clearance", lug.clearance, LOOSE * pin.band(name).radius),
+            ("clearance", lug.clearance, CLEARANCE_SCALE * pin.band(name).radius),
             ("outer_diameter", given and given.outer_diameter, None),
             ("edge_radius", lug.edge_radius, None),
             ("bushing.thickness", bushing and bushing.thickness, None),
@@ -70,7 +72,7 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
 
 def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:
     pin = dimension.changed(value)
-    return pin, task.material, lugs_about(study, pin)
+    return pin, task.material, known_lugs(study, pin)
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
@@ -88,7 +90,7 @@ def _made_anew(study: Study, task: Task) -> Joint:
     pin = task.pin
     assert isinstance(pin, Pin)
     made_of = material(study, study.table.pin[pin.name].material)
-    return pin, made_of, lugs_about(study, pin)
+    return pin, made_of, known_lugs(study, pin)
 
 
 def _changed(study: Study, path: tuple[str, ...], value: Any) -> Study:

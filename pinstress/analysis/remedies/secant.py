@@ -6,14 +6,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-BENDING = 3.0  # the factor grows with the cube of the diameter in bending, its square in tension
-GENTLE, STEEP = 0.5, 6.0  # slopes that are believed
-APART = 1.2  # ratio of scales from which a slope says that larger pins hardly help
-LEAP = 3.0  # from one trial to the next at most
-CLOSE = 0.01  # how much more than the required factor is close enough
-NARROW = 0.001  # a bracket of scales that is not looked into
-LEAST, MOST = 0.02, 50.0
-TRIALS = 14
+BENDING_EXPONENT = (
+    3.0  # the factor grows with the cube of the diameter in bending, its square in tension
+)
+MIN_SLOPE, MAX_SLOPE = 0.5, 6.0  # slopes that are believed
+MIN_SCALE_RATIO = 1.2  # ratio of scales from which a slope says that larger pins hardly help
+MAX_SCALE_STEP = 3.0  # from one trial to the next at most
+FACTOR_TOLERANCE = 0.01  # how much more than the required factor is close enough
+BRACKET_TOLERANCE = 0.001  # a bracket of scales that is not looked into
+MIN_SCALE, MAX_SCALE = 0.02, 50.0
+MAX_TRIALS = 14
 
 
 class NoSizeError(Exception):
@@ -29,7 +31,10 @@ class Trial:
 
 
 def smallest(
-    factor_at: Callable[[float], float], required: float, start: float = 1.0, close: float = CLOSE
+    factor_at: Callable[[float], float],
+    required: float,
+    start: float = 1.0,
+    close: float = FACTOR_TOLERANCE,
 ) -> Trial:
     """The smallest scale whose factor is at least `required`, and at most `close` more of it, from
     `start` on.
@@ -42,8 +47,8 @@ def smallest(
     below: Trial | None = None
     above: Trial | None = None
     before: Trial | None = None
-    scale, slope = start, BENDING
-    for _ in range(TRIALS):
+    scale, slope = start, BENDING_EXPONENT
+    for _ in range(MAX_TRIALS):
         now = Trial(scale, factor_at(scale))
         if now.factor >= required:
             above = now if above is None or now.scale < above.scale else above
@@ -51,27 +56,27 @@ def smallest(
                 return now
         else:
             below = now if below is None or now.scale > below.scale else below
-        if above and below and above.scale <= below.scale * (1.0 + NARROW):
+        if above and below and above.scale <= below.scale * (1.0 + BRACKET_TOLERANCE):
             return above
         if before is not None and before.scale != now.scale:
             rise = math.log(now.factor / before.factor) / math.log(now.scale / before.scale)
-            if above is None and rise < GENTLE and now.scale > APART * before.scale:
+            if above is None and rise < MIN_SLOPE and now.scale > MIN_SCALE_RATIO * before.scale:
                 raise NoSizeError(
                     f"with {now.scale:.3g} times its diameters its factor is {now.factor:.4g} and "
                     "hardly grows with them: its bands must be longer, its material stronger or "
                     "its loads smaller"
                 )
-            slope = min(max(rise, GENTLE), STEEP)
+            slope = min(max(rise, MIN_SLOPE), MAX_SLOPE)
         before = now
         # Aimed a little high, for only what is not below will do.
         aim = required * (1.0 + 0.4 * close)
-        scale = min(now.scale * (aim / now.factor) ** (1.0 / slope), LEAP * now.scale)
+        scale = min(now.scale * (aim / now.factor) ** (1.0 / slope), MAX_SCALE_STEP * now.scale)
         if above and below and not below.scale < scale < above.scale:
             scale = math.sqrt(above.scale * below.scale)
-        if not LEAST < scale < MOST:
+        if not MIN_SCALE < scale < MAX_SCALE:
             raise NoSizeError(
                 f"even with {now.scale:.3g} times its diameters its factor is {now.factor:.4g}"
             )
     if above is not None:
         return above
-    raise NoSizeError(f"the factor is not reached in {TRIALS} trials")
+    raise NoSizeError(f"the factor is not reached in {MAX_TRIALS} trials")

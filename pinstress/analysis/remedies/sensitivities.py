@@ -16,15 +16,15 @@ from assess.derivatives.derivatives import derivatives
 from assess.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
 from assess.derivatives.in_section import section_derivatives
 from assess.derivatives.records import Derivatives, SolvedCase
-from fea.beam.model import BeamAnswer
+from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
-from fea.harmonic.evaluate import HarmonicAnswer, SectionProblem, harmonic_solution
-from fea.solve.refine import STEP, Solution, singularities_of
-from fea.solve.requirement import Asked
+from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.solve.refine import MESH_RATIO, Solution, singularities_of
+from fea.solve.requirement import Requirement
 from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import Pin
 from geometry.mesh.gmsh_session import MeshError
@@ -36,21 +36,21 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 
-MOST = 0.1  # of a dimension that its step is at most
-SMALL = 0.01  # step of any other parameter, of its value; of a force, of the largest
-POISSON = 0.01
-LOOSER = 0.01  # of the step of a dimension: that of a clearance
-IN_LUGS = (
+MAX_STEP_FRACTION = 0.1  # of a dimension that its step is at most
+STEP_FRACTION = 0.01  # step of any other parameter, of its value; of a force, of the largest
+POISSON_RATIO_STEP = 0.01
+CLEARANCE_STEP = 0.01  # of the step of a dimension: that of a clearance
+IN_LUGS_NOTE = (
     "in contact with its lugs, whose derivatives take about as long as the solution: "
     "--sensitivities gives them"
 )
-NO_CONTACT = 'no derivatives of a pin on foundations: analysis.joints = "contact" has them'
-NOT_REVOLVED = "no derivatives, only of bodies of revolution: solve the changed study"
+NO_CONTACT_NOTE = 'no derivatives of a pin on foundations: analysis.joints = "contact" has them'
+NOT_AXISYMMETRIC_NOTE = "no derivatives, only of bodies of revolution: solve the changed study"
 
 
 def sensitivities(
     study: Study,
-    asked: Asked,
+    asked: Requirement,
     task: Task,
     solutions: Iterable[Solution | LugSolution],
     step: float,
@@ -107,7 +107,7 @@ def differentiated_in_lugs(
     peak, answer = solution.peak, solution.answer
     if model is None or rings is None or peak.governing is None or not peak.max_von_mises:
         return None
-    if not isinstance(answer, HarmonicAnswer):
+    if not isinstance(answer, HarmonicField):
         return None
     solved = SolvedCase(
         rings,
@@ -125,13 +125,13 @@ def differentiated_in_lugs(
     )
 
 
-def governing_place(peak: Peak) -> Place:
+def governing_place(peak: Maximum) -> Place:
     """Of which place the maximum is."""
     return "surface" if peak.places is None else peak.places.governs
 
 
 def differentiated(
-    asked: Asked, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
+    asked: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> Derivatives | None:
     """Of a solution's maximum; None where it has none. Raises: MeshError, SolveError."""
     peak, pin, answer = solution.peak, task.pin, solution.answer
@@ -140,13 +140,13 @@ def differentiated(
     clamps = tuple(pin.surface(name) for name in task.clamps)
     error, history = (peak.own_error or 0.0) / peak.max_von_mises, None
     by_section = governing_place(peak) == "section"
-    if isinstance(answer, HarmonicAnswer):
+    if isinstance(answer, HarmonicField):
         section, zones, history = answer.solution, answer.singularities, solution.loads
-    elif isinstance(answer, BeamAnswer):
+    elif isinstance(answer, BeamField):
         case = (peak.governing,)
         zones = singularities_of(pin, task.material, clamps, case, asked.distance)
         section = harmonic_solution(
-            SectionProblem(pin, task.material, clamps, case, zones), 0, STEP
+            SectionProblem(pin, task.material, clamps, case, zones), 0, MESH_RATIO
         )
     else:
         return None
@@ -173,14 +173,18 @@ def scaled(found: Derivatives, maximum: float) -> Derivatives:
 
 
 def _of_case(
-    asked: Asked, task: Task, solution: Solution, dimensions: tuple[Dimension, ...], step: float
+    asked: Requirement,
+    task: Task,
+    solution: Solution,
+    dimensions: tuple[Dimension, ...],
+    step: float,
 ) -> PinSensitivities:
     peak = solution.peak
     maximum = peak.max_von_mises or 0.0
     factor = peak.safety_factor(task.material.yield_strength)
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
     if not isinstance(task.pin, Pin):
-        return replace(out, note=NOT_REVOLVED)
+        return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:
         found = differentiated(asked, task, solution, dimensions)
     except (MeshError, SolveError) as error:
@@ -214,11 +218,11 @@ def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) 
     factor, links = peak.safety_factor(strength), peak.governing
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
     if not isinstance(task.pin, Pin):
-        return replace(out, note=NOT_REVOLVED)
+        return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     if joined.model is None or links is None:
-        return replace(out, note=NO_CONTACT)
+        return replace(out, note=NO_CONTACT_NOTE)
     if step is None:
-        return replace(out, note=IN_LUGS)
+        return replace(out, note=IN_LUGS_NOTE)
     try:
         parameters = [x.of_joint for x in joint_parameters(study, task)]
         found = differentiated_in_lugs(joined, task, parameters)
@@ -232,7 +236,7 @@ def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) 
         *_of_joint(joint_parameters(study, task), found.by_parameter, maximum, step),
     ]
     if strength is not None:
-        key, more = f"material.{task.material.name}.yield_strength", SMALL * strength
+        key, more = f"material.{task.material.name}.yield_strength", STEP_FRACTION * strength
         rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
     return _with_rows(replace(out, changing=found.changing), found, rows)
 
@@ -245,18 +249,18 @@ def _of_joint(
         if one.key not in by:
             continue
         if one.key.endswith(".clearance"):
-            more = LOOSER * step
+            more = CLEARANCE_STEP * step
         elif kind == "length":
             more = _little(step, one.value)
         else:
-            more = POISSON if kind == "1" else SMALL * one.value
+            more = POISSON_RATIO_STEP if kind == "1" else STEP_FRACTION * one.value
         stress = by[one.key]
         yield _Parameter(one.key, kind, one.value, more, stress, -stress / maximum)
 
 
 def _little(step: float, value: float) -> float:
     """A step (m) of a dimension, a power of ten smaller where that would be no small part of it."""
-    while step > MOST * value:
+    while step > MAX_STEP_FRACTION * value:
         step /= 10.0
     return step
 
@@ -319,7 +323,7 @@ def _of_forces(
 ) -> Iterator[_Parameter]:
     for (surface, axis), stress in by.items():
         value = float(given[surfaces.index(surface), "xyz".index(axis)])
-        step = SMALL * float(np.abs(given).max())
+        step = STEP_FRACTION * float(np.abs(given).max())
         if step:
             relative = -stress / maximum
             yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
@@ -329,13 +333,13 @@ def _of_material(found: Derivatives, material: Material) -> Iterator[_Parameter]
     rho, strength = material.density, material.yield_strength
     for name, kind, value, step, stress in (
         ("youngs_modulus", "stress", material.youngs_modulus, None, found.youngs_modulus),
-        ("poisson_ratio", "1", material.poisson_ratio, POISSON, found.poisson_ratio),
+        ("poisson_ratio", "1", material.poisson_ratio, POISSON_RATIO_STEP, found.poisson_ratio),
         ("density", "density", rho, None, found.density),
         ("yield_strength", "stress", strength, None, 0.0),
     ):
         if value is not None:
             relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / found.maximum
-            more = SMALL * value if step is None else step
+            more = STEP_FRACTION * value if step is None else step
             yield _Parameter(
                 f"material.{material.name}.{name}", kind, value, more, stress, relative
             )

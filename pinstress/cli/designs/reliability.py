@@ -9,7 +9,7 @@ import click
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.run import SOLVERS, console, progress_bar
+from pinstress.cli.run import RUN_MODULES, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
@@ -20,8 +20,8 @@ from reports.page.reliability import write_reliability_page
 from reports.tables.reliability import write_reliability
 from reports.text.reliability import name, print_reliability
 
-MARK = "reliability.json"
-PAGE = "reliability.html"
+RELIABILITY_JSON = "reliability.json"
+RELIABILITY_PAGE = "reliability.html"
 
 
 def reliability_and_write(
@@ -36,22 +36,22 @@ def reliability_and_write(
     whether its probability of failure is within the allowed one, or where that is so only without
     what lies beneath contact. Raises: InputError.
     """
-    require_replaceable(directory, MARK)
+    require_replaceable(directory, RELIABILITY_JSON)
     most = processes(jobs)
     study = for_values(study)
     random_numbers(study)  # mistakes there should not wait for the stresses
-    with replacing(directory, MARK) as staging:
+    with replacing(directory, RELIABILITY_JSON) as staging:
         with progress_bar(alone=most == 1, quiet=quiet) as progress:
-            preload(*SOLVERS)
+            preload(*RUN_MODULES)
             progress("the study as it is", 0.0)
             nominal = run(study, pins=pins, cases=cases, jobs=most)
             found = assess(study, nominal, most, progress, pins, cases)
         write_reliability(found, staging)
-        write_reliability_page(found, staging / PAGE)
+        write_reliability_page(found, staging / RELIABILITY_PAGE)
     with unneeded(directory):
         print_reliability(found, console())
     if not quiet:
-        click.echo(f"Report: {directory / PAGE}", err=True)
+        click.echo(f"Report: {directory / RELIABILITY_PAGE}", err=True)
     return _status(found)
 
 

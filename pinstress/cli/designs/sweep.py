@@ -23,7 +23,14 @@ from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.explore.sweep.design_columns import designs_of
 from pinstress.explore.sweep.page import render_designs
-from pinstress.explore.sweep.parts import FOLDER, STATED, TABLE, Parts, identity, is_ours
+from pinstress.explore.sweep.parts import (
+    DESIGNS_FILE,
+    IDENTITY_FILE,
+    PARTS_FOLDER,
+    BatchFolder,
+    identity,
+    is_ours,
+)
 from pinstress.explore.sweep.summary import summary
 from pinstress.explore.sweep.sweep import Report, planned, solved
 from pinstress.explore.sweep.table import read_table, table_of, write_table
@@ -34,8 +41,14 @@ from reports.folder.inside import write_inside
 if TYPE_CHECKING:
     import pyarrow as pa
 
-PAGE = "designs.html"
-FILES = TABLE, PAGE, STATED, f"{TABLE}.partial", f"{PAGE}.partial"
+DESIGNS_PAGE = "designs.html"
+SWEEP_FILES = (
+    DESIGNS_FILE,
+    DESIGNS_PAGE,
+    IDENTITY_FILE,
+    f"{DESIGNS_FILE}.partial",
+    f"{DESIGNS_PAGE}.partial",
+)
 
 
 @dataclass(frozen=True)
@@ -59,13 +72,13 @@ def sweep_and_write(
 
     Raises: InputError.
     """
-    parts = Parts(directory, identity(study, pins, cases))
+    parts = BatchFolder(directory, identity(study, pins, cases))
     _require_usable(directory, parts, way.resume)
     sweep = planned(study, pins, cases)
     if way.resume and parts.finished:
         if not way.quiet:
             click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
-        return _told(directory, read_table(directory / TABLE), way)
+        return _told(directory, read_table(directory / DESIGNS_FILE), way)
     with _claimed(directory, parts, way.resume):
         before = parts.count_before if way.resume else None
         if before is not None:
@@ -97,26 +110,26 @@ def _told(directory: Path, table: pa.Table, way: Way) -> int:
     with unneeded(directory):
         summary(table, console())
     if not way.quiet:
-        click.echo(f"Table: {directory / TABLE}", err=True)
-        click.echo(f"Page: {directory / PAGE}", err=True)
+        click.echo(f"Table: {directory / DESIGNS_FILE}", err=True)
+        click.echo(f"Page: {directory / DESIGNS_PAGE}", err=True)
     if way.opens:
-        open_page(directory / PAGE)
+        open_page(directory / DESIGNS_PAGE)
     verdicts = set(table["verdict"].unique().to_pylist())
     return int(verdicts == {"failed"})
 
 
 def _write(directory: Path, table: pa.Table) -> None:
     try:
-        manifest.add(directory, list(FILES))
-        write_table(table, directory / TABLE)
-        write_inside(directory, PAGE, render_designs(designs_of(table)).encode())
+        manifest.add(directory, list(SWEEP_FILES))
+        write_table(table, directory / DESIGNS_FILE)
+        write_inside(directory, DESIGNS_PAGE, render_designs(designs_of(table)).encode())
     except OSError as error:  # a full disk
         raise InputError(
             f"--out: cannot write to {directory} ({error.strerror})", code="cannot-write"
         ) from error
 
 
-def _require_usable(directory: Path, parts: Parts, resume: bool) -> None:
+def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
     """Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
     not end and is not to be resumed, or with none to resume.
     """
@@ -127,21 +140,21 @@ def _require_usable(directory: Path, parts: Parts, resume: bool) -> None:
             code="not-ours",
         )
     if directory.exists() and (not directory.is_dir() or manifest.entries(directory)):
-        begun = directory.is_dir() and (parts.folder / STATED).is_file()
-        mark = f"{FOLDER}/{STATED}" if begun else TABLE
+        begun = directory.is_dir() and (parts.folder / IDENTITY_FILE).is_file()
+        mark = f"{PARTS_FOLDER}/{IDENTITY_FILE}" if begun else DESIGNS_FILE
         require_replaceable(directory, mark, is_ours)
     if resume:
         parts.require_same()
     elif parts.there():
         raise InputError(
             f"--out: {directory} has a sweep that did not end: go on with --resume, or delete its "
-            f"folder {FOLDER} to begin anew",
+            f"folder {PARTS_FOLDER} to begin anew",
             code="unfinished-sweep",
         )
 
 
 @contextmanager
-def _claimed(directory: Path, parts: Parts, resume: bool) -> Iterator[None]:
+def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None]:
     """The folder made, listed as ours, and locked meanwhile. Where no batch was solved, nothing is
     left of a sweep that was begun.
     """
@@ -173,15 +186,15 @@ def _claimed(directory: Path, parts: Parts, resume: bool) -> Iterator[None]:
             release()
 
 
-def _remove(directory: Path, parts: Parts, existed: bool) -> None:
+def _remove(directory: Path, parts: BatchFolder, existed: bool) -> None:
     with suppress(OSError):
         parts.remove()
-        if not existed and manifest.entries(directory) == {manifest.NAME}:
-            (directory / manifest.NAME).unlink()
+        if not existed and manifest.entries(directory) == {manifest.MANIFEST_FILE}:
+            (directory / manifest.MANIFEST_FILE).unlink()
             directory.rmdir()
 
 
-def _kept(parts: Parts) -> str:
+def _kept(parts: BatchFolder) -> str:
     """How to go on; the command itself may have options that this would have to repeat."""
     count = parts.count
     many = "1 batch is" if count == 1 else f"{count} batches are"

@@ -12,13 +12,13 @@ import click
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
-from pinstress.cli.sizing.size import ANOTHER, close, target_of, why_missed
+from pinstress.cli.sizing.size import OTHER_FILE_REMEDY, close, target_of, why_missed
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
 from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Aim, Lightest
-from pinstress.explore.size.pin_shape import KINDS, Proportions
+from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
+from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions
 from pinstress.explore.size.scaled_study import moved
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
@@ -28,7 +28,7 @@ from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
 from reports.text.least_weight import ChangedDimension, LightRow, print_light
 
-EACH = 4  # of what binds, that is named
+MAX_NAMED_BINDING = 4  # of what binds, that is named
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,13 @@ class Wishes:
         return [f"--{name}" for name, value in vars(self).items() if value is not None]
 
 
-def require_aim(study: Study, wishes: Wishes, required: float, step: float | None) -> Aim:
+def require_aim(study: Study, wishes: Wishes, required: float, step: float | None) -> WeightGoal:
     """Raises: InputError for wishes that contradict each other or cannot be."""
-    vary = tuple(dict.fromkeys(wishes.vary or KINDS))
-    unknown = [kind for kind in vary if kind not in KINDS]
+    vary = tuple(dict.fromkeys(wishes.vary or DIMENSION_KINDS))
+    unknown = [kind for kind in vary if kind not in DIMENSION_KINDS]
     if unknown:
         raise InputError(
-            f"--vary: {unknown[0]!r} is none of {', '.join(KINDS)}", code="unknown-kind"
+            f"--vary: {unknown[0]!r} is none of {', '.join(DIMENSION_KINDS)}", code="unknown-kind"
         )
     if step is not None and "diameters" not in vary:
         raise InputError(
@@ -66,12 +66,12 @@ def require_aim(study: Study, wishes: Wishes, required: float, step: float | Non
         usual.wall if wishes.wall is None else wishes.wall,
         usual.shoulder if wishes.shoulder is None else wishes.shoulder,
     )
-    return Aim(required, vary, limits, step)
+    return WeightGoal(required, vary, limits, step)
 
 
 def lighten_and_write(
     study: Study,
-    aim: Aim,
+    aim: WeightGoal,
     out: Path | None,
     pins: list[str] | None,
     quiet: bool = False,
@@ -95,7 +95,7 @@ def lighten_and_write(
     rows = [_row(study, found, each, aim, heavy) for each in found.pins]
     if changed := found.study.text != study.text and any(x.values or x.scale for x in found.pins):
         text = moved(found.study.text, study.path.parent, target.parent)
-        write_new(target, text.encode(), ANOTHER)
+        write_new(target, text.encode(), OTHER_FILE_REMEDY)
     system = study.system
     unit = system.force if heavy else f"{system.length}³"
     with unneeded(target):
@@ -123,7 +123,7 @@ def _density(study: Study, name: str) -> float | None:
     return study.table.material[study.table.pin[name].material].density
 
 
-def _row(study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool) -> LightRow:
+def _row(study: Study, found: LightStudy, each: Lightest, aim: WeightGoal, heavy: bool) -> LightRow:
     mine = [p for p in found.results.pins if p.pin == each.pin and p.safety_factor is not None]
     worst = min(mine, key=lambda p: low_factor(p) or 0.0) if mine else None
     before, after = (pin_of(x, each.pin).volume for x in (study, found.study))
@@ -140,7 +140,7 @@ def _row(study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool)
         at=min((x for (pin, _), x in found.at.items() if pin == each.pin), default=None),
         residual=None if each.optimality is None else each.optimality.residual,
         dimensions=tuple(_dimensions(study, found.study, each)),
-        binding=each.binding[:EACH],
+        binding=each.binding[:MAX_NAMED_BINDING],
         bands=tuple(_bands(study, found.study, each.pin)) if written else (),
         solved=each.solved,
         why=(why_missed(found.results, each.pin) or _unlikely(found, each.pin, aim))
@@ -150,7 +150,7 @@ def _row(study: Study, found: LightStudy, each: Lightest, aim: Aim, heavy: bool)
     )
 
 
-def _unlikely(found: LightStudy, pin: str, aim: Aim) -> str:
+def _unlikely(found: LightStudy, pin: str, aim: WeightGoal) -> str:
     """Why the factor is not reached at a probability; empty if it is, or none is requested."""
     mine = {case: x for (name, case), x in found.at.items() if name == pin}
     unknown = [case for case, x in mine.items() if not math.isfinite(x)]

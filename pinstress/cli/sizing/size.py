@@ -9,23 +9,23 @@ from pathlib import Path
 
 import click
 
-from pinbase.processes.pool import Died, Job, Progress, preload, processes, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload, processes
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.remedies.secant import CLOSE
+from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import run
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.run import SOLVERS, console, progress_bar
+from pinstress.cli.run import RUN_MODULES, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.counted import beneath_factor
 from pinstress.explore.size.scaled_study import moved, resized_study
-from pinstress.explore.size.size_pin import Sized, Wish, size_pin
+from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import slenderness, weight
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, factor_ends, outcome
-from reports.data.dependence import BENEATH
+from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import worst_checks
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering, short
@@ -33,13 +33,13 @@ from reports.format.ranges import factor_range
 from reports.format.words import over_words
 from reports.text.sizes import SizeRow, print_sizes
 
-PASSES = 4
-ANOTHER = "choose another file with --out"
+MAX_SIZING_PASSES = 4
+OTHER_FILE_REMEDY = "choose another file with --out"
 
 
 def size_and_write(
     study: Study,
-    wish: Wish,
+    wish: SizingGoal,
     out: Path | None,
     pins: list[str] | None,
     quiet: bool = False,
@@ -57,7 +57,7 @@ def size_and_write(
     rows = [_row(study, new, s, results) for s in sized]
     if changed := any(s.scale is not None for s in sized) and new.text != study.text:
         text = moved(new.text, study.path.parent, target.parent)
-        write_new(target, text.encode(), ANOTHER)
+        write_new(target, text.encode(), OTHER_FILE_REMEDY)
     with unneeded(target):
         print_sizes(rows, wish.required, results.units, console())
     if not quiet:
@@ -68,7 +68,7 @@ def size_and_write(
     return int(bool(missed))
 
 
-def require_wish(study: Study, fos: float | None, step: float | None) -> Wish:
+def require_wish(study: Study, fos: float | None, step: float | None) -> SizingGoal:
     """The factor to reach: fos or the study's own; step: of diameters, m. Raises: InputError."""
     required = require_positive("fos", fos) or study.table.analysis.required_safety_factor
     if required is None:
@@ -77,19 +77,19 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> Wish:
             "required_safety_factor in [analysis]",
             code="no-required-factor",
         )
-    return Wish(required, step)
+    return SizingGoal(required, step)
 
 
 def _sized(
-    study: Study, wish: Wish, pins: list[str] | None, jobs: int, progress: Progress
-) -> tuple[Study, list[Sized], Results]:
+    study: Study, wish: SizingGoal, pins: list[str] | None, jobs: int, progress: Progress
+) -> tuple[Study, list[SizingResult], Results]:
     """The new study with what was found of every pin, and its run. The weights of pins change the
     loads of others, so all are sized again until the run confirms them.
     """
     plan = prepare(study, pins=pins)
     scales: dict[str, float] = {}
     before: dict[str, float | None] = {}
-    for _ in range(PASSES):
+    for _ in range(MAX_SIZING_PASSES):
         sized = _all(plan, wish, scales, jobs, progress)
         scales = {s.pin: s.scale for s in sized if s.scale is not None}
         before = {s.pin: s.before for s in sized} | before
@@ -101,13 +101,13 @@ def _sized(
     return new, [replace(s, before=before[s.pin]) for s in sized], results
 
 
-def _agree(sized: list[Sized], results: Results, required: float) -> bool:
+def _agree(sized: list[SizingResult], results: Results, required: float) -> bool:
     """Whether the run confirms that every size reaches the factor, with little excess."""
     for pin in sized:
         found = min(_factors(results, pin.pin), default=None)
         if pin.factor is None or found is None:
             continue
-        if found < required or found > pin.factor * (1.0 + CLOSE):
+        if found < required or found > pin.factor * (1.0 + FACTOR_TOLERANCE):
             return False
     return True
 
@@ -122,15 +122,17 @@ def _factors(results: Results, pin: str) -> list[float]:
 
 
 def _all(
-    plan: Plan, wish: Wish, scales: Mapping[str, float], jobs: int, progress: Progress
-) -> list[Sized]:
+    plan: Plan, wish: SizingGoal, scales: Mapping[str, float], jobs: int, progress: Progress
+) -> list[SizingResult]:
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     if jobs > 1:
-        preload(*SOLVERS)
+        preload(*RUN_MODULES)
     work = [Job(f"pin {name}", partial(size_pin, plan, name, wish, scales)) for name in names]
-    found = side_by_side(work, jobs, lambda message, part: progress(message, 0.9 * part))
+    found = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
     return [
-        Sized(name, None, None, None, None, made.reason) if isinstance(made, Died) else made
+        SizingResult(name, None, None, None, None, made.reason)
+        if isinstance(made, ProcessDied)
+        else made
         for name, made in zip(names, found, strict=True)
     ]
 
@@ -138,7 +140,7 @@ def _all(
 def target_of(study: Study, out: Path | None) -> Path:
     """The file to be written. Raises: InputError where it cannot be."""
     target = out or study.path.with_name(f"{study.name}_sized.toml")
-    require_new(target, ANOTHER)
+    require_new(target, OTHER_FILE_REMEDY)
     if not target.parent.is_dir():
         raise InputError(f"--out: there is no folder {target.parent}", code="no-folder")
     return target
@@ -160,7 +162,7 @@ def close(study: Study, new: Study, target: Path | None) -> None:
     click.echo(f"Written: {target}" if target else "Nothing is new; no study is written.", err=True)
 
 
-def _row(study: Study, new: Study, sized: Sized, results: Results) -> SizeRow:
+def _row(study: Study, new: Study, sized: SizingResult, results: Results) -> SizeRow:
     """A pin's row, with the results of the run of the new study only."""
     mine = [p for p in results.pins if p.pin == sized.pin and p.safety_factor is not None]
     worst = min(mine, key=lambda p: p.safety_factor or 0.0) if mine else None
@@ -226,8 +228,8 @@ def why_missed(results: Results, pin: str) -> str:
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g} in that run"
     if depends:
         every = [d for p in found if outcome(p) == DEPENDS for d in p.depends_on]
-        ranges = over_words([d for d in every if d.over != BENEATH])
-        places = ["beneath contact"] * any(d.over == BENEATH for d in every)
+        ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
+        places = ["beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
         places += [f"within the range of the {ranges}"] * bool(ranges)
         cases = ", ".join(depends)
         return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"

@@ -7,13 +7,13 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
-from fea.core.peak import Peak
-from fea.solve.refine import LOCAL
+from fea.core.peak import Maximum
+from fea.solve.refine import LOCAL_MODEL
 from fea.solve.single_mesh import Problem, Rung
-from fea.solve.solve_pin import Asked, Solution, solve_pin
-from fea.solve.verdict import Seen
+from fea.solve.solve_pin import Requirement, Solution, solve_pin
+from fea.solve.verdict import MeshHistory
 from fea.support.contact.pressure_loads import PressureLoads
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
 from geometry import Pin
 from geometry.mesh.elements import Element
 from pinbase.processes.pool import Progress
@@ -22,8 +22,8 @@ from pinstress.explore.chart.in_lugs import chosen_in_lugs, climb_in_lugs, conta
 from pinstress.explore.chart.limit_loads import limit_points, limit_problem
 from pinstress.explore.chart.measured_process import Measure, Measured
 from pinstress.explore.chart.mesh_sequences import (
-    HARMONIC,
-    USUAL,
+    HARMONIC_LEVELS,
+    SOLID_MESHES,
     Climb,
     chosen,
     climb_harmonic,
@@ -41,7 +41,7 @@ from pinstress.study.reading.choices import require_tolerance, select
 from pinstress.study.reading.file import Study
 from reports.data.chart import Chart, ChartPoint, Reference
 
-NAMES = {
+ELEMENT_NAMES = {
     "beam": "Timoshenko beam",
     "harmonic": "quadratic triangles",
     "harmonic+local": "triangles and local tetrahedra",
@@ -60,8 +60,8 @@ class ChartPlan:
 
     study: Study
     problem: Problem | JointProblem
-    asked: Asked
-    peak: Peak
+    asked: Requirement
+    peak: Maximum
     beam_error: float | None = None
     chosen: JointRung | None = None
     limit: LimitProblem | None = None
@@ -73,7 +73,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     loads = all_loads(study, select(study.table.case, [case], "case", "case"))
     (task,) = tasks(study, [pin_of(study, pin)], loads)
     table = study.table.analysis
-    asked = Asked(
+    asked = Requirement(
         require_tolerance(tolerance) or table.tolerance,
         goal=table.goal,
         required=table.required_safety_factor,
@@ -83,7 +83,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
         return _plan_in_lugs(study, task, asked)
     clamps = tuple(task.pin.surface(c) for c in task.clamps)
 
-    def first(model: Asked) -> Solution:
+    def first(model: Requirement) -> Solution:
         found = solve_pin(
             task.pin, task.material, task.clamps, task.loads, model, between=task.between
         )
@@ -103,14 +103,14 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     return ChartPlan(study, problem, asked, peak, beam_error, limit=limit)
 
 
-def _require_stress(study: Study, peak: Peak) -> None:
+def _require_stress(study: Study, peak: Maximum) -> None:
     if not peak.max_von_mises:
         why = "its loads cause no stress" if peak.verdict == "converged" else peak.note
         text = f"pin {peak.pin}, case {peak.case}: there is nothing to chart: {why}"
         raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
 
 
-def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
+def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
     """Of a pin in its lugs: solved as a run would."""
     if not isinstance(task.pin, Pin):
         raise study.error(
@@ -119,7 +119,7 @@ def _plan_in_lugs(study: Study, task: Task, asked: Asked) -> ChartPlan:
             at=f"pin.{task.pin.name}",
             code="not-axisymmetric",
         )
-    given = InLugs(task.pin, task.material, task.lugs, task.loads, task.between)
+    given = PinProblem(task.pin, task.material, task.lugs, task.loads, task.between)
     (found,) = solve_in_lugs(given, asked)
     solution = found.solution
     _require_stress(study, solution.peak)
@@ -152,7 +152,7 @@ def chart(
 
     Raises: SolveError when there is no reference.
     """
-    about, behind = len(HARMONIC) + 3 * (meshes or USUAL) + 4, 0
+    about, behind = len(HARMONIC_LEVELS) + 3 * (meshes or SOLID_MESHES) + 4, 0
 
     def tell(message: str) -> None:
         nonlocal behind
@@ -177,7 +177,7 @@ def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) 
     if isinstance(pin, Pin):
         climb.to(Rung("beam"))
         climb_harmonic(climb)
-    elif climb.auto == LOCAL:
+    elif climb.auto == LOCAL_MODEL:
         climb_local(climb)
     else:
         other = Measured(None, failed=f"pin {pin.name} is not a body of revolution")
@@ -188,14 +188,14 @@ def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) 
     if isinstance(pin, Pin):
         reference = harmonic_reference(climb)
     else:
-        reference = local_reference(climb) if climb.auto == LOCAL else solid_reference(climb)
+        reference = local_reference(climb) if climb.auto == LOCAL_MODEL else solid_reference(climb)
     return _joined(plan, climb, reference)
 
 
 def _joined(
     plan: ChartPlan,
     climb: Climb,
-    reference: tuple[Rung | JointRung, Seen],
+    reference: tuple[Rung | JointRung, MeshHistory],
     cells: float = 0.0,
 ) -> Chart:
     """cells: the part of the reference's error from cells of contact, relative."""
@@ -206,7 +206,7 @@ def _joined(
     def name(rung: Rung | JointRung) -> str:
         if isinstance(rung, JointRung):
             return rung.element
-        return NAMES.get(rung.model, NAMES[rung.element])
+        return ELEMENT_NAMES.get(rung.model, ELEMENT_NAMES[rung.element])
 
     points = [
         ChartPoint(
@@ -240,7 +240,7 @@ def _joined(
     )  # fmt: skip
 
 
-def _note(peak: Peak) -> str:
+def _note(peak: Maximum) -> str:
     """Where the maximum is one of a part of the pin only."""
     governing = [zone for zone in peak.singular_at if zone.governs]
     if not governing:

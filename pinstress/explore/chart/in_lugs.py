@@ -6,54 +6,59 @@ from __future__ import annotations
 
 import math
 
-from assess.opinion.calculix_in_lugs import HALF
+from assess.opinion.calculix_in_lugs import HALF_MODEL_MESHES
 from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.linear_solver import SolveError
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import Distribution
-from fea.solve.verdict import Seen
+from fea.solve.verdict import MeshHistory
 from fea.support.contact.records import JointResult
-from fea.support.contact.solve_in_lugs import MOST_CELLS
-from fea.support.contact.solve_joint import Cells
+from fea.support.contact.solve_in_lugs import MAX_CELLS
+from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.rings import ring_ends
 from pinstress.explore.chart.mesh_sequences import Climb
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
 
-CELLS = Cells(4, 18, 6), Cells(), Cells(12, 48, 16), Cells(16, 64, 20)
-LEVELS = (-2, 0, 1, 2)
-OF_TRACTIONS = (-2, 1)  # whose error is that of the model
-REFERENCE = (2, 3, 4)
-MESHES = (*HALF, Fineness(sectors=32, layers=3, eye=2))
-TRACTIONS: tuple[tuple[Distribution, str], ...] = (
+CHART_RESOLUTIONS = (
+    Resolution(4, 18, 6),
+    Resolution(),
+    Resolution(12, 48, 16),
+    Resolution(16, 64, 20),
+)
+CONTACT_LEVELS = (-2, 0, 1, 2)
+TRACTION_LEVELS = (-2, 1)  # whose error is that of the model
+REFERENCE_LEVELS = (2, 3, 4)
+CALCULIX_MESHES = (*HALF_MODEL_MESHES, Fineness(sectors=32, layers=3, eye=2))
+TRACTION_NAMES: tuple[tuple[Distribution, str], ...] = (
     ("uniform", "even tractions"),
     ("cosine", "bearing pressure"),
 )
 
 
-def rings_of(problem: JointProblem, cells: Cells) -> int:
+def rings_of(problem: JointProblem, cells: Resolution) -> int:
     """Of all bands."""
     bands = [(problem.pin.band(lug.connection), lug.edge_radius) for lug in problem.lugs]
     ends = [ring_ends(band, radius, cells.rings, cells.beside) for band, radius in bands]
     return sum(len(x) - 1 for x in ends)
 
 
-def sets_of(problem: JointProblem) -> list[Cells]:
+def sets_of(problem: JointProblem) -> list[Resolution]:
     """Those that can be solved, at least two; the last for the reference."""
-    few = [x for x in CELLS if rings_of(problem, x) * x.sectors <= MOST_CELLS]
-    return few if len(few) > 1 else list(CELLS[:2])
+    few = [x for x in CHART_RESOLUTIONS if rings_of(problem, x) * x.sectors <= MAX_CELLS]
+    return few if len(few) > 1 else list(CHART_RESOLUTIONS[:2])
 
 
-def contact_rung(cells: Cells, level: int) -> JointRung:
+def contact_rung(cells: Resolution, level: int) -> JointRung:
     """A mesh of contact, named after its cells."""
     return JointRung("contact", f"{cells.rings} × {cells.sectors} cells a lug", level, cells)
 
 
-def chosen_in_lugs(problem: JointProblem, peak: Peak, joint: JointResult) -> JointRung:
+def chosen_in_lugs(problem: JointProblem, peak: Maximum, joint: JointResult) -> JointRung:
     """On which a run ends."""
     if joint.model == "foundation":
         return JointRung("foundation", "Timoshenko beam")
     rings = sum(len(band.line_load) for band in joint.bands)
-    cells = min(CELLS, key=lambda cells: abs(rings_of(problem, cells) - rings))
+    cells = min(CHART_RESOLUTIONS, key=lambda cells: abs(rings_of(problem, cells) - rings))
     return contact_rung(cells, len(peak.history) - 1)
 
 
@@ -61,21 +66,21 @@ def climb_in_lugs(climb: Climb, chosen: JointRung, calculix: bool) -> None:
     """All models, the cheapest first."""
     assert isinstance(climb.problem, JointProblem)
     climb.to(JointRung("foundation", "Timoshenko beam"))
-    for distribution, name in TRACTIONS:
-        for level in OF_TRACTIONS:
+    for distribution, name in TRACTION_NAMES:
+        for level in TRACTION_LEVELS:
             climb.to(JointRung("prescribed", name, level, distribution=distribution))
             climb.drop_repeated()
     for cells in sets_of(climb.problem)[:-1]:
-        last = max(LEVELS[-1], chosen.level if cells == chosen.cells else 0)
-        for level in (*LEVELS, *range(LEVELS[-1] + 1, last + 1)):
+        last = max(CONTACT_LEVELS[-1], chosen.level if cells == chosen.cells else 0)
+        for level in (*CONTACT_LEVELS, *range(CONTACT_LEVELS[-1] + 1, last + 1)):
             climb.to(contact_rung(cells, level))
             climb.drop_repeated()
-    for fineness in MESHES if calculix else ():
+    for fineness in CALCULIX_MESHES if calculix else ():
         if climb.to(JointRung("calculix", "hexahedra (C3D20R)", fineness=fineness)).over:
             return
 
 
-def contact_reference(climb: Climb) -> tuple[JointRung, Seen, float]:
+def contact_reference(climb: Climb) -> tuple[JointRung, MeshHistory, float]:
     """Contact on the finest cells and finer meshes; and the part of its error from the cells.
 
     Raises: SolveError where it cannot be solved.
@@ -83,17 +88,17 @@ def contact_reference(climb: Climb) -> tuple[JointRung, Seen, float]:
     assert isinstance(climb.problem, JointProblem)
     coarser, cells = sets_of(climb.problem)[-2:]
     results = []
-    for level in REFERENCE:
+    for level in REFERENCE_LEVELS:
         found = climb.to(contact_rung(cells, level), keep=False)
         if found.result is None:
             raise SolveError(
                 f"the reference, contact on mesh {level + 1}: {found.failed}", code="no-reference"
             )
         results.append(found.result)
-    below = [m.result for r, m in climb.done if r == contact_rung(coarser, REFERENCE[0])]
+    below = [m.result for r, m in climb.done if r == contact_rung(coarser, REFERENCE_LEVELS[0])]
     error = math.inf
     if below and below[0]:  # of first order at least
         step = abs(results[0].maximum / below[0].maximum - 1.0)
         error = step / (cells.rings / coarser.rings - 1.0)
-    rung = contact_rung(cells, REFERENCE[-1])
-    return rung, climb.seen("harmonic", tuple(results), REFERENCE[0]), error
+    rung = contact_rung(cells, REFERENCE_LEVELS[-1])
+    return rung, climb.seen("harmonic", tuple(results), REFERENCE_LEVELS[0]), error

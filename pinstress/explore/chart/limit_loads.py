@@ -9,12 +9,12 @@ from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import Pin
 from pinstress.analysis.assessed.limits import limit_asked, limit_rung
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
-from pinstress.explore.chart.single_limit import LADDER, LimitProblem, LimitRung
+from pinstress.explore.chart.single_limit import LIMIT_RUNGS, LimitProblem, LimitRung
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.chart import ChartPoint
 
-NAMES = {"hinges": "Timoshenko beam", "elastic-plastic": "hexahedra, {} meshes"}
+LIMIT_LOAD_ELEMENT_NAMES = {"hinges": "Timoshenko beam", "elastic-plastic": "hexahedra, {} meshes"}
 
 
 def limit_problem(study: Study, task: Task, found: Solution | LugSolution) -> LimitProblem | None:
@@ -38,15 +38,15 @@ def limit_points(
 ) -> tuple[ChartPoint, ...]:
     """All models, the cheapest first; the first that a run would end on is marked."""
     found = []
-    for rung in LADDER:
+    for rung in LIMIT_RUNGS:
         tell(f"limit load, {rung.model}")
         found.append((rung, measure(MeasureJob(problem, rung, runs=runs))))
-    ends = next((rung for rung, m in found if m.limit and m.limit.ends), LADDER[-1])
+    ends = next((rung for rung, m in found if m.limit and m.limit.ends), LIMIT_RUNGS[-1])
     return tuple(_point(rung, measured, rung == ends) for rung, measured in found)
 
 
 def _point(rung: LimitRung, measured: Measured, ends: bool) -> ChartPoint:
-    name, limit = NAMES[rung.model].format(rung.meshes), measured.limit
+    name, limit = LIMIT_LOAD_ELEMENT_NAMES[rung.model].format(rung.meshes), measured.limit
     if limit is None:
         return ChartPoint(rung.model, name, failed=measured.failed)
     return ChartPoint(

@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.solve.single_mesh import Problem, Rung, result_on
 from pinbase.processes.apart import Failed, guarded
 from pinbase.processes.pool import Job, Tell
 from pinstress.explore.chart.single_joint import JointProblem, JointRung, joint_result_on
 from pinstress.explore.chart.single_limit import LimitFound, LimitProblem, LimitRung, limit_found_on
 
-LEAST = 0.1  # MB: less cannot be distinguished from the libraries' own
+MIN_MEASURED_MEMORY = 0.1  # MB: less cannot be distinguished from the libraries' own
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Measured:
     finer meshes would.
     """
 
-    result: MeshResult | None
+    result: MeshMaximum | None
     seconds: float = 0.0
     memory: float = 0.0
     bare: float = 0.0
@@ -59,7 +59,7 @@ class MeasureJob:
 
     problem: Problem | JointProblem | LimitProblem
     rung: Rung | JointRung | LimitRung
-    before: tuple[MeshResult, ...] = ()
+    before: tuple[MeshMaximum, ...] = ()
     runs: int = 1
     reference: bool = False
 
@@ -118,13 +118,13 @@ def climb(job: MeasureJob, tell: Tell) -> Measured:
 
             others = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
             result, peak = found, memory("self", "VmHWM") + others
-    cost = statistics.median(spent), max(peak - bare, LEAST), bare
+    cost = statistics.median(spent), max(peak - bare, MIN_MEASURED_MEMORY), bare
     if isinstance(result, LimitFound):
         return Measured(None, *cost, limit=result)
     return Measured(result, *cost)
 
 
-def _result(job: MeasureJob) -> MeshResult | LimitFound:
+def _result(job: MeasureJob) -> MeshMaximum | LimitFound:
     if isinstance(job.problem, LimitProblem):
         assert isinstance(job.rung, LimitRung)
         return limit_found_on(job.problem, job.rung)

@@ -6,27 +6,29 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from fea.core.linear_solver import SolveError
-from fea.core.mesh_result import MeshResult
-from fea.solve.refine import LOCAL, MESHES, MOST_UNKNOWNS, STEP
+from fea.core.mesh_result import MeshMaximum
+from fea.solve.refine import LOCAL_MODEL, MAX_MESHES, MAX_UNKNOWNS, MESH_RATIO
 from fea.solve.single_mesh import Problem, Rung
-from fea.solve.solve_pin import Asked, enough, ratio_of
-from fea.solve.verdict import Seen
+from fea.solve.solve_pin import Requirement, accurate_enough, ratio_of
+from fea.solve.verdict import MeshHistory
 from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
 
-HARMONIC = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.solve.single_mesh)
-FIRST: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
-USUAL, FEWEST = 5, 4  # meshes of an element, however large
-MOST = 150_000  # unknowns of a solid that is charted; of one that has no other reference:
-MOST_BELOW_REFERENCE = 50_000
-MOST_OF_REFERENCE = 400_000
-ORDER = 10.0  # times the unknowns of the finest that is charted
-FEWEST_OF_REFERENCE = 3
-ADAPTED = (
+HARMONIC_LEVELS = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.solve.single_mesh)
+FIRST_SOLID_LEVEL: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
+SOLID_MESHES, MIN_SOLID_MESHES = 5, 4  # meshes of an element, however large
+MAX_CHARTED_UNKNOWNS = (
+    150_000  # unknowns of a solid that is charted; of one that has no other reference:
+)
+MAX_UNKNOWNS_BELOW_REFERENCE = 50_000
+MAX_REFERENCE_UNKNOWNS = 400_000
+REFERENCE_UNKNOWNS_RATIO = 10.0  # times the unknowns of the finest that is charted
+MIN_REFERENCE_MESHES = 3
+ADAPTIVE_MODELS = (
     "harmonic",
-    LOCAL,
+    LOCAL_MODEL,
     "contact",
     "prescribed",
 )  # models whose meshes are finer where stress is high
@@ -37,7 +39,7 @@ class Climb:
     """Rungs climbed so far, in their order. auto: the model that it chooses."""
 
     problem: Problem | JointProblem
-    asked: Asked
+    asked: Requirement
     auto: str
     measure: Measure
     runs: int
@@ -47,7 +49,7 @@ class Climb:
     def to(self, rung: Rung | JointRung, keep: bool = True) -> Measured:
         """Climb a rung; `keep` it as a point of the chart."""
         self.tell(f"{rung.model} model")
-        below = self.results(rung) if rung.model in ADAPTED and rung.level > 0 else ()
+        below = self.results(rung) if rung.model in ADAPTIVE_MODELS and rung.level > 0 else ()
         if not keep:  # refined everywhere: it is what the others are measured by
             below = tuple(replace(result, high=()) for result in below)
         runs = self.runs if keep and rung.model != "calculix" else 1
@@ -64,34 +66,34 @@ class Climb:
         if one.result and two.result and one.result.unknowns == two.result.unknowns:
             del self.done[-2]
 
-    def results(self, like: Rung | JointRung) -> tuple[MeshResult, ...]:
+    def results(self, like: Rung | JointRung) -> tuple[MeshMaximum, ...]:
         """Of the same model and element, from a run's first mesh on."""
         return tuple(
             m.result for r, m in self.done
             if (r.model, r.element) == (like.model, like.element) and r.level >= 0 and m.result
         )  # fmt: skip
 
-    def enough(self, model: str, results: tuple[MeshResult, ...]) -> bool:
+    def enough(self, model: str, results: tuple[MeshMaximum, ...]) -> bool:
         """Whether a run of the model would end here."""
-        return enough(self.asked, self.problem.material, self.seen(model, results))
+        return accurate_enough(self.asked, self.problem.material, self.seen(model, results))
 
-    def seen(self, model: str, results: tuple[MeshResult, ...], first: int = 0) -> Seen:
+    def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
         """Successive meshes as a run sees them."""
         ratio = ratio_of(self.problem.pin, model)
         name, case = self.problem.pin.name, self.problem.loads.case
-        return Seen(name, case, model, results, (0.0,) * len(results), ratio, first)
+        return MeshHistory(name, case, model, results, (0.0,) * len(results), ratio, first)
 
 
 def climb_harmonic(climb: Climb) -> None:
     """The usual levels, and on to where `auto` ends."""
-    for level in HARMONIC:
+    for level in HARMONIC_LEVELS:
         found = climb.to(Rung("harmonic", level=level))
         climb.drop_repeated()
     while (
         climb.auto == "harmonic"
         and found.result is not None
-        and level + 1 < MESHES["harmonic"]
-        and found.result.unknowns * STEP**2 <= MOST_UNKNOWNS["harmonic"]
+        and level + 1 < MAX_MESHES["harmonic"]
+        and found.result.unknowns * MESH_RATIO**2 <= MAX_UNKNOWNS["harmonic"]
         and not climb.enough("harmonic", climb.results(Rung("harmonic")))
     ):
         level += 1
@@ -100,31 +102,34 @@ def climb_harmonic(climb: Climb) -> None:
 
 def climb_local(climb: Climb) -> None:
     """All meshes that a run may make."""
-    for level in range(MESHES[LOCAL]):
-        climb.to(Rung(LOCAL, level=level))
+    for level in range(MAX_MESHES[LOCAL_MODEL]):
+        climb.to(Rung(LOCAL_MODEL, level=level))
 
 
 def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
     """Finer and finer meshes, as many as requested or until they get large, or pass a limit."""
     pin = climb.problem.pin
     step = 2 if pin.meshed else 1  # it can only be halved
-    first = 0 if pin.meshed else FIRST[element]
-    most = MOST if isinstance(pin, Pin) else MOST_BELOW_REFERENCE
-    for k in range(meshes or USUAL):
+    first = 0 if pin.meshed else FIRST_SOLID_LEVEL[element]
+    most = MAX_CHARTED_UNKNOWNS if isinstance(pin, Pin) else MAX_UNKNOWNS_BELOW_REFERENCE
+    for k in range(meshes or SOLID_MESHES):
         found = climb.to(Rung("solid", element, first + step * k))
         if found.over:
             return
-        growth = STEP ** (3 * step)
-        few = meshes or (2 if pin.meshed else FEWEST)
+        growth = MESH_RATIO ** (3 * step)
+        few = meshes or (2 if pin.meshed else MIN_SOLID_MESHES)
         if found.result is not None and k + 1 >= few and found.result.unknowns * growth > most:
             return
 
 
-def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
+def harmonic_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
     """Finer and finer than the finest that is charted, until an order larger."""
     level, charted = _finest(climb, "harmonic")
-    results: list[MeshResult] = []
-    while len(results) < FEWEST_OF_REFERENCE or results[-1].unknowns < ORDER * charted[-1].unknowns:
+    results: list[MeshMaximum] = []
+    while (
+        len(results) < MIN_REFERENCE_MESHES
+        or results[-1].unknowns < REFERENCE_UNKNOWNS_RATIO * charted[-1].unknowns
+    ):
         level += 1
         found = climb.to(Rung("harmonic", level=level), keep=False)
         if found.result is None:
@@ -132,33 +137,33 @@ def harmonic_reference(climb: Climb) -> tuple[Rung, Seen]:
                 f"the reference, harmonic mesh {level + 1}: {found.failed}", code="no-reference"
             )
         results.append(found.result)
-        if results[-1].unknowns > MOST_OF_REFERENCE:
+        if results[-1].unknowns > MAX_REFERENCE_UNKNOWNS:
             break
     first = level - len(results) + 1
     return Rung("harmonic", level=level), climb.seen("harmonic", tuple(results), first)
 
 
-def local_reference(climb: Climb) -> tuple[Rung, Seen]:
+def local_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
     """A mesh more than is charted, which has nearly twice the unknowns of the last one.
 
     Raises: SolveError where it cannot be solved.
     """
-    level, charted = _finest(climb, LOCAL)
-    finer = Rung(LOCAL, level=level + 1)
+    level, charted = _finest(climb, LOCAL_MODEL)
+    finer = Rung(LOCAL_MODEL, level=level + 1)
     found = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
     if found.result is None:
         raise SolveError(f"the reference: {found.failed}", code="no-reference")
-    return Rung(LOCAL, level=level + 1), climb.seen(LOCAL, (*charted, found.result))
+    return Rung(LOCAL_MODEL, level=level + 1), climb.seen(LOCAL_MODEL, (*charted, found.result))
 
 
-def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
+def solid_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
     """The solid model on finer meshes than are charted, as far as its unknowns allow."""
     level, charted = _finest(climb, "solid")
     results = list(charted)
     step = 2 if climb.problem.pin.meshed else 1
     while (
-        results[-1].unknowns < ORDER * charted[-1].unknowns
-        and results[-1].unknowns * STEP ** (3 * step) <= MOST_OF_REFERENCE
+        results[-1].unknowns < REFERENCE_UNKNOWNS_RATIO * charted[-1].unknowns
+        and results[-1].unknowns * MESH_RATIO ** (3 * step) <= MAX_REFERENCE_UNKNOWNS
     ):
         found = climb.to(Rung("solid", "curved", level + step), keep=False)
         if found.result is None:
@@ -173,7 +178,7 @@ def solid_reference(climb: Climb) -> tuple[Rung, Seen]:
     return Rung("solid", "curved", level), climb.seen("solid", tuple(results))
 
 
-def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshResult, ...]]:
+def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
     """The finest level of a model's best element, and all its mesh results.
 
     Raises: SolveError when there is none.
@@ -201,4 +206,4 @@ def chosen(climb: Climb) -> Rung | JointRung | None:
     for n, rung in enumerate(of_it, 1):
         if climb.enough(model, results[:n]):
             return rung
-    return of_it[-1] if model in ADAPTED and of_it else None
+    return of_it[-1] if model in ADAPTIVE_MODELS and of_it else None

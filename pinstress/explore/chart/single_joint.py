@@ -16,20 +16,20 @@ from typing import Literal
 
 import numpy as np
 
-from assess.opinion.calculix_in_lugs import Seated, across
-from assess.opinion.calculix_joint import USUAL, joint_opinion
+from assess.opinion.calculix_in_lugs import PinInLugs, transverse
+from assess.opinion.calculix_joint import DEFAULT_FINENESS, joint_opinion
 from assess.opinion.calculix_joint_mesh import Fineness
 from assess.opinion.calculix_row import free, section_of
 from fea.core.material import Material
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import Distribution, PinLoads
 from fea.core.pressed import PressedArcs
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.section.section_stress import AtSection, SectionAnswer
-from fea.singular.singularities import Singularity, outside
-from fea.solve.refine import STEP, singularities_of
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.section.section_stress import AtSection, SectionField
+from fea.singular.singularities import Zone, outside
+from fea.solve.refine import MESH_RATIO, singularities_of
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.solve_on_foundations import FoundPlaces, point_of
 from fea.support.foundation.stress import FoundationStress
@@ -37,7 +37,7 @@ from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
 from geometry import Pin
 
-AS_USUAL = Cells()
+DEFAULT_RESOLUTION = Resolution()
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class JointProblem:
     pressed: PressedArcs | None = None
 
     @cached_property
-    def singularities(self) -> tuple[Singularity, ...]:
+    def singularities(self) -> tuple[Zone, ...]:
         """Where stress is not read."""
         whole = on_structure(self.pin, self.lugs)
         none = PinLoads(self.loads.case, (), np.zeros((1, 0, 3)))
@@ -67,7 +67,7 @@ class JointProblem:
         """Where the lugs press."""
         if self.pressed is not None:
             return self.pressed
-        model = JointModel(self.pin, self.material, self.lugs)
+        model = ContactModel(self.pin, self.material, self.lugs)
         return model.arcs(model.pressed(self.loads))
 
 
@@ -80,14 +80,14 @@ class JointRung:
     model: Literal["contact", "foundation", "prescribed", "calculix"]
     element: str
     level: int = 0
-    cells: Cells = AS_USUAL
+    cells: Resolution = DEFAULT_RESOLUTION
     distribution: Distribution = "uniform"
-    fineness: Fineness = USUAL
+    fineness: Fineness = DEFAULT_FINENESS
 
 
 def joint_result_on(
-    problem: JointProblem, rung: JointRung, before: tuple[MeshResult, ...] = ()
-) -> MeshResult:
+    problem: JointProblem, rung: JointRung, before: tuple[MeshMaximum, ...] = ()
+) -> MeshMaximum:
     """The maximum on one mesh. before: as of fea.solve.single_mesh.
 
     Raises: MeshError, SolveError; ValueError for what a model lacks; CalculixError.
@@ -107,50 +107,52 @@ def _harmonic(
     pin: Pin,
     loads: PinLoads,
     on: tuple[PinLoads, int],
-    before: tuple[MeshResult, ...],
-) -> MeshResult:
+    before: tuple[MeshMaximum, ...],
+) -> MeshMaximum:
     """on: the loads that sections feel, and the mesh's level."""
     zones, (felt, level) = problem.singularities, on
     posed = SectionProblem(pin, problem.material, (), (loads,), zones)
-    section = harmonic_solution(posed, level, STEP, before)
+    section = harmonic_solution(posed, level, MESH_RATIO, before)
     return _row(harmonic_result(section, zones, loads), pin, problem.material, felt)
 
 
-def _row(surface: MeshResult, pin: Pin, material: Material, felt: PinLoads) -> MeshResult:
+def _row(surface: MeshMaximum, pin: Pin, material: Material, felt: PinLoads) -> MeshMaximum:
     """The larger one of a surface and of sections under loads."""
-    return _larger(surface, SectionAnswer(pin, material, (), [felt]).place(felt))
+    return _larger(surface, SectionField(pin, material, (), [felt]).place(felt))
 
 
-def _larger(surface: MeshResult, at: AtSection) -> MeshResult:
+def _larger(surface: MeshMaximum, at: AtSection) -> MeshMaximum:
     if at.value <= surface.maximum:
         return surface
     place = (at.r * math.cos(at.angle), at.r * math.sin(at.angle), at.z)
     return replace(surface, maximum=at.value, instant=at.instant, location=place)
 
 
-def _contact(problem: JointProblem, rung: JointRung, before: tuple[MeshResult, ...]) -> MeshResult:
-    model = JointModel(problem.pin, problem.material, problem.lugs, rung.cells)
+def _contact(
+    problem: JointProblem, rung: JointRung, before: tuple[MeshMaximum, ...]
+) -> MeshMaximum:
+    model = ContactModel(problem.pin, problem.material, problem.lugs, rung.cells)
     found = model.solve(problem.loads)
     on = found.loads.on_rings, rung.level
     result = _harmonic(problem, found.pin, found.loads, on, before)
     return replace(result, unknowns=result.unknowns + model.contact.area.size)
 
 
-def _foundation(problem: JointProblem) -> MeshResult:
+def _foundation(problem: JointProblem) -> MeshMaximum:
     model = FoundationModel(problem.pin, problem.material, problem.lugs)
     stress = FoundationStress.of(model, problem.distance)
     row = FoundPlaces.of(stress, model.solve(problem.loads)).row
-    return MeshResult(0, row.maximum, row.instant, point_of(row))
+    return MeshMaximum(0, row.maximum, row.instant, point_of(row))
 
 
-def _calculix(problem: JointProblem, rung: JointRung) -> MeshResult:
-    seated = Seated(problem.pin, problem.material, problem.lugs)
-    loads = across(seated, problem.loads.at(np.array([problem.governing])))
+def _calculix(problem: JointProblem, rung: JointRung) -> MeshMaximum:
+    seated = PinInLugs(problem.pin, problem.material, problem.lugs)
+    loads = transverse(seated, problem.loads.at(np.array([problem.governing])))
     found = joint_opinion(problem.pin, problem.material, problem.lugs, loads, rung.fineness)
     x, stress = found.nodes, von_mises(found.stress)
     read = outside(problem.singularities, np.hypot(x[:, 0], x[:, 1]), x[:, 2]) & free(found)
     top = int(np.argmax(np.where(read, stress, 0.0)))
     location = (float(x[top, 0]), float(x[top, 1]), float(x[top, 2]))
-    result = MeshResult(found.unknowns, float(stress[top]), problem.governing, location)
+    result = MeshMaximum(found.unknowns, float(stress[top]), problem.governing, location)
     at = section_of(found, problem.pin, problem.material)
     return replace(_larger(result, at), instant=problem.governing)

@@ -11,8 +11,8 @@ from typing import Literal
 
 from assess.plastic.flow import FlowRule
 from assess.plastic.limit_load import bracket, limit_on_mesh
-from assess.plastic.pin_body import finer
-from assess.plastic.solve import SIZES, body_on, decided, narrow, of_beam
+from assess.plastic.pin_body import refine
+from assess.plastic.solve import MESH_SIZES, body_on, decided, narrow_enough, of_beam
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import ArgumentError, Pin
@@ -51,7 +51,10 @@ class LimitFound:
         return (self.upper - self.lower) / (self.upper + self.lower)
 
 
-LADDER = (LimitRung("hinges"), *(LimitRung("elastic-plastic", k) for k in range(2, len(SIZES) + 1)))
+LIMIT_RUNGS = (
+    LimitRung("hinges"),
+    *(LimitRung("elastic-plastic", k) for k in range(2, len(MESH_SIZES) + 1)),
+)
 
 
 def limit_found_on(problem: LimitProblem, rung: LimitRung) -> LimitFound:
@@ -64,8 +67,8 @@ def limit_found_on(problem: LimitProblem, rung: LimitRung) -> LimitFound:
         lower, upper = float(bounds.lower[0]), float(bounds.upper[0])
         return LimitFound(lower, upper, decided(bounds) is not None)
     rule, found = FlowRule(material), []
-    for size in SIZES[: rung.meshes]:
+    for size in MESH_SIZES[: rung.meshes]:
         made = body_on(pin, rule, clamps, loads, size)
-        found.append(limit_on_mesh(made.body, made.forces, finer(made.body.elements)))
+        found.append(limit_on_mesh(made.body, made.forces, refine(made.body.elements)))
     lower, upper = bracket(found)
-    return LimitFound(lower, upper, narrow(lower, upper), found[-1].unknowns)
+    return LimitFound(lower, upper, narrow_enough(lower, upper), found[-1].unknowns)

@@ -17,8 +17,8 @@ from pinbase.processes.pool import Progress
 from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
 from pinstress.explore.reliability.drivers import base_samples, indices
 from pinstress.explore.reliability.form import (
-    NOISY,
-    SMOOTH,
+    NOISY_CLOSENESS,
+    SMOOTH_CLOSENESS,
     Closeness,
     DesignPoint,
     LimitState,
@@ -34,7 +34,7 @@ from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import (
-    SYSTEM,
+    SYSTEM_ROW,
     Driver,
     FirstOrder,
     Reliability,
@@ -44,10 +44,12 @@ from reports.data.results import PinResult, Results
 
 Array = NDArray[np.float64]
 
-STARTS = 3  # failing samples from which further design points are sought
-APART = 0.7  # cosine below which a sample's direction is another
-BEYOND = 1.0  # standard deviations beyond the design points: where others are looked for
-MOST_CENTRES = 40  # of importance sampling
+MAX_SEARCH_STARTS = 3  # failing samples from which further design points are sought
+MAX_DIRECTION_COSINE = 0.7  # cosine below which a sample's direction is another
+SEARCH_DISTANCE_BEYOND = (
+    1.0  # standard deviations beyond the design points: where others are looked for
+)
+MAX_CENTRES = 40  # of importance sampling
 
 
 def assess(
@@ -83,7 +85,9 @@ def assess(
         risks.append(risk_of(found, sampled, weighted, asked))
     if len(risks) > 1:
         everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
-        worst = AssessedRow(SYSTEM, SYSTEM, RiskColumn(None), _worst(nominal), None, everything)
+        worst = AssessedRow(
+            SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, everything
+        )
         risks.insert(0, risk_of(worst, sampled, weighted, asked))
     vary = study.table.vary
     assert vary is not None
@@ -153,7 +157,7 @@ def first_order(
 ) -> _Form:
     """Design points of a row from the mean and from other starts in other directions."""
     size = designs.space.size
-    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
+    close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
     limit = designs.limit(row, asked.factor)
     points = [design_point(limit, np.zeros(size), close)]
     _search(points, starts, limit, close)
@@ -177,7 +181,7 @@ def first_order(
 
 def _beneath(designs: SolvedDesigns, row: int, asked: ReliabilityTable) -> tuple[Array, ...]:
     """Where what lies beneath contact is most likely to be too much, to sample there, too."""
-    close = NOISY if any(map(shapes, designs.evaluator.numbers)) else SMOOTH
+    close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
     limit = designs.limit(row, asked.factor, deep=True)
     point = design_point(limit, np.zeros(designs.space.size), close)
     return tuple(p.u for p in distinct([point]))
@@ -197,9 +201,9 @@ def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
     kept: list[Array] = []
     for at in order:
         direction = u[at] / np.linalg.norm(u[at])
-        if all(direction @ k < APART * float(np.linalg.norm(k)) for k in kept):
+        if all(direction @ k < MAX_DIRECTION_COSINE * float(np.linalg.norm(k)) for k in kept):
             kept.append(u[at])
-        if len(kept) == STARTS:
+        if len(kept) == MAX_SEARCH_STARTS:
             break
     return kept
 
@@ -214,7 +218,7 @@ def weighted_sample(
             kept.append(centre)
     if not kept or not asked.importance_samples:
         return None
-    draws = importance_draws(kept[:MOST_CENTRES], asked.importance_samples, asked.seed)
+    draws = importance_draws(kept[:MAX_CENTRES], asked.importance_samples, asked.seed)
     return Sample(draws, designs.at(draws.u, "importance sampling"))
 
 
@@ -239,7 +243,7 @@ def _search(
     """Add the design points from starts in other directions than those that are known."""
     for start in starts:
         known = [p.direction @ start for p in points if not p.why]
-        if all(cosine < APART * float(np.linalg.norm(start)) for cosine in known):
+        if all(cosine < MAX_DIRECTION_COSINE * float(np.linalg.norm(start)) for cosine in known):
             points.append(design_point(limit, start, close))
 
 
@@ -250,7 +254,7 @@ def _failing_beyond(limit: LimitState, known: list[DesignPoint], size: int) -> I
     if not known or known[0].index <= 0.0:
         return ()
     every = np.concatenate([np.eye(size), -np.eye(size), -known[0].direction[None, :]])
-    probes = (known[0].index + BEYOND) * every
+    probes = (known[0].index + SEARCH_DISTANCE_BEYOND) * every
     return list(probes[limit(probes) < 0.0])
 
 

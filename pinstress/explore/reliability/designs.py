@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from pinbase.processes.pool import Died, Job, Progress, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel
 from pinstress.explore.reliability.form import LimitState
 from pinstress.explore.reliability.space import NormalSpace
 from pinstress.explore.sweep.correlations import correlations_of, root_of
@@ -19,9 +19,11 @@ from pinstress.study.reading.file import Study
 
 Array = NDArray[np.float64]
 
-MOST = 100  # designs in a job
-JOBS = 4  # for each process, so that all end at about the same time
-FEW = 30  # designs that this process solves itself, as FORM's, one step after another
+MAX_JOB_DESIGNS = 100  # designs in a job
+JOBS_PER_PROCESS = 4  # for each process, so that all end at about the same time
+MAX_SERIAL_DESIGNS = (
+    30  # designs that this process solves itself, as FORM's, one step after another
+)
 
 
 @dataclass(frozen=True)
@@ -101,18 +103,18 @@ class SolvedDesigns:
         """Of designs u (n, d)."""
         self.solved[purpose] += len(u)
         values = self.space.physical(u)
-        jobs = self._jobs if len(u) > FEW else 1
-        size = min(MOST, -(-len(u) // (JOBS * jobs)))
+        jobs = self._jobs if len(u) > MAX_SERIAL_DESIGNS else 1
+        size = min(MAX_JOB_DESIGNS, -(-len(u) // (JOBS_PER_PROCESS * jobs)))
         parts = [values[k : k + size] for k in range(0, len(values), size)]
         work = [
             Job(f"{purpose}, {min((k + 1) * size, len(u)):,} of {len(u):,} designs", part)
             for k, part in enumerate(partial(_solved, self.evaluator, p) for p in parts)
         ]
-        progress = self._progress if len(u) > FEW else (lambda _, __: None)
+        progress = self._progress if len(u) > MAX_SERIAL_DESIGNS else (lambda _, __: None)
         found: list[list[list[DesignRow]]] = []
-        for part, made in zip(parts, side_by_side(work, jobs, progress), strict=True):
+        for part, made in zip(parts, in_parallel(work, jobs, progress), strict=True):
             found.append(
-                [_lost(self.evaluator, made)] * len(part) if isinstance(made, Died) else made
+                [_lost(self.evaluator, made)] * len(part) if isinstance(made, ProcessDied) else made
             )
         return self._answers([rows for part in found for rows in part])
 
@@ -141,7 +143,7 @@ def _solved(evaluator: Evaluator, values: Array, _: object) -> list[list[DesignR
     return [evaluator.rows(each) for each in values]
 
 
-def _lost(evaluator: Evaluator, died: Died) -> list[DesignRow]:
+def _lost(evaluator: Evaluator, died: ProcessDied) -> list[DesignRow]:
     return [
         DesignRow(pin, case, None, None, None, "failed", reason=died.reason)
         for pin, case in evaluator.table

@@ -14,12 +14,12 @@ from reports.data.reliability import Spread
 
 Array = NDArray[np.float64]
 
-SETS = 8  # independently scrambled, from whose scatter the intervals come
+SCRAMBLED_SETS = 8  # independently scrambled, from whose scatter the intervals come
 
 
 def base_samples(asked: int) -> int:
     """Of each set, a power of two; zero for fewer than a set needs."""
-    each = asked // SETS
+    each = asked // SCRAMBLED_SETS
     return 2 ** (each.bit_length() - 1) if each >= 2 else 0
 
 
@@ -31,7 +31,7 @@ def indices(
     """
     standard: Any = norm()
     first, total = [], []
-    for k in range(SETS):
+    for k in range(SCRAMBLED_SETS):
         lost = False
 
         def outputs(x: Array) -> Array:
@@ -54,8 +54,8 @@ def indices(
 def _bounded(values: Array, confidence: float) -> list[list[Spread]]:
     """Of values (sets, s, d)."""
     mean = values.mean(axis=0)
-    deviate = float(student.ppf(0.5 + 0.5 * confidence, SETS - 1))
-    half = deviate * values.std(axis=0, ddof=1) / np.sqrt(SETS)
+    deviate = float(student.ppf(0.5 + 0.5 * confidence, SCRAMBLED_SETS - 1))
+    half = deviate * values.std(axis=0, ddof=1) / np.sqrt(SCRAMBLED_SETS)
     return [
         [Spread(float(m), float(m - h), float(m + h)) for m, h in zip(*rows, strict=True)]
         for rows in zip(mean, half, strict=True)

@@ -27,8 +27,10 @@ from scipy.special import ndtr, ndtri
 Array = NDArray[np.float64]
 LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
 
-FARTHEST = 10.0  # standard deviations: where the search ends, probabilities are below 1e-18
-NEARLY = 0.01  # angle of a quantile's point, whose square is in the value
+MAX_RELIABILITY_INDEX = (
+    10.0  # standard deviations: where the search ends, probabilities are below 1e-18
+)
+QUANTILE_ANGLE = 0.01  # angle of a quantile's point, whose square is in the value
 
 
 @dataclass(frozen=True)
@@ -51,9 +53,9 @@ class Closeness:
         return self.near > 0.0
 
 
-SMOOTH = Closeness()
+SMOOTH_CLOSENESS = Closeness()
 # For limit states with the noise of meshes: a tenth of the angle is half a per cent of the index.
-NOISY = Closeness(0.5, 0.1, 0.05, 0.8, 12, 3)
+NOISY_CLOSENESS = Closeness(0.5, 0.1, 0.05, 0.8, 12, 3)
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,9 @@ class _Counted:
         return float(found[0]), gradient
 
 
-def design_point(limit: LimitState, start: Array, close: Closeness = SMOOTH) -> DesignPoint:
+def design_point(
+    limit: LimitState, start: Array, close: Closeness = SMOOTH_CLOSENESS
+) -> DesignPoint:
     """The point nearest to the origin where `limit` is zero, from a start (d,).
 
     A limit state with several such points needs several starts.
@@ -148,7 +152,7 @@ def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
 
     def on_limit(u: Array) -> float:
         value = g.at(u) / scale
-        return value if np.isfinite(value) else FARTHEST
+        return value if np.isfinite(value) else MAX_RELIABILITY_INDEX
 
     def slope(u: Array) -> Array:
         return np.nan_to_num(g.value_and_gradient(u)[1]) / scale
@@ -168,12 +172,12 @@ def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
 
 
 def form_quantile(
-    limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH
+    limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH_CLOSENESS
 ) -> FormQuantile:
     """The quantile of `limit` over d = size variables, by the first order."""
     g = _Counted(limit, close)
     radius = float(ndtri(probability))
-    if abs(radius) > FARTHEST:
+    if abs(radius) > MAX_RELIABILITY_INDEX:
         return FormQuantile(np.nan, np.zeros(size), 0, "the probability is beyond 10 deviations")
     u = np.zeros(size)
     value, gradient = g.value_and_gradient(u)
@@ -183,7 +187,7 @@ def form_quantile(
         if why:
             return FormQuantile(np.nan, u, g.calls, why)
         target = radius * gradient / slope
-        angle = max(close.angle, NEARLY)
+        angle = max(close.angle, QUANTILE_ANGLE)
         if u.any() and float(np.linalg.norm(u - target)) <= angle * abs(radius):
             return FormQuantile(value, u, g.calls)
         if radius == 0.0:
@@ -207,8 +211,8 @@ def _stuck(value: float, slope: float, scale: float, u: Array) -> str:
         return "a design near the design point fails"
     if slope <= 1e-12 * scale:
         return "nothing random changes the factor there"
-    if float(np.linalg.norm(u)) > 0.9 * FARTHEST and value > 0.0:
-        return f"no failure is found within {0.9 * FARTHEST:g} standard deviations"
+    if float(np.linalg.norm(u)) > 0.9 * MAX_RELIABILITY_INDEX and value > 0.0:
+        return f"no failure is found within {0.9 * MAX_RELIABILITY_INDEX:g} standard deviations"
     return ""
 
 
@@ -220,7 +224,7 @@ def _aligned(u: Array, normal: Array, angle: float) -> bool:
 def _within(target: Array) -> Array:
     """Not farther out than where the search ends."""
     length = float(np.linalg.norm(target))
-    return target if length <= FARTHEST else target * (FARTHEST / length)
+    return target if length <= MAX_RELIABILITY_INDEX else target * (MAX_RELIABILITY_INDEX / length)
 
 
 def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float) -> Array:

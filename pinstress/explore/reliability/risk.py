@@ -16,8 +16,8 @@ from reports.data.results import PinResult
 
 Array = NDArray[np.float64]
 
-CURVE = 80  # points of a distribution
-FEWEST = 10  # weighted samples below a point of it
+CURVE_POINTS = 80  # points of a distribution
+MIN_SAMPLES_BELOW = 10  # weighted samples below a point of it
 
 
 @dataclass(frozen=True)
@@ -156,11 +156,11 @@ def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, flo
     below = np.cumsum(sample.draws.weights[known][order]) / len(used)
     inside = np.flatnonzero((below > 0.0) & (below < 1.0))
     if way:  # of weighted samples, where they are many: not far above the design points
-        inside = inside[(below[inside] < 0.5) & (inside >= FEWEST)]
+        inside = inside[(below[inside] < 0.5) & (inside >= MIN_SAMPLES_BELOW)]
     if not len(inside):
         return ()
     deviates = ndtri(below[inside])
-    at = np.unique(np.searchsorted(deviates, np.linspace(deviates[0], deviates[-1], CURVE)))
+    at = np.unique(np.searchsorted(deviates, np.linspace(deviates[0], deviates[-1], CURVE_POINTS)))
     chosen = inside[np.minimum(at, len(inside) - 1)]
     return tuple((float(factors[k]), float(below[k]), way) for k in chosen)
 

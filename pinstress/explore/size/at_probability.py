@@ -16,24 +16,29 @@ from dataclasses import replace
 import numpy as np
 
 from pinbase.processes.pool import Progress
-from pinstress.analysis.remedies.secant import CLOSE
+from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
-from pinstress.explore.reliability.form import NOISY, SMOOTH, Array, form_quantile
+from pinstress.explore.reliability.form import (
+    NOISY_CLOSENESS,
+    SMOOTH_CLOSENESS,
+    Array,
+    form_quantile,
+)
 from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Aim
+from pinstress.explore.size.lightest_pin import WeightGoal
 from pinstress.explore.size.pin_shape import kind_of
 from pinstress.explore.sweep.batches import shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.study.reading.file import Study
 
-ROUNDS = 5
-EXCESS = 2.0 * CLOSE  # over the factor, with which a search ends
+MAX_ROUNDS = 5
+MAX_FACTOR_EXCESS = 2.0 * FACTOR_TOLERANCE  # over the factor, with which a search ends
 
 Row = tuple[str, str]  # pin and case
 
 
-def require_laws(study: Study, aim: Aim, pins: Iterable[str] | None) -> None:
+def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> None:
     """Raises: InputError for a study without laws, and for laws of dimensions that are to change
     and do not move with them.
     """
@@ -68,7 +73,7 @@ def factors_at(
         progress(f"pin {pin}, factor at {probability:g}", 0.95)
         evaluator = Evaluator(study, parameters, [pin])
         designs = SolvedDesigns(evaluator, space, 1, progress)
-        close = NOISY if any(map(shapes, evaluator.numbers)) else SMOOTH
+        close = NOISY_CLOSENESS if any(map(shapes, evaluator.numbers)) else SMOOTH_CLOSENESS
         for k, row in enumerate(evaluator.table):
 
             def unused(u: Array, k: int = k, designs: SolvedDesigns = designs) -> Array:
@@ -81,7 +86,7 @@ def factors_at(
 
 def lighten_at(
     study: Study,
-    aim: Aim,
+    aim: WeightGoal,
     probability: float,
     pins: list[str] | None,
     jobs: int,
@@ -94,7 +99,7 @@ def lighten_at(
     require_laws(study, aim, pins)
     found = lighten(study, aim, pins, jobs, progress)
     before = {each.pin: each.before for each in found.pins}
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         names = [each.pin for each in found.pins]
         at = factors_at(found.study, names, probability, progress)
         found = replace(found, at=at, settled=found.settled and _reached(found, at, aim))
@@ -113,7 +118,7 @@ def lighten_at(
     return replace(found, pins=kept)
 
 
-def _reached(found: LightStudy, at: dict[Row, float], aim: Aim) -> bool:
+def _reached(found: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
     """Whether every pin that was found has the factor, and little more."""
     for each in found.pins:
         mine = [p for p in found.results.pins if p.pin == each.pin and p.safety_factor]
@@ -124,6 +129,6 @@ def _reached(found: LightStudy, at: dict[Row, float], aim: Aim) -> bool:
         if each.factor is None or not low:
             continue
         least = float(np.nanmin(low)) if np.isfinite(low).any() else np.inf
-        if not aim.required <= least * (1.0 + 1e-9) <= aim.required * (1.0 + EXCESS):
+        if not aim.required <= least * (1.0 + 1e-9) <= aim.required * (1.0 + MAX_FACTOR_EXCESS):
             return False
     return True

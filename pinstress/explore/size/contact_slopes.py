@@ -15,7 +15,7 @@ from pinstress.explore.size.scaled_study import hole_in_eye
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 
-LESS = 3e-5  # of a dimension, by which its effect on a band is found
+BAND_RATE_STEP = 3e-5  # of a dimension, by which its effect on a band is found
 
 
 class UndifferentiatedError(Exception):
@@ -56,6 +56,6 @@ def _band_rates(task: Task, dimensions: tuple[Dimension, ...], connection: str) 
     assert isinstance(task.pin, Pin)  # others are not differentiated
     now, out = task.pin.band(connection).radius, []
     for d in dimensions:
-        less = d.changed(d.value * (1.0 - LESS)).band(connection).radius
-        out.append(2.0 * (now - less) / (d.value * LESS))
+        less = d.changed(d.value * (1.0 - BAND_RATE_STEP)).band(connection).radius
+        out.append(2.0 * (now - less) / (d.value * BAND_RATE_STEP))
     return np.array(out)

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.places import Place
 from reports.data.decision import factor_ends
 from reports.data.results import PinResult
 
 
-def surface_and_section(peak: Peak) -> Iterator[tuple[Place, float]]:
+def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
     """Both, with the upper end of what is known of each, Pa; of a row without places, and of a
     singular surface that governs, that of the row.
     """
@@ -25,7 +25,7 @@ def surface_and_section(peak: Peak) -> Iterator[tuple[Place, float]]:
         yield "section", places.section.max_von_mises + places.section.error_estimate
 
 
-def beneath(peak: Peak) -> float:
+def beneath(peak: Maximum) -> float:
     """What lies beneath contact with its error, Pa; 0 without any."""
     contact = peak.places and peak.places.contact
     return contact.upper_end if contact else 0.0

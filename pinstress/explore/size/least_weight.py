@@ -6,22 +6,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from pinbase.processes.pool import Died, Job, Progress, preload, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.remedies.secant import CLOSE
+from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import run
 from pinstress.explore.size.counted import low_factor
-from pinstress.explore.size.lightest_pin import Aim, Lightest, Start, as_it_is, lightest_pin
+from pinstress.explore.size.lightest_pin import Lightest, Start, WeightGoal, as_it_is, lightest_pin
 from pinstress.explore.size.other_dimensions import written_study
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
-from reports.data.decision import ORDER, SAFE, as_described
+from reports.data.decision import OUTCOME_ORDER, SAFE, as_described
 from reports.data.results import Results
 
-PASSES = 5
-SOLVERS = ("fea.solve.solve_pin", "assess.derivatives.places", "scipy.optimize")
+MAX_PASSES = 5
+LEAST_WEIGHT_MODULES = ("fea.solve.solve_pin", "assess.derivatives.places", "scipy.optimize")
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class LightStudy:
 
 def lighten(
     study: Study,
-    aim: Aim,
+    aim: WeightGoal,
     pins: list[str] | None = None,
     jobs: int = 1,
     progress: Progress = lambda _, __: None,
@@ -55,7 +55,7 @@ def lighten(
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     starts: dict[str, Start] = {}
     first: dict[str, float | None] = {}
-    for count in range(1, PASSES + 1):
+    for count in range(1, MAX_PASSES + 1):
         found = _all(study, plan, names, aim, starts, jobs, progress)
         first = {each.pin: each.before for each in found} | first
         starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in found}
@@ -63,7 +63,7 @@ def lighten(
         progress("run of the new study", 0.9)
         results = run(new, pins=names, jobs=jobs)
         settled = all(_agrees(each, results, aim) for each in found)
-        if settled or count == PASSES:
+        if settled or count == MAX_PASSES:
             break
         plan = replace(plan, loads=prepare(new, pins=pins).loads)
     kept = tuple(replace(each, before=first[each.pin]) for each in found)
@@ -78,14 +78,16 @@ def lighten(
 
 
 def _worse(
-    study: Study, aim: Aim, found: tuple[Lightest, ...], results: Results, jobs: int
+    study: Study, aim: WeightGoal, found: tuple[Lightest, ...], results: Results, jobs: int
 ) -> dict[str, str]:
     """By pin, why what was found is decided worse than the pin as it is: a row that is safe is
     better than one that is not decided, this better than one that fails. Of pins as described: one
     that just reaches a factor does not over a range of its joint.
     """
     changed = {x.pin for x in found if not x.kept and (x.values or x.scale is not None)}
-    doubtful = {p.pin for p in results.pins if ORDER[as_described(p)] < ORDER[SAFE]} & changed
+    doubtful = {
+        p.pin for p in results.pins if OUTCOME_ORDER[as_described(p)] < OUTCOME_ORDER[SAFE]
+    } & changed
     if not doubtful:
         return {}
     start = run(_written(study, aim, []), pins=sorted(doubtful), jobs=jobs)
@@ -93,7 +95,7 @@ def _worse(
     out: dict[str, str] = {}
     for p in results.pins:
         was, now = before.get((p.pin, p.case)), as_described(p)
-        if p.pin in doubtful and was is not None and ORDER[now] < ORDER[was]:
+        if p.pin in doubtful and was is not None and OUTCOME_ORDER[now] < OUTCOME_ORDER[was]:
             out[p.pin] = f"the lightest pin that was found is {now} in {p.case}, this one {was}"
     return out
 
@@ -102,26 +104,26 @@ def _all(
     study: Study,
     plan: Plan,
     names: list[str],
-    aim: Aim,
+    aim: WeightGoal,
     starts: Mapping[str, Start],
     jobs: int,
     progress: Progress,
 ) -> list[Lightest]:
     if jobs > 1:
-        preload(*SOLVERS)
+        preload(*LEAST_WEIGHT_MODULES)
     heavy = sorted(names, key=lambda n: -len(study.table.pin[n].profile or ()))  # the longest first
     work = [
         Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in heavy
     ]
-    made = side_by_side(work, jobs, lambda message, part: progress(message, 0.9 * part))
+    made = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
     by_name = dict(zip(heavy, made, strict=True))
     return [
-        Lightest(name, why=one.reason) if isinstance(one := by_name[name], Died) else one
+        Lightest(name, why=one.reason) if isinstance(one := by_name[name], ProcessDied) else one
         for name in names
     ]
 
 
-def _written(study: Study, aim: Aim, found: list[Lightest]) -> Study:
+def _written(study: Study, aim: WeightGoal, found: list[Lightest]) -> Study:
     found = [each for each in found if not each.kept]
     scales = {each.pin: each.scale for each in found if each.scale is not None}
     scaled = resized_study(study, scales, aim.step, aim.required)
@@ -133,7 +135,7 @@ def _written(study: Study, aim: Aim, found: list[Lightest]) -> Study:
     return written_study(scaled, shapes, values, aim.step, aim.required)
 
 
-def _agrees(each: Lightest, results: Results, aim: Aim) -> bool:
+def _agrees(each: Lightest, results: Results, aim: WeightGoal) -> bool:
     """Whether the run has the factor that was found for a pin, with little excess."""
     more = aim.of_pin(each.pin)
     mine = [p for p in results.pins if p.pin == each.pin]
@@ -142,4 +144,4 @@ def _agrees(each: Lightest, results: Results, aim: Aim) -> bool:
     low = [f / more.get(p.case, 1.0) for p in mine if (f := low_factor(p)) is not None]
     if each.factor is None or not low:
         return True
-    return aim.required <= min(low) * (1.0 + 1e-9) <= each.factor * (1.0 + CLOSE)
+    return aim.required <= min(low) * (1.0 + 1e-9) <= each.factor * (1.0 + FACTOR_TOLERANCE)

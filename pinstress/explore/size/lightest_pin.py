@@ -15,10 +15,15 @@ from geometry import Pin
 from pinbase.arrays import Floats
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.remedies.dimensions import dimensions_of
-from pinstress.analysis.remedies.secant import CLOSE, LEAP, NoSizeError, smallest
+from pinstress.analysis.remedies.secant import (
+    FACTOR_TOLERANCE,
+    MAX_SCALE_STEP,
+    NoSizeError,
+    smallest,
+)
 from pinstress.explore.size.contact_slopes import UndifferentiatedError
 from pinstress.explore.size.optimise import (
-    NEAR,
+    ACTIVE_TOLERANCE,
     ImpossibleError,
     Optimality,
     Optimum,
@@ -26,7 +31,13 @@ from pinstress.explore.size.optimise import (
     least_weight,
     optimality,
 )
-from pinstress.explore.size.pin_shape import FARTHEST, KINDS, Proportions, VariedShape, kind_of
+from pinstress.explore.size.pin_shape import (
+    DIMENSION_KINDS,
+    MAX_DIMENSION_RATIO,
+    Proportions,
+    VariedShape,
+    kind_of,
+)
 from pinstress.explore.size.pin_stress import (
     PinProblem,
     PinStress,
@@ -34,37 +45,51 @@ from pinstress.explore.size.pin_stress import (
 )
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.singular_places import decided
-from pinstress.explore.size.written_dimensions import ROUNDING, STEPS_UP, binding, rounded_values
+from pinstress.explore.size.written_dimensions import (
+    LIMIT_ROUNDING_TOLERANCE,
+    MAX_ROUNDING_STEPS,
+    binding,
+    rounded_values,
+)
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-AIM = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
-ENOUGH = 2e-3  # of the weight: what meshes are worth
-NARROW = 5e-3  # a bracket of scales that is not looked into
-FAR = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
-SETTLED = 0.05  # of the stress of a pin in contact, below what is allowed: near enough
-ROUGH_AIM, ROUGH_ENOUGH = 0.015, 1e-2  # AIM and ENOUGH in contact, where meshes and cells scatter
-CORRECTIONS = 3  # of what rough cells say
-SCALINGS = 10
-DOUBT = 0.03  # of the weight of a pin that is only scaled, where that was found by slopes
-REPAIRS = 4
-WHOLE = "scaled as a whole, because its stress has no derivatives by its dimensions{}"
-CUTS = ": it has cuts, or is no body of revolution"
-AS_IT_IS = "left as it is: "
+STRESS_MARGIN = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
+WEIGHT_CONVERGENCE = 2e-3  # of the weight: what meshes are worth
+SCALE_BRACKET_TOLERANCE = 5e-3  # a bracket of scales that is not looked into
+SLOPE_RANGE = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
+CONTACT_STRESS_TOLERANCE = (
+    0.05  # of the stress of a pin in contact, below what is allowed: near enough
+)
+CONTACT_STRESS_MARGIN, CONTACT_WEIGHT_CONVERGENCE = (
+    0.015,
+    1e-2,
+)  # STRESS_MARGIN and WEIGHT_CONVERGENCE in contact, where meshes and cells scatter
+MAX_CORRECTIONS = 3  # of what rough cells say
+MAX_SCALINGS = 10
+SCALED_WEIGHT_DOUBT = (
+    0.03  # of the weight of a pin that is only scaled, where that was found by slopes
+)
+MAX_REPAIRS = 4
+SCALED_AS_WHOLE_NOTE = (
+    "scaled as a whole, because its stress has no derivatives by its dimensions{}"
+)
+CUTS_REASON = ": it has cuts, or is no body of revolution"
+LEFT_AS_IT_IS = "left as it is: "
 
 Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Aim:
+class WeightGoal:
     """What is wished: the factor, kinds of dimensions (KINDS) that may change, geometric limits,
     the step (m) to which diameters are rounded up. more: by pin and case, times the factor that
     the nominal design needs so that a less likely one reaches it.
     """
 
     required: float
-    vary: tuple[str, ...] = KINDS
+    vary: tuple[str, ...] = DIMENSION_KINDS
     limits: Proportions = field(default_factory=Proportions)
     step: float | None = None
     more: Mapping[tuple[str, str], float] | None = None
@@ -101,7 +126,7 @@ class Lightest:
     @property
     def kept(self) -> bool:
         """Whether it is left as it is."""
-        return self.way.startswith(AS_IT_IS)
+        return self.way.startswith(LEFT_AS_IT_IS)
 
 
 @dataclass(frozen=True)
@@ -121,7 +146,7 @@ def lightest_pin(
     study: Study,
     plan: Plan,
     pin: str,
-    aim: Aim,
+    aim: WeightGoal,
     start: Start | None = None,
     tell: Tell = lambda _: None,
 ) -> Lightest:
@@ -139,7 +164,7 @@ def lightest_pin(
             raise UndifferentiatedError
         shape, known = problem.shape, start.values or {}
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
-        stress.at(values, FAR)
+        stress.at(values, SLOPE_RANGE)
         sure = stress.sure(values)
         before = problem.required * float(np.exp(-sure.largest))
         stress.watched = decided(sure.peaks) if start.decided is None else start.decided
@@ -168,18 +193,18 @@ def _singular(stress: PinStress) -> bool:
     return any(peak.verdict == "singular" for peak in stress.solved[0].peaks)
 
 
-def as_it_is(study: Study, aim: Aim, found: Lightest, why: str) -> Lightest:
+def as_it_is(study: Study, aim: WeightGoal, found: Lightest, why: str) -> Lightest:
     """The pin as it is in the study in place of what was found, which is decided worse."""
     shape = VariedShape(study, pin_of(study, found.pin), aim.vary, aim.limits)
     values = {d.key: d.value for d in shape.dimensions} or None
     scale = 1.0 if values is None else None
     return Lightest(
         found.pin, values, scale, found.before, found.before, solved=found.solved,
-        way=AS_IT_IS + why,
+        way=LEFT_AS_IT_IS + why,
     )  # fmt: skip
 
 
-def _only_scaled(stress: PinStress, aim: Aim, start: Start) -> Lightest:
+def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
     """Without derivatives: all its dimensions times the same, as `size` does."""
     problem, first = stress.problem, start.scale or 1.0
     factors: dict[float, float] = {}
@@ -194,7 +219,9 @@ def _only_scaled(stress: PinStress, aim: Aim, start: Start) -> Lightest:
 
     try:
         best = smallest(factor_at, problem.required, first)
-        way = WHOLE.format("" if isinstance(problem.shape.whole, Pin) else CUTS)
+        way = SCALED_AS_WHOLE_NOTE.format(
+            "" if isinstance(problem.shape.whole, Pin) else CUTS_REASON
+        )
     except (NoSizeError, ImpossibleError, InputError) as error:
         return Lightest(
             problem.name, before=factors.get(first), solved=len(factors), why=str(error)
@@ -205,7 +232,7 @@ def _only_scaled(stress: PinStress, aim: Aim, start: Start) -> Lightest:
     )  # fmt: skip
 
 
-def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str:
+def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> PinProblem | str:
     """What is posed of a pin, or why nothing can be."""
     table = study.table.pin[pin]
     if table.geometry is not None:
@@ -217,7 +244,7 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str
     if not shape.dimensions and isinstance(made, Pin):
         has = [
             kind
-            for kind in KINDS
+            for kind in DIMENSION_KINDS
             if any(kind_of(d.key) == kind for d in dimensions_of(study, made))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
@@ -228,13 +255,13 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: Aim) -> PinProblem | str
 class _Search:
     """The pin as a problem for pinstress.explore.size.optimise."""
 
-    def __init__(self, problem: PinProblem, stress: PinStress, aim: Aim) -> None:
+    def __init__(self, problem: PinProblem, stress: PinStress, aim: WeightGoal) -> None:
         self.problem, self.stress, self.aim = problem, stress, aim
         self.shape = problem.shape
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        now, far = np.log(self.shape.values), np.log(FARTHEST)
+        now, far = np.log(self.shape.values), np.log(MAX_DIMENSION_RATIO)
         return now - far, now + far
 
     def weight(self, x: Floats) -> tuple[float, Floats]:
@@ -252,12 +279,16 @@ class _Search:
 
     def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
         """Over what is aimed at, a little below what is allowed."""
-        aim = ROUGH_AIM if self.stress.in_contact else AIM
+        aim = CONTACT_STRESS_MARGIN if self.stress.in_contact else STRESS_MARGIN
         return tuple(replace(p, value=p.value + aim) for p in solved.every)
 
     def least_weight(self, start: Floats) -> Optimum:
         """From dimensions' logarithms."""
-        return least_weight(self, start, ROUGH_ENOUGH if self.stress.in_contact else ENOUGH)
+        return least_weight(
+            self,
+            start,
+            CONTACT_WEIGHT_CONVERGENCE if self.stress.in_contact else WEIGHT_CONVERGENCE,
+        )
 
     def volume(self, solved: SolvedPin) -> float:
         """m^3."""
@@ -270,7 +301,7 @@ class _Search:
 
     def keeps(self, values: Floats) -> bool:
         """Whether geometric limits hold but for the digits that are written."""
-        return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -ROUNDING
+        return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -LIMIT_ROUNDING_TOLERANCE
 
 
 def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
@@ -279,9 +310,9 @@ def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) ->
     optimum = _optimum(search, near)
     best = _written(search, optimum)
     before, as_whole = None, near.values if whole is None else np.array(whole)
-    if set(aim.vary) == set(KINDS):
+    if set(aim.vary) == set(DIMENSION_KINDS):
         before = float(shape.volume(search.written(as_whole))[0])
-        if before <= search.volume(best) * (1.0 + DOUBT):
+        if before <= search.volume(best) * (1.0 + SCALED_WEIGHT_DOUBT):
             _, as_whole = _scaled(search, search.stress.at(as_whole), roughly=False)
             as_scaled = _repaired(search, as_whole)
             if as_scaled is not None:
@@ -304,15 +335,15 @@ def _optimum(search: _Search, near: SolvedPin) -> Optimum:
     """From a design near the factor. Of a pin in contact what rough cells say is corrected at the
     optimum, and that is searched again from there, until the finer ones agree.
     """
-    if len(search.shape.dimensions) > 1 or not -NEAR <= near.worst <= 0.0:
+    if len(search.shape.dimensions) > 1 or not -ACTIVE_TOLERANCE <= near.worst <= 0.0:
         found = search.least_weight(np.log(near.values))
     else:
         x, places = np.log(near.values), near.every
         found = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     if search.stress.in_contact:
-        for _ in range(CORRECTIONS):
+        for _ in range(MAX_CORRECTIONS):
             sure = search.stress.sure(search.written(np.exp(found.x)))
-            if -SETTLED <= sure.worst <= 0.0:
+            if -CONTACT_STRESS_TOLERANCE <= sure.worst <= 0.0:
                 break
             found = search.least_weight(found.x)
     return found
@@ -327,33 +358,33 @@ def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin
     now, values = first, search.shape.values
     best: SolvedPin | None = None
     small, why = None, ""  # small: with which stress is too large
-    for _ in range(SCALINGS):
+    for _ in range(MAX_SCALINGS):
         here = float(np.log(now.values[0] / values[0]))
         if now.worst <= 0.0:
             best = now
         else:
             small = here if small is None else max(small, here)
-        if -CLOSE <= now.worst <= 0.0:
+        if -FACTOR_TOLERANCE <= now.worst <= 0.0:
             break
         top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
         assert top.slope is not None  # it was found with derivatives
         if top.slope.sum() > 0.0:  # of bores alone, which weaken it
             return first, first.values
-        leap, rate = np.log(LEAP), min(float(top.slope.sum()), -0.5)
-        there = here + float(np.clip((now.worst + AIM) / -rate, -leap, leap))
-        if roughly and abs(now.worst) <= FAR:
+        leap, rate = np.log(MAX_SCALE_STEP), min(float(top.slope.sum()), -0.5)
+        there = here + float(np.clip((now.worst + STRESS_MARGIN) / -rate, -leap, leap))
+        if roughly and abs(now.worst) <= SLOPE_RANGE:
             return now, values * np.exp(there)
         if best is not None:
             large = float(np.log(best.values[0] / values[0]))
-            if large - (there if small is None else small) < NARROW:
+            if large - (there if small is None else small) < SCALE_BRACKET_TOLERANCE:
                 break
             if small is not None and not small < there < large:
                 there = 0.5 * (small + large)
-        if abs(there) > np.log(FARTHEST):
+        if abs(there) > np.log(MAX_DIMENSION_RATIO):
             break
         try:
             tried = values * np.exp(there)
-            now = search.stress.at(tried if roughly else search.written(tried), FAR)
+            now = search.stress.at(tried if roughly else search.written(tried), SLOPE_RANGE)
         except ImpossibleError as error:
             why = f"; with {np.exp(there):.3g} times: {error}"
             break
@@ -389,7 +420,7 @@ def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
     it is not.
     """
     step, more = search.aim.step, 0.0
-    for k in range(REPAIRS if step is None else STEPS_UP):
+    for k in range(MAX_REPAIRS if step is None else MAX_ROUNDING_STEPS):
         found = search.stress.sure(search.written(values * (1.0 + more)))
         if found.worst <= 0.0:
             return found

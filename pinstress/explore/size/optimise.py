@@ -27,18 +27,20 @@ from scipy.optimize import minimize, nnls
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
-PENALTY = (
+STRESS_PENALTY = (
     2.0  # of excess stress; multipliers add up to 1 where stress falls with the area or faster
 )
-STRICT = 10.0  # the same of geometric limits
-FIRST, LONGEST = 0.7, 1.1  # steps of a logarithm: to half, to a third
-SHORTEST = 2e-3
-CLOSE = 5e-4  # of the merit
-WORTH = 0.1  # part of the promise that a step must keep
-NEAR = 0.02  # of the limit: a stress, ratio or bound that is active; what meshes are worth
-AGREE = 1e-3  # by which an earlier tangent may exceed the stress
-KEPT = 6  # tangents of a place
-MOST = 25  # solutions
+GEOMETRY_PENALTY = 10.0  # the same of geometric limits
+FIRST_LOG_STEP, MAX_LOG_STEP = 0.7, 1.1  # steps of a logarithm: to half, to a third
+MIN_LOG_STEP = 2e-3
+MERIT_TOLERANCE = 5e-4  # of the merit
+MIN_GAIN_RATIO = 0.1  # part of the promise that a step must keep
+ACTIVE_TOLERANCE = (
+    0.02  # of the limit: a stress, ratio or bound that is active; what meshes are worth
+)
+TANGENT_TOLERANCE = 1e-3  # by which an earlier tangent may exceed the stress
+MAX_TANGENTS = 6  # tangents of a place
+MAX_SOLUTIONS = 25  # solutions
 
 
 class ImpossibleError(Exception):
@@ -119,7 +121,7 @@ class Tangents:
     def then(self, x: Array, places: tuple[StressPlace, ...]) -> Tangents:
         """With those of places that have one at a point."""
         new = {p.name: (x, p.value, p.slope) for p in places if p.slope is not None}
-        more = {name: (one, *self.known.get(name, ()))[:KEPT] for name, one in new.items()}
+        more = {name: (one, *self.known.get(name, ()))[:MAX_TANGENTS] for name, one in new.items()}
         return Tangents(self.known | more)
 
     def completed(self, places: tuple[StressPlace, ...]) -> tuple[StressPlace, ...]:
@@ -138,14 +140,17 @@ class Tangents:
         for place in places:
             for at, value, slope in self.known.get(place.name, ()):
                 here = value + float(slope @ (x - at))
-                if here <= place.value + AGREE and not np.array_equal(at, x):
+                if here <= place.value + TANGENT_TOLERANCE and not np.array_equal(at, x):
                     found.append((here, slope))
         values, slopes = zip(*found, strict=True) if found else ((), ())
         return np.array(values), np.array(slopes).reshape(-1, len(x))
 
 
 def least_weight(
-    problem: WeightProblem, start: Array, close: float = CLOSE, tell: Tell = lambda _: None
+    problem: WeightProblem,
+    start: Array,
+    close: float = MERIT_TOLERANCE,
+    tell: Tell = lambda _: None,
 ) -> Optimum:
     """The optimum from a start (n,). close: a step that promises less of the merit ends the search.
 
@@ -155,14 +160,14 @@ def least_weight(
     x = np.clip(start, lower, upper)
     places = problem.stresses(x)
     tangents = Tangents().then(x, places)
-    solved, radius, why = 1, FIRST, ""
+    solved, radius, why = 1, FIRST_LOG_STEP, ""
     while True:
         merit = _merit(problem, x, worst(places))
         step, promise = _step(problem, x, places, tangents, radius)
         if promise <= close:
             break
-        if solved >= MOST or radius < SHORTEST:
-            why = f"not converged in {solved} solutions" if solved >= MOST else ""
+        if solved >= MAX_SOLUTIONS or radius < MIN_LOG_STEP:
+            why = f"not converged in {solved} solutions" if solved >= MAX_SOLUTIONS else ""
             break
         tell(f"{solved} solved")
         length = float(np.abs(step).max())
@@ -174,9 +179,11 @@ def least_weight(
             continue
         tangents = tangents.then(x + step, tried)
         gained = merit - _merit(problem, x + step, worst(tried))
-        if gained >= WORTH * promise:
+        if gained >= MIN_GAIN_RATIO * promise:
             x, places = x + step, tried
-            radius = min(LONGEST, max(radius, 2.0 * length) if gained > 0.5 * promise else length)
+            radius = min(
+                MAX_LOG_STEP, max(radius, 2.0 * length) if gained > 0.5 * promise else length
+            )
         else:
             radius = 0.4 * length
     found = optimality(problem, x, tangents.completed(places))
@@ -199,19 +206,33 @@ def _active(
     problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
 ) -> list[tuple[str, Array]]:
     """Active constraints and the gradients of what must not be positive."""
-    out = [(p.name, p.slope) for p in places if p.value >= -NEAR and p.slope is not None]
+    out = [
+        (p.name, p.slope) for p in places if p.value >= -ACTIVE_TOLERANCE and p.slope is not None
+    ]
     values, gradients = problem.limits(x)
-    out += [(f"limit {k + 1}", -gradients[k]) for k in range(len(values)) if values[k] <= NEAR]
+    out += [
+        (f"limit {k + 1}", -gradients[k])
+        for k in range(len(values))
+        if values[k] <= ACTIVE_TOLERANCE
+    ]
     lower, upper = problem.bounds
     unit = np.eye(len(x))
-    out += [(f"least {k + 1}", -unit[k]) for k in range(len(x)) if x[k] <= lower[k] + NEAR]
-    out += [(f"most {k + 1}", unit[k]) for k in range(len(x)) if x[k] >= upper[k] - NEAR]
+    out += [
+        (f"least {k + 1}", -unit[k]) for k in range(len(x)) if x[k] <= lower[k] + ACTIVE_TOLERANCE
+    ]
+    out += [
+        (f"most {k + 1}", unit[k]) for k in range(len(x)) if x[k] >= upper[k] - ACTIVE_TOLERANCE
+    ]
     return out
 
 
 def _merit(problem: WeightProblem, x: Array, stress: float) -> float:
     """Of the largest stress over what is allowed, its logarithm."""
-    return problem.weight(x)[0] + PENALTY * max(0.0, stress) + STRICT * _broken(problem, x)
+    return (
+        problem.weight(x)[0]
+        + STRESS_PENALTY * max(0.0, stress)
+        + GEOMETRY_PENALTY * _broken(problem, x)
+    )
 
 
 def _broken(problem: WeightProblem, x: Array) -> float:
@@ -234,8 +255,8 @@ def _step(
     # The last two variables are what stresses and geometric limits exceed.
     def merit(y: Array) -> tuple[float, Array]:
         value, slope = problem.weight(y[:n])
-        more = PENALTY * float(y[n]) + STRICT * float(y[n + 1])
-        return value + more, np.append(slope, [PENALTY, STRICT])
+        more = STRESS_PENALTY * float(y[n]) + GEOMETRY_PENALTY * float(y[n + 1])
+        return value + more, np.append(slope, [STRESS_PENALTY, GEOMETRY_PENALTY])
 
     def limits(y: Array) -> Array:
         geometric = problem.limits(y[:n])[0] + y[n + 1]

@@ -19,12 +19,16 @@ from pinstress.explore.size.scaled_study import (
     value_of,
     with_what_follows,
 )
-from pinstress.explore.sweep.number import put
+from pinstress.explore.sweep.number import with_value
 from pinstress.study.reading.file import Study, with_raw
 from pinstress.study.schema.units import UnitSystem, to_si
 
-CHANGED = 1e-3  # of a dimension, to see where it is
-UP = {"diameters": 1, "bores": -1, "fillets": -1}  # where rounding up is on the safe side
+PATH_PROBE_STEP = 1e-3  # of a dimension, to see where it is
+ROUNDING_DIRECTIONS = {
+    "diameters": 1,
+    "bores": -1,
+    "fillets": -1,
+}  # where rounding up is on the safe side
 
 Path = tuple[str | int, ...]
 Values = Mapping[str, Mapping[str, float]]  # m, by pin and by key of a dimension
@@ -40,7 +44,7 @@ def paths_of(pin: Pin, dimension: Dimension) -> tuple[Path, ...]:
         first, _, last = corners.partition("-")
         numbers = range(int(first) - 1, int(last or first))
         return tuple((line, corner, int(at) - 1) for corner in numbers)
-    return tuple(_in_profile(pin, dimension.changed(dimension.value * (1.0 - CHANGED))))
+    return tuple(_in_profile(pin, dimension.changed(dimension.value * (1.0 - PATH_PROBE_STEP))))
 
 
 def _in_profile(pin: Pin, other: Pin) -> Iterator[Path]:
@@ -66,7 +70,7 @@ def study_with(
     for paths, value in values:
         for path in paths:
             where = _as_written(raw["pin"][pin], path)
-            raw = put(raw, ("pin", pin, *where), value / metre)
+            raw = with_value(raw, ("pin", pin, *where), value / metre)
     return with_raw(study, raw)
 
 
@@ -122,6 +126,6 @@ def _write(
     steps = None
     if step is not None and kind == "diameters":
         steps = (step / 2.0 if key.startswith("meridian") else step) / metre
-    number = rounded(value / metre, steps, UP[kind]) * metre / one
+    number = rounded(value / metre, steps, ROUNDING_DIRECTIONS[kind]) * metre / one
     if not math.isclose(number * one, to_si(old, "length", system), rel_tol=1e-12):
         replace_number(here, last, float(f"{number:.12g}"), unit)

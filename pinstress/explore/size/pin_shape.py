@@ -20,13 +20,17 @@ from pinbase.arrays import Floats
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.study.reading.file import Study
 
-KINDS = "diameters", "bores", "fillets"
-FACE = 0.6  # of a step's height, that its fillet takes at most
-BAND = 0.25  # of a segment's length, that fillets take at most
-FARTHEST = 50.0  # times a dimension, and parts of it
-STEP = 1e-3  # of a dimension, of which shapes are linear
-CORNER = 1.0 - math.pi / 4.0  # area between a fillet and its corner, of the radius squared
-CENTRE = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)  # its distance from the sides
+DIMENSION_KINDS = "diameters", "bores", "fillets"
+MAX_FACE_SHARE = 0.6  # of a step's height, that its fillet takes at most
+MAX_BAND_SHARE = 0.25  # of a segment's length, that fillets take at most
+MAX_DIMENSION_RATIO = 50.0  # times a dimension, and parts of it
+SHAPE_STEP = 1e-3  # of a dimension, of which shapes are linear
+FILLET_AREA_FACTOR = (
+    1.0 - math.pi / 4.0
+)  # area between a fillet and its corner, of the radius squared
+FILLET_CENTROID_FACTOR = (10.0 - 3.0 * math.pi) / (
+    12.0 - 3.0 * math.pi
+)  # its distance from the sides
 
 
 @dataclass(frozen=True)
@@ -120,8 +124,8 @@ class VariedShape:
         return tuple(np.stack([rate[k] for rate in found], axis=-1) for k in range(3))  # type: ignore
 
     def _rate(self, dimension: Dimension) -> tuple[Floats, Floats, Floats]:
-        less = dimension.changed(dimension.value * (1.0 - STEP))
-        other, now, size = _Ends.of(less), self._now, STEP * dimension.value
+        less = dimension.changed(dimension.value * (1.0 - SHAPE_STEP))
+        other, now, size = _Ends.of(less), self._now, SHAPE_STEP * dimension.value
         return (
             (now.outer - other.outer) / size,
             (now.inner - other.inner) / size,
@@ -165,10 +169,10 @@ class VariedShape:
         for k, rho in enumerate(ends.fillets):
             end = self._thinner(k)
             radius, by = ends.outer[end] / 2.0, outer[end] / 2.0
-            times = 2.0 * math.pi * CORNER
-            total += times * rho * rho * (radius + CENTRE * rho)
+            times = 2.0 * math.pi * FILLET_AREA_FACTOR
+            total += times * rho * rho * (radius + FILLET_CENTROID_FACTOR * rho)
             slope += times * rho * rho * by
-            slope += times * rho * (2.0 * radius + 3.0 * CENTRE * rho) * fillets[k]
+            slope += times * rho * (2.0 * radius + 3.0 * FILLET_CENTROID_FACTOR * rho) * fillets[k]
         return total, slope
 
     def _thinner(self, corner: int) -> tuple[int, int]:
@@ -211,7 +215,7 @@ class VariedShape:
             )  # fmt: skip
             if not rho:
                 continue
-            face = max(FACE, rho / ((D - d) / 2.0))
+            face = max(MAX_FACE_SHARE, rho / ((D - d) / 2.0))
             yield self._limit(
                 f"{name}: fillet at most {face:.4g} of its height",
                 (face / 2.0, D, outer[large]), (-face / 2.0, d, outer[small]),
@@ -251,7 +255,7 @@ class VariedShape:
             if not mine:
                 continue
             taken = float(now.fillets[mine].sum())
-            most = max(BAND, taken / segment.length)
+            most = max(MAX_BAND_SHARE, taken / segment.length)
             still = np.zeros(len(self.values))
             yield self._limit(
                 f"fillets at most {most:.4g} of segment {k + 1}",

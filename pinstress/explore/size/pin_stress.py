@@ -24,13 +24,13 @@ import numpy as np
 from assess.derivatives.in_section import section_derivatives
 from assess.derivatives.places import PartsOfSection, PartTop, halves
 from assess.derivatives.records import SolvedCase
-from fea.beam.error_model import TWICE
+from fea.beam.error_model import CLAMPED_SPAN_ERROR
 from fea.core.linear_solver import SolveError
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer
-from fea.singular.singularities import VARIED
-from fea.solve.requirement import Asked
+from fea.harmonic.evaluate import HarmonicField
+from fea.singular.singularities import DISTANCE_VARIATIONS
+from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import Solution
 from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import ArgumentError, Pin
@@ -45,19 +45,23 @@ from pinstress.explore.size.optimise import ImpossibleError, StressPlace, worst
 from pinstress.explore.size.other_dimensions import paths_of, study_with
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import wider_eyes
-from pinstress.explore.size.singular_places import BENDING, CasePlace, SingularPlaces
+from pinstress.explore.size.singular_places import DIAMETER_EXPONENT, CasePlace, SingularPlaces
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study
 
-WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
-UNKNOWN = 0.3  # the same of places where they are not yet known
-SMALL = 0.05  # of the largest force in any case: a case whose forces are smaller does not govern
-BELOW = 1.0  # the logarithm of stress below the largest, from which on a case is left out
-ANOTHER = 0.7  # the logarithm of a dimension's change after which all cases are looked at again
-EQUAL = 1e-9  # of a dimension
+GRADIENT_WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
+UNKNOWN_PLACE_WINDOW = 0.3  # the same of places where they are not yet known
+MIN_FORCE_SHARE = (
+    0.05  # of the largest force in any case: a case whose forces are smaller does not govern
+)
+CASE_WINDOW = 1.0  # the logarithm of stress below the largest, from which on a case is left out
+CASE_REVIEW_DISTANCE = (
+    0.7  # the logarithm of a dimension's change after which all cases are looked at again
+)
+DIMENSION_TOLERANCE = 1e-9  # of a dimension
 
 Tell = Callable[[str], None]
 
@@ -71,7 +75,7 @@ class PinProblem:
     study: Study
     name: str
     shape: VariedShape
-    asked: Asked
+    asked: Requirement
     loads: dict[str, CaseLoads]
     required: float
     more: dict[str, float]
@@ -84,7 +88,7 @@ class SolvedPin:
     """
 
     values: Floats
-    peaks: tuple[Peak, ...]
+    peaks: tuple[Maximum, ...]
     places: tuple[StressPlace, ...]
     singular: tuple[CasePlace, ...] = ()
 
@@ -202,7 +206,7 @@ class PinStress:
     ) -> SolvedPin:
         self.count += 1
         self._tell(f"pin {self.problem.name}, design {self.count}")
-        peaks: list[Peak] = []
+        peaks: list[Maximum] = []
         found: list[tuple[_Found, float]] = []
         singular: list[CasePlace] = []
         under: list[CasePlace] = []
@@ -224,10 +228,10 @@ class PinStress:
         top = max([*logs, *(place.value for _, place in under)])
         of_case = [(part.case, log) for (part, _), log in zip(found, logs, strict=True)]
         of_case += [(case, place.value) for case, place in under]
-        self._cases = tuple(dict.fromkeys(case for case, log in of_case if log > top - BELOW))
+        self._cases = tuple(dict.fromkeys(case for case, log in of_case if log > top - CASE_WINDOW))
         places = [place for _, place in under]
         for (part, _), value in zip(found, logs, strict=True):
-            window = WINDOW if part.name in self._known else UNKNOWN
+            window = GRADIENT_WINDOW if part.name in self._known else UNKNOWN_PLACE_WINDOW
             slope = None
             if values is not None and value >= top - (window if abs(top) < far else 0.0):
                 slope = values * self._slope(part) + part.besides
@@ -241,14 +245,16 @@ class PinStress:
         pins, loads = [pin_of(study, self.problem.name)], self.problem.loads
         if values is None:
             chosen = self._cases
-        elif self._about is None or np.abs(np.log(values / self._about)).max() > ANOTHER:
+        elif (
+            self._about is None or np.abs(np.log(values / self._about)).max() > CASE_REVIEW_DISTANCE
+        ):
             self._about, chosen = values, ()
         else:
             chosen = self._cases
         if not chosen:
             every = tasks(study, pins, loads)
             largest = {x.case: _size(task, x) for task in every for x in task.loads}
-            least = SMALL * max(largest.values(), default=0.0)
+            least = MIN_FORCE_SHARE * max(largest.values(), default=0.0)
             chosen = tuple(case for case, size in largest.items() if size >= least)
         return tasks(study, pins, {case: loads[case] for case in chosen})
 
@@ -258,15 +264,15 @@ class PinStress:
         except ArithmeticError as error:
             raise ImpossibleError(str(error)) from None
 
-    def _allowed(self, task: Task, peak: Peak) -> float:
+    def _allowed(self, task: Task, peak: Maximum) -> float:
         """Stress, Pa."""
         strength = task.material.yield_strength
         assert strength is not None  # a pin without strength is refused before
         return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
 
     def _of_task(
-        self, study: Study, task: Task, asked: Asked, differentiated: bool
-    ) -> Iterator[tuple[Peak, list[_Found]]]:
+        self, study: Study, task: Task, asked: Requirement, differentiated: bool
+    ) -> Iterator[tuple[Maximum, list[_Found]]]:
         """Peaks and what is found of each."""
         if differentiated and not isinstance(task.pin, Pin):
             raise UndifferentiatedError
@@ -311,7 +317,7 @@ class PinStress:
         """Of a row that no lugs hold."""
         peak, answer, pin = solution.peak, solution.answer, task.pin
         assert isinstance(pin, Pin)  # others are not differentiated
-        if not isinstance(answer, HarmonicAnswer):
+        if not isinstance(answer, HarmonicField):
 
             def whole() -> Floats:
                 made = differentiated(self.problem.asked, task, solution, dimensions)
@@ -323,7 +329,7 @@ class PinStress:
             return [_Found(peak.case, peak.case, peak.upper_end, whole)]
         zones = answer.singularities
         if peak.verdict != "converged" and peak.interval is not None:
-            zones = tuple(zone.varied(min(VARIED)) for zone in zones)
+            zones = tuple(zone.varied(min(DISTANCE_VARIATIONS)) for zone in zones)
         clamps = tuple(pin.surface(name) for name in task.clamps)
         solved = SolvedCase(pin, task.material, clamps, solution.loads, answer.solution, zones)
         masks = halves(pin.stations, answer.fields.points)
@@ -357,19 +363,19 @@ class PinStress:
                 peak.case,
                 times * top.top.value,
                 slopes(top, named[top.part][0]),
-                BENDING * self.problem.shape.part_of_diameter(named[top.part][1]),
+                DIAMETER_EXPONENT * self.problem.shape.part_of_diameter(named[top.part][1]),
             )
             for top in tops
             if top.top.value > 0.0
         ]
 
-    def _by_clamps(self, peak: Peak, stress: float) -> Floats | float:
+    def _by_clamps(self, peak: Maximum, stress: float) -> Floats | float:
         """Of the logarithm of a section's stress with the error of a beam between two clamps, which
         goes with the largest diameter until it is TWICE: its derivatives by that.
         """
         place = peak.places.section if peak.places else None
         error = stress / place.max_von_mises - 1.0 if place and place.max_von_mises else 0.0
-        if error >= TWICE:
+        if error >= CLAMPED_SPAN_ERROR:
             return 0.0
         outer = [max(s.diameters) for s in self.problem.shape.pin.segments]
         thickest = int(np.argmax(outer))
@@ -383,7 +389,7 @@ def _none() -> Floats:
 
 def _among(found: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:
     """What is solved with these values."""
-    same = (x for x in found if np.allclose(x.values, values, rtol=EQUAL, atol=0.0))
+    same = (x for x in found if np.allclose(x.values, values, rtol=DIMENSION_TOLERANCE, atol=0.0))
     return next(same, None)
 
 
@@ -393,7 +399,7 @@ def _size(task: Task, loads: PinLoads) -> float:
     return float(max(np.abs(loads.forces).max(), np.abs(loads.moments).max(initial=0.0) / arm))
 
 
-def _require_solved(peak: Peak) -> None:
+def _require_solved(peak: Maximum) -> None:
     """Raises: ImpossibleError."""
     if peak.verdict == "rigid":
         raise ImpossibleError(f"it is unconstrained in case {peak.case}: {peak.note}")

@@ -15,10 +15,13 @@ from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import Study, parse_study
 from pinstress.study.schema.units import UnitSystem, to_si
 
-DIGITS = 4  # of a length that is not rounded to a step
-LEAST_EYE = 1.5  # outer diameter over the bore below which an eye that was wider grows with its pin
-NUMBER = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
-ACROSS = {  # keys of lengths across the axis; 1 where rounding up is on the safe side
+LENGTH_DIGITS = 4  # of a length that is not rounded to a step
+MIN_EYE_RATIO = (
+    1.5  # outer diameter over the bore below which an eye that was wider grows with its pin
+)
+LEADING_NUMBER_PATTERN = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
+# Keys of lengths across the axis; 1 where rounding up is on the safe side.
+TRANSVERSE_LENGTH_KEYS = {
     "diameter": 1,
     "distance": 1,
     "bore": -1,
@@ -26,7 +29,7 @@ ACROSS = {  # keys of lengths across the axis; 1 where rounding up is on the saf
     "edge_radius": -1,
     "bore_radius": -1,
 }
-FILES = ("peaks", "reactions", "motion", "values")  # that [published] names
+PUBLISHED_TABLE_KEYS = ("peaks", "reactions", "motion", "values")  # that [published] names
 
 
 def resized_study(
@@ -37,7 +40,7 @@ def resized_study(
 ) -> Study:
     """The study with pins as `resized` makes them, and with what depends on them: stated weights
     of floating pins change by what their shapes' weights do, and eyes that became narrower than
-    LEAST_EYE of their bores grow.
+    MIN_EYE_RATIO of their bores grow.
 
     Raises: InputError for a shape that cannot be.
     """
@@ -83,7 +86,7 @@ def resized(
         table_of_pin: Any = study["pin"][name]
         parts = (*_plain(table_of_pin.get("profile", [])), *_plain(table_of_pin.get("flat", [])))
         for table in (table_of_pin, *parts):
-            for key, up in ACROSS.items():
+            for key, up in TRANSVERSE_LENGTH_KEYS.items():
                 if key in table:
                     rounding = step if key == "diameter" else None
                     for here, at in _numbers(table, key):
@@ -129,7 +132,7 @@ def _files(document: Any) -> Iterator[tuple[Any, str]]:
     """The tables that name a file, each with the key that does."""
     yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
     published = document.get("published", {})
-    yield from ((published, key) for key in FILES if key in published)
+    yield from ((published, key) for key in PUBLISHED_TABLE_KEYS if key in published)
     for part in ("case", "mechanism"):
         yield from ((table, "table") for table in _with_a_table(document.get(part, {})))
 
@@ -183,7 +186,7 @@ def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
         if lug.outer_diameter is None:
             continue
         before, after = (hole_in_eye(x, name, at) for x in (old, new))
-        least = min(LEAST_EYE, lug.outer_diameter / before) * after
+        least = min(MIN_EYE_RATIO, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
             out[at] = least
     return out
@@ -219,7 +222,7 @@ def _write(table: Any, key: str, si: float, dimension: str, system: UnitSystem) 
 
 def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
     """The unit in which a value is written, as text, and in SI."""
-    text = NUMBER.sub("", old, count=1) if isinstance(old, str) else ""
+    text = LEADING_NUMBER_PATTERN.sub("", old, count=1) if isinstance(old, str) else ""
     return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
 
 
@@ -239,7 +242,7 @@ def replace_number(table: Any, key: Any, number: float, unit: str) -> None:
 def rounded(number: float, step: float | None, up: int) -> float:
     if number == 0.0:
         return 0.0
-    step = step or 10.0 ** (math.floor(math.log10(number)) + 1 - DIGITS)
+    step = step or 10.0 ** (math.floor(math.log10(number)) + 1 - LENGTH_DIGITS)
     count = number / step
     # What is a whole number of steps but for the last digits stays.
     whole = math.ceil(count - 1e-9) if up > 0 else math.floor(count + 1e-9)

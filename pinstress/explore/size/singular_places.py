@@ -15,16 +15,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from geometry import Pin, PinLike
 from pinbase.arrays import Floats
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.optimise import StressPlace
 from pinstress.explore.size.pin_shape import VariedShape
 
-MARGIN = 0.05  # of the logarithm of stress, below what is allowed
-BENDING = -3.0  # power of the diameter, where nothing is known
-SAME = 1e-3  # of dimensions' logarithms: designs that are so near teach nothing
+STRESS_LOG_MARGIN = 0.05  # of the logarithm of stress, below what is allowed
+DIAMETER_EXPONENT = -3.0  # power of the diameter, where nothing is known
+DESIGN_TOLERANCE = 1e-3  # of dimensions' logarithms: designs that are so near teach nothing
 
 CasePlace = tuple[str, StressPlace]
 
@@ -37,7 +37,7 @@ class SingularPlaces:
         self._known: dict[str, tuple[Floats, float, Floats]] = {}
 
     def of(
-        self, pin: PinLike, peak: Peak, allowed: float, values: Floats | None
+        self, pin: PinLike, peak: Maximum, allowed: float, values: Floats | None
     ) -> Iterator[CasePlace]:
         """Of a row at values (n,) of the dimensions, m, under an allowed stress, Pa; above it where
         one governs. Without values only those that govern, without derivatives.
@@ -50,13 +50,13 @@ class SingularPlaces:
             if name in names:
                 name += f" at {zone.location[2]:.4g} m"
             names.add(name)
-            value = float(np.log(zone.felt / allowed)) + MARGIN
+            value = float(np.log(zone.felt / allowed)) + STRESS_LOG_MARGIN
             slope = self._slope(name, pin, values, value, zone.location[2])
-            limited = max(value, MARGIN) if zone.governs else value
+            limited = max(value, STRESS_LOG_MARGIN) if zone.governs else value
             yield peak.case, StressPlace(name, limited, slope)
 
     def beneath(
-        self, pin: PinLike, peak: Peak, allowed: float, values: Floats | None
+        self, pin: PinLike, peak: Maximum, allowed: float, values: Floats | None
     ) -> Iterator[StressPlace]:
         """Of contact in a row, likewise."""
         if stress := beneath(peak):
@@ -73,16 +73,16 @@ class SingularPlaces:
             return None
         x, segment = np.log(values), int(np.searchsorted(pin.stations[1:-1], z))
         if name not in self._known:
-            slope = BENDING * self._shape.part_of_diameter(segment)
+            slope = DIAMETER_EXPONENT * self._shape.part_of_diameter(segment)
         else:
             there, before, slope = self._known[name]
             step = x - there
-            if float(np.abs(step).max()) > SAME:
+            if float(np.abs(step).max()) > DESIGN_TOLERANCE:
                 slope = slope + (value - before - slope @ step) / (step @ step) * step
         self._known[name] = x, value, slope
         return slope
 
 
-def decided(peaks: tuple[Peak, ...]) -> frozenset[str]:
+def decided(peaks: tuple[Maximum, ...]) -> frozenset[str]:
     """The cases in which no singularity governs."""
     return frozenset(p.case for p in peaks if p.verdict != "singular")

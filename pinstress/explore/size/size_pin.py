@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from fea.core.peak import Peak, Verdict
+from fea.core.peak import Maximum, Verdict
 from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import ArgumentError
 from pinstress.analysis.plan import Plan, all_loads
@@ -24,13 +24,13 @@ from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-STEPS_UP = 8  # of diameters rounded to steps, until the factor is reached
+MAX_SIZING_STEPS = 8  # of diameters rounded to steps, until the factor is reached
 
 Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Sized:
+class SizingResult:
     """A pin: by which scale it reaches the factor (None where it does not, and `why`), its factor
     in the first trial and then, in the case that governs, with that case's verdict.
     """
@@ -44,7 +44,7 @@ class Sized:
 
 
 @dataclass(frozen=True)
-class Wish:
+class SizingGoal:
     """The factor to reach, and to which step (m) diameters are rounded up, if any."""
 
     required: float
@@ -54,10 +54,10 @@ class Wish:
 def size_pin(
     plan: Plan,
     pin: str,
-    wish: Wish,
+    wish: SizingGoal,
     others: Mapping[str, float],
     tell: Tell = lambda _: None,
-) -> Sized:
+) -> SizingResult:
     """Size one pin for all cases of a plan. others: by which scales pins are sized so far, this one
     too, from which its search begins.
 
@@ -66,8 +66,8 @@ def size_pin(
     study = plan.study
     problem = _problem(study, pin)
     if problem:
-        return Sized(pin, None, None, None, None, problem)
-    found: dict[float, Peak] = {}
+        return SizingResult(pin, None, None, None, None, problem)
+    found: dict[float, Maximum] = {}
     factors: dict[float, float] = {}
 
     def factor_at(scale: float, rounding: float | None = None) -> float:
@@ -90,20 +90,20 @@ def size_pin(
             least = min(study.table.pin[pin].diameters)
             scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
     except NoSizeError as error:
-        return Sized(pin, None, before, None, None, str(error) + _where(found))
+        return SizingResult(pin, None, before, None, None, str(error) + _where(found))
     except (InputError, ArithmeticError, ArgumentError) as error:
         tried = ", ".join(f"{factor:.4g} at {s:.3g}" for s, factor in factors.items()) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
-        return Sized(pin, None, before, None, None, why)
-    return Sized(pin, scale, before, factor, found[scale].verdict)
+        return SizingResult(pin, None, before, None, None, why)
+    return SizingResult(pin, scale, before, factor, found[scale].verdict)
 
 
-def _where(found: Mapping[float, Peak]) -> str:
+def _where(found: Mapping[float, Maximum]) -> str:
     """What the factor is by, where that is not the row's own number, for a pin that was solved."""
     if not found:
         return ""
     last = list(found.values())[-1]
-    if beneath(last) < counts(last):
+    if beneath(last) < design_stress(last):
         return ""
     return f"; it is by what lies beneath the contact with its lugs in case {last.case}"
 
@@ -116,22 +116,22 @@ def _stepped(
     required: float,
 ) -> tuple[float, float]:
     """A scale at which the factor is reached with diameters rounded up to a step."""
-    for _ in range(STEPS_UP):
+    for _ in range(MAX_SIZING_STEPS):
         factor = factor_at(scale, step)
         if factor >= required:
             return scale, factor
         scale += step / diameter  # rounding changes proportions, so notches may be sharper
-    raise NoSizeError(f"the factor is not reached within {STEPS_UP} steps of the diameter")
+    raise NoSizeError(f"the factor is not reached within {MAX_SIZING_STEPS} steps of the diameter")
 
 
-def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Peak:
+def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Maximum:
     """The peak with the lowest factor, as it counts, of a pin of `study` in the cases of the plan.
 
     Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
     """
     loads = all_loads(study, list(plan.loads))
     asked = replace(plan.asked, goal="value")
-    peaks: list[Peak] = []
+    peaks: list[Maximum] = []
     for task in tasks(study, [pin_of(study, pin)], loads):
         for found in solutions(study, task, asked, tell):
             peaks.append(found.solution.peak if isinstance(found, LugSolution) else found.peak)
@@ -143,10 +143,10 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
     acting = [peak for peak in peaks if peak.max_von_mises]
     if not acting:
         raise NoSizeError("no case loads it")
-    return max(acting, key=counts)
+    return max(acting, key=design_stress)
 
 
-def counts(peak: Peak) -> float:
+def design_stress(peak: Maximum) -> float:
     """The stress, Pa, that has to decide: of the maximum with its error, or what lies beneath
     contact with its own, the larger; of a singular maximum, which decides nothing, that outside the
     excluded zones.
@@ -155,12 +155,12 @@ def counts(peak: Peak) -> float:
     return max(own or 0.0, beneath(peak))
 
 
-def _factor(study: Study, peak: Peak) -> float:
+def _factor(study: Study, peak: Maximum) -> float:
     """Of that stress."""
-    return _nominal(study, peak) * (peak.max_von_mises or 0.0) / counts(peak)
+    return _nominal(study, peak) * (peak.max_von_mises or 0.0) / design_stress(peak)
 
 
-def _nominal(study: Study, peak: Peak) -> float:
+def _nominal(study: Study, peak: Maximum) -> float:
     material = material_of(study, study.table.pin[peak.pin].material)
     factor = peak.safety_factor(material.yield_strength)
     assert factor is not None  # a pin without strength is refused before

@@ -6,11 +6,11 @@ import numpy as np
 
 from pinbase.arrays import Floats
 from pinstress.explore.size.optimise import Optimum
-from pinstress.explore.size.pin_shape import FARTHEST, VariedShape, kind_of
+from pinstress.explore.size.pin_shape import MAX_DIMENSION_RATIO, VariedShape, kind_of
 from pinstress.explore.size.scaled_study import rounded
 
-STEPS_UP = 40  # of diameters rounded to steps
-ROUNDING = 2e-3  # of a geometric limit, by which four digits may break it
+MAX_ROUNDING_STEPS = 40  # of diameters rounded to steps
+LIMIT_ROUNDING_TOLERANCE = 2e-3  # of a geometric limit, by which four digits may break it
 
 
 def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
@@ -27,9 +27,9 @@ def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre
             steps[k] = own * metre
         out.append(rounded(float(value) / metre, own, up[kind]) * metre)
     found = np.array(out)
-    for _ in range(STEPS_UP if step is not None else 0):
+    for _ in range(MAX_ROUNDING_STEPS if step is not None else 0):
         limits, slopes = shape.at_limits(found)
-        if not len(limits) or limits.min() >= -ROUNDING:
+        if not len(limits) or limits.min() >= -LIMIT_ROUNDING_TOLERANCE:
             break
         grow = (slopes[int(limits.argmin())] > 0.0) & (steps > 0.0)
         if not grow.any():
@@ -48,7 +48,7 @@ def binding(shape: VariedShape, optimum: Optimum) -> list[tuple[str, float]]:
         if kind == "limit":
             text = limits[int(number) - 1].text
         elif kind in ("least", "most"):
-            far = f"{FARTHEST:g} times {'less' if kind == 'least' else 'more'}"
+            far = f"{MAX_DIMENSION_RATIO:g} times {'less' if kind == 'least' else 'more'}"
             text = f"{keys[int(number) - 1]} {far}"
         out.append((text, multiplier))
     return sorted(out, key=lambda one: (-one[1], one[0]))

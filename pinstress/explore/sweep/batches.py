@@ -24,12 +24,14 @@ from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
 from pinstress.study.reading.file import Study, parse_study
 
-AIM = 2.0  # s of work in a batch
-TASK = 0.008  # s in which a batch is handed out to one of many processes and its rows are read
-MOST = 5000  # designs in a batch
-UNSHAPED = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
+TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
+BATCH_OVERHEAD_SECONDS = (
+    0.008  # s in which a batch is handed out to one of many processes and its rows are read
+)
+MAX_BATCH_DESIGNS = 5000  # designs in a batch
+STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
-_ONE_AT_A_TIME = threading.Lock()  # workers of a user's cluster may have several threads
+_BATCH_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
 
 Rows = list[list[DesignRow]]
 
@@ -80,7 +82,7 @@ class Batch:
 
 
 @dataclass(frozen=True)
-class Done:
+class SolvedBatch:
     """The rows of a batch's designs, and the seconds that it took."""
 
     batch: Batch
@@ -88,15 +90,15 @@ class Done:
     seconds: float
 
 
-def solve_batch(problem: DesignProblem, batch: Batch) -> Done:
+def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
     """Solve the designs of a batch, with one thread in each numeric library."""
     from threadpoolctl import threadpool_limits
 
     start = time.perf_counter()
-    with _ONE_AT_A_TIME, threadpool_limits(1):
+    with _BATCH_LOCK, threadpool_limits(1):
         evaluator = evaluator_of(problem)
         rows = [evaluator.rows(values) for values in batch.values]
-    return Done(batch, rows, time.perf_counter() - start)
+    return SolvedBatch(batch, rows, time.perf_counter() - start)
 
 
 @lru_cache(1)
@@ -122,14 +124,14 @@ def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
 def shapes(number: Number) -> bool:
     """Whether pins are meshed or solved anew for another value of a number: not for strengths."""
     table, last = number.path[0], number.path[-1]
-    return table == "pin" or (table == "material" and last not in UNSHAPED)
+    return table == "pin" or (table == "material" and last not in STRENGTH_KEYS)
 
 
 def aim_of(at_once: int) -> float:
     """Seconds of work in a batch where so many are solved at a time: batches are handed out one
     after the other, to each process before it has solved its last one.
     """
-    return max(AIM, TASK * at_once)
+    return max(TARGET_BATCH_SECONDS, BATCH_OVERHEAD_SECONDS * at_once)
 
 
 class Batches:
@@ -153,7 +155,7 @@ class Batches:
         """How many designs are in no batch yet."""
         return len(self._left)
 
-    def learn(self, done: Done) -> None:
+    def learn(self, done: SolvedBatch) -> None:
         """Take note of what a batch took."""
         self._seconds += done.seconds
         self._count += len(done.batch.designs)
@@ -169,7 +171,7 @@ class Batches:
         """
         size = 1
         if self.each is not None:
-            size = min(math.ceil(aim_of(self._at_once) / max(self.each, 1e-9)), MOST)
+            size = min(math.ceil(aim_of(self._at_once) / max(self.each, 1e-9)), MAX_BATCH_DESIGNS)
             size = max(1, min(size, -(-len(self._left) // (2 * self._at_once))))
         taken = [self._left.pop() for _ in range(min(size, len(self._left)))]
         rows = tuple(tuple(float(x) for x in self._values[i]) for i in taken)

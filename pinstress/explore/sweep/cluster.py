@@ -16,14 +16,14 @@ from distributed import CancelledError, Client, Future
 from pinstress.explore.sweep import versions as asking
 from pinstress.study.reading.errors import InputError
 
-ANSWERS = 10.0  # s within which a scheduler must answer
-WORKERS = 20.0  # s within which it must have a worker that works
-LOOK = 3.0  # s between two looks at it
-WITHIN = 0.2  # s between two looks before there is a worker
-NOISE = "Mismatched versions|Sending large graph"  # what dask warns of
-MOST_LISTED = 20  # workers in a message
+SCHEDULER_TIMEOUT = 10.0  # s within which a scheduler must answer
+WORKER_TIMEOUT = 20.0  # s within which it must have a worker that works
+CHECK_INTERVAL = 3.0  # s between two looks at it
+WORKER_POLL_INTERVAL = 0.2  # s between two looks before there is a worker
+IGNORED_WARNINGS = "Mismatched versions|Sending large graph"  # what dask warns of
+MAX_LISTED_WORKERS = 20  # workers in a message
 
-EXPRESSION = "[found := {}, exec(text, found), found['versions'](packages)][-1]"
+VERSIONS_EXPRESSION = "[found := {}, exec(text, found), found['versions'](packages)][-1]"
 
 
 class Cluster:
@@ -31,7 +31,7 @@ class Cluster:
     Python. tell: called with what is odd.
     """
 
-    patience = ANSWERS
+    patience = SCHEDULER_TIMEOUT
 
     def __init__(
         self,
@@ -48,15 +48,15 @@ class Cluster:
         self.workers = 0
         while not self.workers:
             self.look(now=True)
-            time.sleep(0.0 if self.workers else WITHIN)
+            time.sleep(0.0 if self.workers else WORKER_POLL_INTERVAL)
 
     def look(self, now: bool = False) -> None:
-        """Look at the scheduler and its workers, at most every LOOK s.
+        """Look at the scheduler and its workers, at most every CHECK_INTERVAL s.
 
-        Raises: InputError where it does not answer, no worker has worked for WORKERS s, or one has
-        other versions.
+        Raises: InputError where it does not answer, no worker has worked for WORKER_TIMEOUT s, or
+        one has other versions.
         """
-        if not now and time.monotonic() - self._looked < LOOK:
+        if not now and time.monotonic() - self._looked < CHECK_INTERVAL:
             return
         found = self._identities()
         self._looked = time.monotonic()
@@ -65,7 +65,7 @@ class Cluster:
         self._tell_of_paused({a for a, worker in found.items() if worker["status"] == "paused"})
         if any(_works(found[address]) for address in self._same):
             self._able = time.monotonic()
-        elif time.monotonic() - self._able > WORKERS:
+        elif time.monotonic() - self._able > WORKER_TIMEOUT:
             raise self._unable(len(found))
         able = [address for address in self._same if found[address]["status"] == "running"]
         self.workers = len(able) or self.workers
@@ -73,7 +73,7 @@ class Cluster:
     def rows(self, future: Future[Any]) -> Any:
         """What came of a batch that is done; None where that went with its worker."""
         try:
-            return future.result(timeout=ANSWERS)
+            return future.result(timeout=SCHEDULER_TIMEOUT)
         except TimeoutError:
             if future.status == "finished":
                 self._tell_once("a worker that has solved designs does not answer; still waiting")
@@ -92,7 +92,7 @@ class Cluster:
         if isinstance(found, BaseException):
             return short(found)
         return ", ".join(
-            f"{name} {found.get(name, asking.MISSING)} (here {mine})"
+            f"{name} {found.get(name, asking.MISSING_VERSION)} (here {mine})"
             for name, mine in self._expected.items()
             if found.get(name) != mine
         )
@@ -101,12 +101,15 @@ class Cluster:
         """What the scheduler says of each of its workers."""
         try:
             asked: Any = self.client.scheduler
-            said: dict[str, Any] = self.client.sync(asked.identity, callback_timeout=ANSWERS)
+            said: dict[str, Any] = self.client.sync(
+                asked.identity, callback_timeout=SCHEDULER_TIMEOUT
+            )
         except TimeoutError:
             if self.client.status != "running":  # it tries to connect again
                 raise lost_connection(self.address) from None
             raise InputError(
-                f"--scheduler: the scheduler at {self.address} has not answered for {ANSWERS:g} s",
+                f"--scheduler: the scheduler at {self.address} has not answered for "
+                f"{SCHEDULER_TIMEOUT:g} s",
                 code="no-scheduler",
             ) from None
         except (OSError, CancelledError, RuntimeError):
@@ -120,9 +123,9 @@ class Cluster:
         async def one(address: str) -> Any:
             with suppress(TimeoutError, OSError):
                 run: Any = self.client.run(
-                    eval, EXPRESSION, asked, workers=[address], on_error="return"
+                    eval, VERSIONS_EXPRESSION, asked, workers=[address], on_error="return"
                 )
-                return (await asyncio.wait_for(run, ANSWERS)).get(address)
+                return (await asyncio.wait_for(run, SCHEDULER_TIMEOUT)).get(address)
             return None
 
         async def all_() -> list[Any]:
@@ -150,14 +153,16 @@ class Cluster:
 
     def _unable(self, count: int) -> InputError:
         """That no worker works. count: of the workers that the scheduler knows."""
-        what, code = f"has no worker that answers, for {WORKERS:g} s", "no-worker"
+        what, code = f"has no worker that answers, for {WORKER_TIMEOUT:g} s", "no-worker"
         if not count:
-            what = f"has had no worker for {WORKERS:g} s; start one with: dask worker "
+            what = f"has had no worker for {WORKER_TIMEOUT:g} s; start one with: dask worker "
             what += f"{self.address} --nthreads 1"
         elif self._paused:
             code = "workers-paused"
             what = "has only workers that are paused, since their memory is nearly full, and none "
-            what += f"has worked for {WORKERS:g} s; give them more (dask worker --memory-limit)"
+            what += (
+                f"has worked for {WORKER_TIMEOUT:g} s; give them more (dask worker --memory-limit)"
+            )
         return InputError(f"--scheduler: the scheduler at {self.address} {what}", code=code)
 
 
@@ -175,11 +180,12 @@ def connected(
     with _silent():
         try:
             client = _Closed(  # type: ignore[no-untyped-call]  # as all of dask
-                address, timeout=ANSWERS, set_as_default=False
+                address, timeout=SCHEDULER_TIMEOUT, set_as_default=False
             )
         except Exception as error:  # whatever dask raises for an address or what answers there
             raise InputError(
-                f"--scheduler: no scheduler of dask answers at {address} within {ANSWERS:g} s "
+                f"--scheduler: no scheduler of dask answers at {address} within "
+                f"{SCHEDULER_TIMEOUT:g} s "
                 f"({short(error)}); start one with: dask scheduler --host 127.0.0.1",
                 code="no-scheduler",
             ) from None
@@ -206,14 +212,14 @@ def lost_connection(address: str) -> InputError:
 
 def other_versions(lines: Sequence[str]) -> InputError:
     """That workers have other versions. lines: of each what is other."""
-    beyond = len(lines) - MOST_LISTED
+    beyond = len(lines) - MAX_LISTED_WORKERS
     more = [f"and {beyond} more"] if beyond > 0 else []
     return InputError(
         "\n".join(
             [
                 "--scheduler: numbers could differ on workers with other versions than this "
                 "process has; install the same there, or end them",
-                *lines[:MOST_LISTED],
+                *lines[:MAX_LISTED_WORKERS],
                 *more,
             ]
         ),
@@ -239,7 +245,7 @@ def _silent() -> Iterator[None]:
         each.setLevel(logging.CRITICAL + 1)
     try:
         with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", message=f"(?s).*({NOISE})")
+            warnings.filterwarnings("ignore", message=f"(?s).*({IGNORED_WARNINGS})")
             yield
     finally:
         for each, level in zip(found, before, strict=True):

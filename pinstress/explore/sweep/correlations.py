@@ -9,9 +9,9 @@ import numpy as np
 from pinstress.explore.sweep.laws import Floats, Normal
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.shown import near, shown
+from pinstress.study.schema.shown import as_text, near
 
-NEGATIVE = 1e-12  # an eigenvalue of round-off
+EIGENVALUE_ROUND_OFF = 1e-12  # an eigenvalue of round-off
 
 
 def correlations_of(
@@ -39,14 +39,14 @@ def correlations_of(
         for key in pair.between:
             if key not in keys:
                 raise study.error(
-                    f"{where}: {shown(key)} is not in [vary.parameters]; {near(key, keys)}",
+                    f"{where}: {as_text(key)} is not in [vary.parameters]; {near(key, keys)}",
                     code="unknown-parameter",
                 )
             rows.append(keys.index(key))
             law = parameters[rows[-1]].law
             if not isinstance(law, Normal) or law.cut_off:
                 raise study.error(
-                    f"{where}: {shown(key)} has no normal law, or one that is cut off; only "
+                    f"{where}: {as_text(key)} has no normal law, or one that is cut off; only "
                     "numbers with normal laws can be correlated",
                     code="not-normal",
                 )
@@ -56,7 +56,7 @@ def correlations_of(
             raise study.error(f"{where}: {what}", code="duplicate-parameter")
         matrix[first, second] = matrix[second, first] = pair.coefficient
     least = float(np.linalg.eigvalsh(matrix)[0])
-    if least < -NEGATIVE:
+    if least < -EIGENVALUE_ROUND_OFF:
         raise study.error(
             "vary.correlations: no variables have these correlations together (the least "
             f"eigenvalue of their matrix is {least:.3g}, and must not be negative); if A goes with "

@@ -13,8 +13,8 @@ from reports.data.results import Floats
 if TYPE_CHECKING:
     import pyarrow as pa
 
-META = b"pinstress"
-ROW = (
+METADATA_KEY = b"pinstress"
+ROW_COLUMNS = (
     "pin",
     "case",
     "outcome",
@@ -24,7 +24,7 @@ ROW = (
     "code",
     "governs",
 )  # texts of every row
-TITLES = {
+COLUMN_TITLES = {
     "mass": "mass",
     "max_von_mises": "maximum von Mises",
     "error_estimate": "± of maximum",
@@ -68,7 +68,7 @@ class Designs:
     first: np.ndarray[Any, np.dtype[np.int64]]
     parameters: tuple[DesignColumn, ...]
     results: tuple[DesignColumn, ...]
-    texts: dict[str, DesignColumn]  # by the names in ROW
+    texts: dict[str, DesignColumn]  # by the names in ROW_COLUMNS
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
@@ -88,7 +88,7 @@ class Designs:
 
 def designs_of(table: pa.Table) -> Designs:
     """The columns of a table as `pinstress sweep` writes it. Raises: ValueError."""
-    text = (table.schema.metadata or {}).get(META)
+    text = (table.schema.metadata or {}).get(METADATA_KEY)
     if text is None or "design" not in table.column_names:
         raise ValueError("the table is not that of a sweep: no column design or no metadata")
     told = json.loads(text)
@@ -110,14 +110,14 @@ def designs_of(table: pa.Table) -> Designs:
         first=ends,
         parameters=tuple(_per_design(every[key], ends) for key in keys),
         results=tuple(every[name] for name in _results(list(every), keys)),
-        texts={name: every.get(name, _nothing(name, len(order))) for name in ROW},
+        texts={name: every.get(name, _nothing(name, len(order))) for name in ROW_COLUMNS},
     )
 
 
 def _results(names: list[str], parameters: list[str]) -> list[str]:
     """Those that the page knows, in its order, then all others."""
-    known = [name for name in TITLES if name in names]
-    return known + [n for n in names if n not in {*parameters, *known, *ROW}]
+    known = [name for name in COLUMN_TITLES if name in names]
+    return known + [n for n in names if n not in {*parameters, *known, *ROW_COLUMNS}]
 
 
 def _column(table: pa.Table, name: str, order: Any, law: dict[str, Any]) -> DesignColumn:
@@ -127,13 +127,13 @@ def _column(table: pa.Table, name: str, order: Any, law: dict[str, Any]) -> Desi
     if pa.types.is_dictionary(data.type):
         data = data.dictionary_decode()
     names = None
-    if name in ROW or not _numeric(data.type):
+    if name in ROW_COLUMNS or not _numeric(data.type):
         coded = _texts(data).dictionary_encode()
         names = tuple(coded.dictionary.to_pylist())
         data = coded.indices
     values = data.cast(pa.float64()).to_numpy(zero_copy_only=False)[order]
     unit = (field.metadata or {}).get(b"unit", b"").decode() or str(law.get("unit") or "")
-    title = TITLES.get(name, name)
+    title = COLUMN_TITLES.get(name, name)
     return DesignColumn(name, title, unit, _law(law.get("law")), values.astype(np.float64), names)
 
 

@@ -17,18 +17,18 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from fea.core.material import Material
-from fea.core.peak import Peak, Verdict
+from fea.core.peak import Maximum, Verdict
 from fea.harmonic.kept_fields import EveryMesh
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
 from pinstress.analysis.cache.serialise import pack
-from pinstress.analysis.plan import asked_of, prepare
+from pinstress.analysis.plan import prepare, requirement_of
 from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.laws import Floats
-from pinstress.explore.sweep.number import Number, put
+from pinstress.explore.sweep.number import Number, with_value
 from pinstress.explore.sweep.outcomes import DesignAnswer, bare_answer, outcome_of, stress_at
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.model.cases import CaseLoads, case_loads
@@ -40,9 +40,9 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw
 from reports.data.decision import NOT_DECIDED
 
-MOST_LOADS, MOST_PEAKS = 64, 4096  # that are remembered, loads of each case
-WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
-APART = ("vary", "published", "beam_check", "motion_check", "report")
+MAX_REMEMBERED_LOADS, MAX_REMEMBERED_PEAKS = 64, 4096  # that are remembered, loads of each case
+TABLES_WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
+IGNORED_TABLES = ("vary", "published", "beam_check", "motion_check", "report")
 
 K = TypeVar("K")
 V = TypeVar("V")
@@ -77,7 +77,7 @@ class DesignRow:
     beneath_error: float | None = None
 
 
-class Recent(Generic[K, V]):
+class Memo(Generic[K, V]):
     """The values of the keys that were asked for last, `most` of them."""
 
     def __init__(self, most: int) -> None:
@@ -114,7 +114,7 @@ class Evaluator:
         cases: Iterable[str] | None = None,
     ) -> None:
         self.numbers = tuple(p.number if isinstance(p, Parameter) else p for p in parameters)
-        self._raw = {k: v for k, v in raw_study(study).items() if k not in APART}
+        self._raw = {k: v for k, v in raw_study(study).items() if k not in IGNORED_TABLES}
         analysis = {**self._raw.get("analysis", {}), "meshes": study.meshes}
         self._raw["analysis"] = analysis  # whose default depends on [vary]
         self.study = with_raw(study, self._raw)
@@ -127,11 +127,11 @@ class Evaluator:
         self.table = tuple(
             (pin, case) for pin in self._pins for case in self._cases if (pin, case) in found
         )
-        self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
-            MOST_LOADS * len(self._cases)
+        self._loads = Memo[tuple[object, ...], CaseLoads | InputError](
+            MAX_REMEMBERED_LOADS * len(self._cases)
         )
         self.meshes = EveryMesh()
-        self._answers = Recent[str, tuple[DesignAnswer, ...]](MOST_PEAKS)
+        self._answers = Memo[str, tuple[DesignAnswer, ...]](MAX_REMEMBERED_PEAKS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
             for case in self._cases
@@ -156,7 +156,7 @@ class Evaluator:
         raw = self._raw
         for number, value in zip(self.numbers, values, strict=True):
             for path in number.paths:
-                raw = put(raw, path, number.in_study(value / number.factor))
+                raw = with_value(raw, path, number.in_study(value / number.factor))
         return with_raw(self.study, raw)
 
     def _moves(self, number: Number, case: str) -> bool:
@@ -167,7 +167,7 @@ class Evaluator:
         if table == "case":
             own = self._raw["case"].get(case)  # None of a case of a table with many
             return own is None or inner[0] == case or _names(own, str(inner[0]))
-        if table not in WITHOUT_LOADS:
+        if table not in TABLES_WITHOUT_LOADS:
             return True
         study, mechanism = self.study.table, self.study.table.mechanism
         if mechanism is None or table == "analysis":
@@ -216,12 +216,12 @@ class Evaluator:
         except (InputError, ArithmeticError, MemoryError) as error:
             yield from ((c, _failed(study, name, c, error)) for c in right)
             return
-        asked = asked_of(study, memory=self._memory)
+        asked = requirement_of(study, memory=self._memory)
         for task in made:
             yield from self._solved(study, task, asked, right)
 
     def _solved(
-        self, study: Study, task: Task, asked: Asked, loads: Mapping[str, CaseLoads]
+        self, study: Study, task: Task, asked: Requirement, loads: Mapping[str, CaseLoads]
     ) -> Iterable[tuple[str, DesignRow]]:
         material, density = task.material, task.material.density
         mass = density * task.pin.volume if density else None
@@ -254,7 +254,7 @@ class Evaluator:
             )
 
     def _answers_of(
-        self, study: Study, task: Task, asked: Asked, loads: Mapping[str, CaseLoads]
+        self, study: Study, task: Task, asked: Requirement, loads: Mapping[str, CaseLoads]
     ) -> tuple[DesignAnswer, ...]:
         key = _question(study, task, asked, [loads[x.case].range for x in task.loads])
         known = self._answers.get(key)
@@ -286,7 +286,9 @@ def _elastic_lug(lug: Lug) -> Lug:
     return replace(lug, material=elastic(lug.material), bushing=bushing)
 
 
-def _question(study: Study, task: Task, asked: Asked, ranges: Sequence[ImpulseLoads | None]) -> str:
+def _question(
+    study: Study, task: Task, asked: Requirement, ranges: Sequence[ImpulseLoads | None]
+) -> str:
     """Hash of all on which a pin's answers depend in a study whose mechanism does not change.
     ranges: of impulses by case, as other ones may have the same forces.
     """
@@ -306,7 +308,7 @@ def _question(study: Study, task: Task, asked: Asked, ranges: Sequence[ImpulseLo
     return hashlib.sha256(pack(asks)).hexdigest()
 
 
-def _code(peak: Peak) -> str:
+def _code(peak: Maximum) -> str:
     return peak.reasons[0] if peak.verdict == "rigid" and peak.reasons else peak.verdict
 
 

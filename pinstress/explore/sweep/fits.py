@@ -10,11 +10,11 @@ import re
 
 from pinbase.errors import ArgumentError
 from pinstress.explore.sweep.number import Number
-from pinstress.study.schema.shown import shown
+from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.units import UnitSystem, to_si
 
-UP_TO = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)  # mm, nominal sizes
-GRADES = {  # micrometres
+NOMINAL_SIZE_LIMITS = (3, 6, 10, 18, 30, 50, 80, 120, 180, 250, 315, 400, 500)  # mm, nominal sizes
+GRADE_TOLERANCES = {  # micrometres
     5: (4, 5, 6, 8, 9, 11, 13, 15, 18, 20, 23, 25, 27),
     6: (6, 8, 9, 11, 13, 16, 19, 22, 25, 29, 32, 36, 40),
     7: (10, 12, 15, 18, 21, 25, 30, 35, 40, 46, 52, 57, 63),
@@ -24,20 +24,21 @@ GRADES = {  # micrometres
     11: (60, 75, 90, 110, 130, 160, 190, 220, 250, 290, 320, 360, 400),
     12: (100, 120, 150, 180, 210, 250, 300, 350, 400, 460, 520, 570, 630),
 }
-AWAY = {  # of the nearer limit from the nominal size, micrometres: below it of shafts
+# Of the nearer limit from the nominal size, micrometres: below it of shafts.
+FUNDAMENTAL_DEVIATIONS = {
     "h": (0,) * 13,
     "g": (2, 4, 5, 6, 7, 9, 10, 12, 14, 15, 17, 18, 20),
     "f": (6, 10, 13, 16, 20, 25, 30, 36, 43, 50, 56, 62, 68),
 }
-CLASS = re.compile(r"(js|JS|[fghFGH])(\d{1,2})")
-BOTH = re.compile(r"(?:±|\+/?-)\s*([^+-].*)")
-EXAMPLES = 'write for instance "+0.1 mm -0.05 mm", "±0.1 mm" or "h7"'
+TOLERANCE_CLASS_PATTERN = re.compile(r"(js|JS|[fghFGH])(\d{1,2})")
+PLUS_MINUS_PATTERN = re.compile(r"(?:±|\+/?-)\s*([^+-].*)")
+TOLERANCE_EXAMPLES = 'write for instance "+0.1 mm -0.05 mm", "±0.1 mm" or "h7"'
 
 
 def limits_of(text: str, number: Number, system: UnitSystem) -> tuple[float, float]:
     """Least and largest value (SI) of a number with a tolerance. Raises: ArgumentError."""
     text = text.strip()
-    found = CLASS.fullmatch(text)
+    found = TOLERANCE_CLASS_PATTERN.fullmatch(text)
     try:
         low, high = (
             _class(found[1], int(found[2]), number) if found else _deviations(text, number, system)
@@ -49,34 +50,40 @@ def limits_of(text: str, number: Number, system: UnitSystem) -> tuple[float, flo
 
 def _class(letter: str, grade: int, number: Number) -> tuple[float, float]:
     size = number.nominal * 1e3
-    if number.dimension != "length" or not 0.0 < size <= UP_TO[-1]:
+    if number.dimension != "length" or not 0.0 < size <= NOMINAL_SIZE_LIMITS[-1]:
         raise ArgumentError(
-            f"{letter}{grade} is for lengths up to {UP_TO[-1]} mm", "no-tolerance-class"
-        )
-    if grade not in GRADES:
-        raise ArgumentError(
-            f"{letter}{grade}: the grades known here are {min(GRADES)} to {max(GRADES)}",
+            f"{letter}{grade} is for lengths up to {NOMINAL_SIZE_LIMITS[-1]} mm",
             "no-tolerance-class",
         )
-    k = next(k for k, most in enumerate(UP_TO) if size <= most * (1.0 + 1e-12))
-    width = GRADES[grade][k] * 1e-6
+    if grade not in GRADE_TOLERANCES:
+        raise ArgumentError(
+            f"{letter}{grade}: the grades known here are {min(GRADE_TOLERANCES)} to "
+            f"{max(GRADE_TOLERANCES)}",
+            "no-tolerance-class",
+        )
+    k = next(k for k, most in enumerate(NOMINAL_SIZE_LIMITS) if size <= most * (1.0 + 1e-12))
+    width = GRADE_TOLERANCES[grade][k] * 1e-6
     if letter in ("js", "JS"):
         return -0.5 * width, 0.5 * width
-    away = AWAY[letter.lower()][k] * 1e-6
+    away = FUNDAMENTAL_DEVIATIONS[letter.lower()][k] * 1e-6
     return (-away - width, -away) if letter.islower() else (away, away + width)
 
 
 def _deviations(text: str, number: Number, system: UnitSystem) -> tuple[float, float]:
-    if both := BOTH.fullmatch(text):
+    if both := PLUS_MINUS_PATTERN.fullmatch(text):
         size = _si(both[1], number, system)
         low, high = -size, size
     else:
         parts = re.split(r"[\s/]+(?=[+-]|0(?![\d.]))", text)
         if len(parts) != 2 or not all(part[:1] in "+-0" for part in parts):
-            raise ArgumentError(f"cannot read {shown(text)}; {EXAMPLES}", "not-a-tolerance")
+            raise ArgumentError(
+                f"cannot read {as_text(text)}; {TOLERANCE_EXAMPLES}", "not-a-tolerance"
+            )
         low, high = sorted(_si(part, number, system) for part in parts)
     if not low < high:
-        raise ArgumentError(f"{shown(text)} has no width; {EXAMPLES}", "not-a-tolerance")
+        raise ArgumentError(
+            f"{as_text(text)} has no width; {TOLERANCE_EXAMPLES}", "not-a-tolerance"
+        )
     return low, high
 
 
@@ -87,5 +94,5 @@ def _si(text: str, number: Number, system: UnitSystem) -> float:
         return float(text)
     except ValueError:
         raise ArgumentError(
-            f"{shown(text)} is not a number without a unit", "not-a-tolerance"
+            f"{as_text(text)} is not a number without a unit", "not-a-tolerance"
         ) from None

@@ -151,12 +151,12 @@ class Triangular:
 
 Law = Uniform | Normal | LogNormal | Triangular
 
-CAPABLE = 3.0  # standard deviations from the middle of a tolerance to its limits
+DEVIATIONS_TO_LIMIT = 3.0  # standard deviations from the middle of a tolerance to its limits
 
 
 def of_tolerance(low: float, high: float) -> Normal:
     """The law of a dimension that is made and inspected to lie between two limits."""
-    return Normal(0.5 * (low + high), 0.5 * (high - low) / CAPABLE, low, high)
+    return Normal(0.5 * (low + high), 0.5 * (high - low) / DEVIATIONS_TO_LIMIT, low, high)
 
 
 def cut_off(law: Normal | LogNormal, low: float, high: float) -> Normal | LogNormal:

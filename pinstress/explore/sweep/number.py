@@ -16,13 +16,20 @@ from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study
 from pinstress.study.reading.in_python import key_parts
-from pinstress.study.schema.shown import nearest, shown
+from pinstress.study.schema.shown import as_text, nearest
 from pinstress.study.schema.types import Probe
-from pinstress.study.schema.units import DIMENSIONS, UNIT_NEEDED, USUAL, UnitSystem, split, to_si
+from pinstress.study.schema.units import (
+    DIMENSION_EXPONENTS,
+    DIMENSIONS_NEEDING_UNIT,
+    USUAL_UNITS,
+    UnitSystem,
+    split,
+    to_si,
+)
 
-ANGLES = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
-SEVERAL = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
-RADIANS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
+ANGLE_UNITS = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
+INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
+RADIAN_UNITS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
 
 Path = tuple[str | int, ...]
 
@@ -59,7 +66,7 @@ def number_at(study: Study, key: str) -> Number:
 
     Raises: InputError for a key that names no number, or different ones.
     """
-    found = SEVERAL.search(key)
+    found = INDEX_RANGE_PATTERN.search(key)
     if found is None:
         return _single(study, key)
     first, last = (int(end) for end in found.groups())
@@ -88,7 +95,7 @@ def _single(study: Study, key: str) -> Number:
         raise study.error(f"{key}: {error}", code=error.code) from None
 
 
-def put(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
+def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
     """A copy of a study's raw content with another value at a path; the rest is shared."""
     made = copy.copy(raw)
     here: Any = made
@@ -104,19 +111,19 @@ def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any)
     if not dimension and isinstance(value, str):
         found = split(value)
         if found is None or not found[1]:
-            raise _no_number(study, key, f"is the text {shown(value)}, not a number")
+            raise _no_number(study, key, f"is the text {as_text(value)}, not a number")
         dimension = _dimension_of_unit(found[1])
         if not dimension:
-            raise _no_number(study, key, f"is {shown(value)}, whose unit has no known dimension")
+            raise _no_number(study, key, f"is {as_text(value)}, whose unit has no known dimension")
     if not dimension:
         if isinstance(value, int) and _whole(study, raw, path):
             raise _no_number(study, key, "is a whole number, which cannot vary continuously")
         return Number(key, path, "", float(value))
     nominal = to_si(value, dimension, study.system)
-    if dimension in ANGLES:
-        return Number(key, path, dimension, nominal, *ANGLES[dimension], written=True)
-    if dimension in UNIT_NEEDED:
-        return Number(key, path, dimension, nominal, RADIANS[dimension], written=True)
+    if dimension in ANGLE_UNITS:
+        return Number(key, path, dimension, nominal, *ANGLE_UNITS[dimension], written=True)
+    if dimension in DIMENSIONS_NEEDING_UNIT:
+        return Number(key, path, dimension, nominal, RADIAN_UNITS[dimension], written=True)
     system = study.system
     return Number(
         key, path, dimension, nominal, unit_of(system, dimension), system.factor(dimension)
@@ -127,7 +134,7 @@ def unit_of(system: UnitSystem, dimension: str) -> str:
     """The name of a system's unit of a dimension, in length, force, time and stress."""
     if dimension == "stress":
         return system.stress
-    exponents, _ = DIMENSIONS[dimension]
+    exponents, _ = DIMENSION_EXPONENTS[dimension]
     names = (system.force, system.length, system.time)
     powers = [(name, exponents[k]) for name, k in zip(names, (1, 0, 2), strict=True)]
     above, below = (
@@ -139,13 +146,13 @@ def unit_of(system: UnitSystem, dimension: str) -> str:
 
 def _dimension(study: Study, raw: dict[str, Any], path: Path) -> str:
     probe = Probe(1.0)
-    _validate(study, put(raw, path, probe))
+    _validate(study, with_value(raw, path, probe))
     return probe.dimension
 
 
 def _whole(study: Study, raw: dict[str, Any], path: Path) -> bool:
     """Whether nothing but a whole number may be there."""
-    found = _validate(study, put(raw, path, 0.5))
+    found = _validate(study, with_value(raw, path, 0.5))
     return any(kind in ("int_type", "int_from_float") for kind in found)
 
 
@@ -163,7 +170,7 @@ def _validate(study: Study, raw: dict[str, Any]) -> list[str]:
 
 
 def _dimension_of_unit(unit: str) -> str:
-    return USUAL[unit][0] if unit in USUAL else ""
+    return USUAL_UNITS[unit][0] if unit in USUAL_UNITS else ""
 
 
 def _path(study: Study, raw: Any, key: str) -> Path:
@@ -182,7 +189,7 @@ def _path(study: Study, raw: Any, key: str) -> Path:
         if there is None or (not found and part == "vary"):
             if part == -1:
                 raise _no_number(study, key, "has the index 0; elements are counted from 1")
-            said = f"[{part + 1}]" if isinstance(part, int) else shown(part)
+            said = f"[{part + 1}]" if isinstance(part, int) else as_text(part)
             meant = nearest(part, here) if isinstance(here, Mapping) else None
             hint = f"did you mean {meant!r}?" if meant else "write it in the study"
             raise _no_number(study, key, f"the study has no {said} there; {hint}")

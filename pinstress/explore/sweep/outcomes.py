@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from fea.core.peak import Peak, decides
+from fea.core.peak import Maximum, meets_limit
 from fea.solve.solve_pin import Solution
 from fea.support.contact.records import JointResult
 from fea.support.contact.solve_in_lugs import LugSolution
@@ -30,7 +30,7 @@ AS_DESCRIBED = "as described"
 class DesignAnswer:
     """What is kept of a solved pin in a case: no meshes, zones, edges or cells."""
 
-    peak: Peak
+    peak: Maximum
     joint: JointResult | None
     landing: LandingRange | None
 
@@ -57,7 +57,7 @@ def outcome_of(
     """The outcome, and in words, in the units of a study, what it depends on."""
     strength, around = task.material.yield_strength, task.surroundings
     peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
-    decided = None if permitted is None else decides(peak, permitted)
+    decided = None if permitted is None else meets_limit(peak, permitted)
     found = in_words(decided, required)
     if not decided or strength is None or permitted is None or not peak.max_von_mises:
         return found, ""
@@ -71,7 +71,7 @@ def outcome_of(
     return (f"{found} {AS_DESCRIBED}" if joint_open else found), ""
 
 
-def stress_at(peak: Peak) -> tuple[float | None, float | None, float | None, float | None]:
+def stress_at(peak: Maximum) -> tuple[float | None, float | None, float | None, float | None]:
     """The largest stress of surface and section and beneath contact, this with its error, Pa."""
     places = peak.places
     section, contact = (places.section, places.contact) if places else (None, None)

@@ -14,13 +14,13 @@ from reports.format.numbers import DASH, short
 from reports.format.packed import packed
 from reports.format.script_json import script_json
 from reports.format.template import environment
-from reports.format.words import MEANING
+from reports.format.words import VERDICT_MEANINGS
 from reports.plots.theme import style_sheet
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-MOST_REASONS = 20
+MAX_REASONS = 20
 
 
 def write_designs_page(table: pa.Table, path: Path) -> None:
@@ -36,7 +36,7 @@ def render_designs(designs: Designs) -> str:
         summary=summary(designs),
         columns=column_grid(designs),
         reasons=reason_grid(designs),
-        meaning={k: MEANING[k] for k in _verdicts(designs)},
+        meaning={k: VERDICT_MEANINGS[k] for k in _verdicts(designs)},
         shades=style_sheet(),
         data=script_json(page_data(designs)),
     )
@@ -66,7 +66,7 @@ def page_data(designs: Designs) -> dict[str, Any]:
             *({**_packed(c), "of": "row"} for c in designs.results),
         ],
         "texts": {name: _packed(column) for name, column in designs.texts.items()},
-        "meaning": MEANING,
+        "meaning": VERDICT_MEANINGS,
     }
 
 
@@ -108,13 +108,13 @@ def reason_grid(designs: Designs) -> Grid:
         name = (code.names or ())[int(of)] if np.isfinite(of) else text
         counts[name] += 1
         example.setdefault(name, text)
-    body = [[f"{n:,}", example[name]] for name, n in counts.most_common(MOST_REASONS)]
-    if len(counts) > MOST_REASONS:
-        rest = sum(counts.values()) - sum(n for _, n in counts.most_common(MOST_REASONS))
+    body = [[f"{n:,}", example[name]] for name, n in counts.most_common(MAX_REASONS)]
+    if len(counts) > MAX_REASONS:
+        rest = sum(counts.values()) - sum(n for _, n in counts.most_common(MAX_REASONS))
         body.append([f"{rest:,}", "other reasons"])
     return Grid(["rows", "reason (an example of each kind)"], body, [True, False])
 
 
 def _verdicts(designs: Designs) -> list[str]:
     names = designs.texts["verdict"].names or ()
-    return [name for name in MEANING if name in names]
+    return [name for name in VERDICT_MEANINGS if name in names]

@@ -22,11 +22,11 @@ from pinstress.explore.sweep.laws import (
 from pinstress.explore.sweep.number import Number, Path, number_at
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.shown import shown
+from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.units import UnitSystem, to_si
 from pinstress.study.schema.vary import ParameterTable
 
-LITTLE = 1e-6  # of the probability: a law must not be cut off so far
+MIN_PROBABILITY_WITHIN_LIMITS = 1e-6  # of the probability: a law must not be cut off so far
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def _require_different(study: Study, made: Iterable[Parameter]) -> None:
         other = known.setdefault(path, parameter.key)
         if other != parameter.key:
             raise study.error(
-                f"vary.parameters.{parameter.key}: names the same number as {shown(other)}; "
+                f"vary.parameters.{parameter.key}: names the same number as {as_text(other)}; "
                 "give one of them",
                 code="duplicate-parameter",
             )
@@ -124,7 +124,7 @@ def _require_different(study: Study, made: Iterable[Parameter]) -> None:
 
 def _require_grid(study: Study, made: Iterable[Parameter]) -> None:
     """Raises: InputError for a grid without steps or with too many."""
-    from pinstress.study.schema.vary import MOST_DESIGNS
+    from pinstress.study.schema.vary import MAX_DESIGNS
 
     count = 1
     for parameter in made:
@@ -135,9 +135,9 @@ def _require_grid(study: Study, made: Iterable[Parameter]) -> None:
                 code="missing-steps",
             )
         count *= parameter.steps
-    if count > MOST_DESIGNS:
+    if count > MAX_DESIGNS:
         raise study.error(
-            f"vary: the grid has {count:,} designs; the limit is {MOST_DESIGNS:,}: take fewer "
+            f"vary: the grid has {count:,} designs; the limit is {MAX_DESIGNS:,}: take fewer "
             'steps, or sample = "sobol" with a count',
             code="too-large",
         )
@@ -206,7 +206,7 @@ def _bell(si: Any, table: ParameterTable) -> Law:
             "within: the largest value must exceed the least one", "limits-out-of-order"
         )
     law = cut_off(law, low, high)
-    if law.within < LITTLE:
+    if law.within < MIN_PROBABILITY_WITHIN_LIMITS:
         raise ArgumentError(
             f"within: has only {law.within:.1e} of the law's probability", "limits-far-off"
         )
@@ -219,7 +219,7 @@ def _si(system: UnitSystem, number: Number, name: str, value: float | str) -> fl
             return to_si(value, number.dimension, system)
         if isinstance(value, str):
             raise ArgumentError(
-                f"{shown(value)}: the number has no unit in the study; give a number without "
+                f"{as_text(value)}: the number has no unit in the study; give a number without "
                 "quotes",
                 "not-a-number",
             )

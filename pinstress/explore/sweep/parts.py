@@ -19,12 +19,12 @@ from reports.folder.inside import write_inside
 if TYPE_CHECKING:
     import pyarrow as pa
 
-FOLDER = "parts"
-STATED = "sweep.json"  # what is swept, in the folder of parts
-SCHEMA = "pinstress-sweep/1"
-SUFFIX = ".parquet"
-TABLE = "designs.parquet"
-CONTINUED = "sobol", "random"  # samples of which more begin with the same designs
+PARTS_FOLDER = "parts"
+IDENTITY_FILE = "sweep.json"  # what is swept, in the folder of parts
+SWEEP_SCHEMA = "pinstress-sweep/1"
+PART_SUFFIX = ".parquet"
+DESIGNS_FILE = "designs.parquet"
+CONTINUABLE_SAMPLES = "sobol", "random"  # samples of which more begin with the same designs
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class Identity:
     sample: str
 
 
-class Parts:
+class BatchFolder:
     """Files in a folder `parts` of an output folder, of one sweep. sweep: its identity."""
 
     def __init__(self, directory: Path, identity: Identity) -> None:
-        self.folder, self.identity = directory / FOLDER, identity
+        self.folder, self.identity = directory / PARTS_FOLDER, identity
         self.sweep = identity.sweep
 
     def begin(self) -> None:
@@ -51,8 +51,8 @@ class Parts:
         self.folder.mkdir(parents=True, exist_ok=True)
         mine = self.identity
         stated = {"sweep": mine.sweep, "but_count": mine.but_count, "count": mine.count}
-        text = json.dumps({"schema": SCHEMA, **stated}, indent=1) + "\n"
-        write_inside(self.folder, STATED, text.encode())
+        text = json.dumps({"schema": SWEEP_SCHEMA, **stated}, indent=1) + "\n"
+        write_inside(self.folder, IDENTITY_FILE, text.encode())
 
     def there(self) -> bool:
         """Whether a sweep was begun here."""
@@ -71,11 +71,12 @@ class Parts:
                 f"--resume: {self.folder.parent} has no sweep to go on with; leave out --resume",
                 code="nothing-to-resume",
             )
-        if before is not None and mine.sample not in CONTINUED:
+        if before is not None and mine.sample not in CONTINUABLE_SAMPLES:
             raise InputError(
                 f"--resume: the sweep in {self.folder.parent} has count = {before}, the study "
                 f"{mine.count}: a {mine.sample} sample of another count has other designs, so that "
-                f"only {' and '.join(CONTINUED)} ones can be continued; choose another folder",
+                f"only {' and '.join(CONTINUABLE_SAMPLES)} ones can be continued; choose another "
+                f"folder",
                 code="other-count",
             )
         if before is not None and before > mine.count:
@@ -112,9 +113,11 @@ class Parts:
         from pyarrow import parquet
 
         if self.there():
-            tables = [parquet.read_table(path) for path in sorted(self.folder.glob(f"*{SUFFIX}"))]
+            tables = [
+                parquet.read_table(path) for path in sorted(self.folder.glob(f"*{PART_SUFFIX}"))
+            ]
         else:
-            tables = [read_table(self.folder.parent / TABLE)]
+            tables = [read_table(self.folder.parent / DESIGNS_FILE)]
         self.folder.mkdir(exist_ok=True)
         for table in tables:
             if table.schema.equals(schema):
@@ -124,14 +127,14 @@ class Parts:
     def write(self, table: pa.Table) -> None:
         """Keep a batch, named by its first design; its file is complete or absent."""
         number = min(table["design"].to_pylist())
-        write_table(table, self.folder / f"{number:08d}{SUFFIX}")
+        write_table(table, self.folder / f"{number:08d}{PART_SUFFIX}")
 
     def read(self, schema: pa.Schema) -> list[pa.Table]:
         """All batches; a file that is damaged, or of other columns, is removed and solved anew."""
         from pyarrow import ArrowException, parquet
 
         found = []
-        for path in sorted(self.folder.glob(f"*{SUFFIX}")):
+        for path in sorted(self.folder.glob(f"*{PART_SUFFIX}")):
             try:
                 table = parquet.read_table(path)
             except (ArrowException, OSError):
@@ -145,28 +148,29 @@ class Parts:
     @property
     def count(self) -> int:
         """How many batches there are."""
-        return len(list(self.folder.glob(f"*{SUFFIX}")))
+        return len(list(self.folder.glob(f"*{PART_SUFFIX}")))
 
     def finish(self) -> None:
         """When the whole table is written; what was swept stays beside that."""
-        (self.folder / STATED).replace(self.folder.parent / STATED)
+        (self.folder / IDENTITY_FILE).replace(self.folder.parent / IDENTITY_FILE)
         self.remove()
 
     def remove(self) -> None:
         """Remove the files and the folder."""
-        for path in (*self.folder.glob(f"*{SUFFIX}*"), *self.folder.glob(f"{STATED}*")):
+        for path in (*self.folder.glob(f"*{PART_SUFFIX}*"), *self.folder.glob(f"{IDENTITY_FILE}*")):
             path.unlink(missing_ok=True)
         self.folder.rmdir()
 
 
 def is_ours(name: str) -> bool:
     """Whether an entry of an output folder is of its parts."""
-    if name == f"{FOLDER}/":
+    if name == f"{PARTS_FOLDER}/":
         return True
     folder, _, file = name.partition("/")
     bare = file.removesuffix(".partial")
-    return folder == FOLDER and (
-        bare == STATED or (bare.endswith(SUFFIX) and bare.removesuffix(SUFFIX).isdecimal())
+    return folder == PARTS_FOLDER and (
+        bare == IDENTITY_FILE
+        or (bare.endswith(PART_SUFFIX) and bare.removesuffix(PART_SUFFIX).isdecimal())
     )
 
 
@@ -196,8 +200,8 @@ def stated(folder: Path) -> str | None:
 def _read(folder: Path) -> dict[str, Any]:
     """What a folder states of its sweep; empty if nothing."""
     try:
-        found: Any = json.loads((folder / STATED).read_text(encoding="utf-8"))
-        ours = found["schema"] == SCHEMA and isinstance(found["sweep"], str)
+        found: Any = json.loads((folder / IDENTITY_FILE).read_text(encoding="utf-8"))
+        ours = found["schema"] == SWEEP_SCHEMA and isinstance(found["sweep"], str)
         return dict(found) if ours else {}
     except (OSError, ValueError, KeyError, TypeError):
         return {}

@@ -12,7 +12,9 @@ from pinstress.explore.sweep.laws import Floats, Uniform
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.schema.vary import VaryTable
 
-EDGE = 2.0**-53  # how close a probability may come to 0 and 1, where a normal law has no value
+MIN_PROBABILITY = (
+    2.0**-53
+)  # how close a probability may come to 0 and 1, where a normal law has no value
 
 
 def designs_of(
@@ -22,7 +24,7 @@ def designs_of(
     if vary.sample == "grid":
         axes = np.meshgrid(*map(_on_grid, parameters), indexing="ij")
         return np.stack([axis.ravel() for axis in axes], axis=1)
-    u = np.clip(_points(vary, len(parameters)), EDGE, 1.0 - EDGE)
+    u = np.clip(_points(vary, len(parameters)), MIN_PROBABILITY, 1.0 - MIN_PROBABILITY)
     if correlations is None:
         return np.stack([p.quantile(u[:, k]) for k, p in enumerate(parameters)], axis=1)
     from scipy.special import ndtri

@@ -18,8 +18,8 @@ from typing import Any
 from distributed import Future, KilledWorker, get_worker
 
 from loads import FileError, read_regular, sent_files
-from pinstress.analysis.cache.store import PACKAGES
-from pinstress.explore.sweep.batches import Batch, DesignProblem, Done, solve_batch
+from pinstress.analysis.cache.store import REQUIRED_PACKAGES
+from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
 from pinstress.explore.sweep.cluster import (
     Cluster,
     connected,
@@ -29,16 +29,16 @@ from pinstress.explore.sweep.cluster import (
 )
 from pinstress.explore.sweep.versions import versions
 from pinstress.explore.sweep.workers import BatchQueue
-from pinstress.study.model.imported_pin import LARGEST_BODY
+from pinstress.study.model.imported_pin import MAX_BODY_SIZE
 from pinstress.study.reading.errors import InputError
 
-AHEAD = 2  # batches for each worker: one that is solved and one that waits
-WAITING = "pending", "lost"  # states of a batch that is solved, or must be once more
-POLL = 0.05  # s between two looks at which batches are done
-NUMERIC = (*(name for name in PACKAGES if name != "pinstress"), "distributed")
+BATCHES_PER_WORKER = 2  # batches for each worker: one that is solved and one that waits
+WAITING_STATES = "pending", "lost"  # states of a batch that is solved, or must be once more
+BATCH_POLL_INTERVAL = 0.05  # s between two looks at which batches are done
+NUMERIC_PACKAGES = (*(name for name in REQUIRED_PACKAGES if name != "pinstress"), "distributed")
 
 # A worker without pinstress can begin it, and says what it misses; reading our own task it ends.
-EXPRESSION = "(lambda do, *what: do(*what))(*__import__('pickle').loads(sent))"
+BATCH_EXPRESSION = "(lambda do, *what: do(*what))(*__import__('pickle').loads(sent))"
 
 Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
 
@@ -49,7 +49,7 @@ class WorkerAnswer:
 
     worker: str
     versions: dict[str, str]
-    done: Done | None
+    done: SolvedBatch | None
 
 
 _contents: dict[str, Contents] = {}  # in a worker: of the study that is solved, by their hash
@@ -70,22 +70,25 @@ def solve_on(
     """
     contents = _read(files)
     problem = replace(problem, files=_hash(contents))
-    with connected(address, NUMERIC, tell) as cluster:
+    with connected(address, NUMERIC_PACKAGES, tell) as cluster:
         running: dict[Future[WorkerAnswer], Batch] = {}
         work = work_of(cluster.workers)
 
         def start(batch: Batch, given: Contents | None) -> None:
             sent = {"sent": pickle.dumps((solve_there, problem, given, batch))}
-            running[cluster.client.submit(eval, EXPRESSION, sent, pure=False)] = batch
+            running[cluster.client.submit(eval, BATCH_EXPRESSION, sent, pure=False)] = batch
 
         while True:
-            while len(running) < AHEAD * cluster.workers and (new := work.take()) is not None:
+            while (
+                len(running) < BATCHES_PER_WORKER * cluster.workers
+                and (new := work.take()) is not None
+            ):
                 start(new, None)
             if not running:
                 return
-            time.sleep(POLL)
+            time.sleep(BATCH_POLL_INTERVAL)
             cluster.look()
-            for future in [each for each in running if each.status not in WAITING]:
+            for future in [each for each in running if each.status not in WAITING_STATES]:
                 outcome = _outcome(cluster, future)
                 if outcome is None:
                     continue  # its worker has gone with it: it is solved again
@@ -116,12 +119,12 @@ def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch)
 
 @lru_cache(1)
 def _versions_here() -> dict[str, str]:
-    return versions(NUMERIC)
+    return versions(NUMERIC_PACKAGES)
 
 
 def _read(files: tuple[Path, ...]) -> Contents:
     try:
-        return tuple((str(path), read_regular(path, LARGEST_BODY)) for path in files)
+        return tuple((str(path), read_regular(path, MAX_BODY_SIZE)) for path in files)
     except (OSError, FileError) as error:
         raise InputError(
             f"--scheduler: a file of the study cannot be read ({error})", code="unreadable"

@@ -14,9 +14,9 @@ from reports.format.numbers import DASH, engineering
 if TYPE_CHECKING:
     import pyarrow as pa
 
-REASONS = 3  # that are printed, the commonest
-UNSOLVED = ("failed", "rigid")  # verdicts without numbers
-LONGEST = 100  # characters of a reason
+MAX_PRINTED_REASONS = 3  # that are printed, the commonest
+UNSOLVED_VERDICTS = ("failed", "rigid")  # verdicts without numbers
+MAX_REASON_LENGTH = 100  # characters of a reason
 
 
 def summary(table: pa.Table, console: Console) -> None:
@@ -47,7 +47,7 @@ def summary(table: pa.Table, console: Console) -> None:
         grid.add_row(pin, *_range(mine))
         if required is not None:
             below = {r["design"] for r in mine if (r["safety_factor"] or required) < required}
-            solved = len({r["design"] for r in mine if r["verdict"] not in UNSOLVED})
+            solved = len({r["design"] for r in mine if r["verdict"] not in UNSOLVED_VERDICTS})
             of = f" of {solved:,} solved" if solved < len(designs) else ""
             short.append(f"{pin} {len(below):,}{of}")
     console.print(grid)
@@ -72,14 +72,14 @@ def _reasons(rows: list[dict[str, Any]]) -> list[str]:
     failed = [row for row in rows if row["verdict"] == "failed"]
     found = Counter(row["code"] for row in failed)
     lines = []
-    for code, _ in found.most_common(REASONS):
+    for code, _ in found.most_common(MAX_PRINTED_REASONS):
         mine = [row for row in failed if row["code"] == code]
         many = len({row["design"] for row in mine})
         text = mine[0]["reason"]
-        text = text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
+        text = text if len(text) <= MAX_REASON_LENGTH else text[: MAX_REASON_LENGTH - 1] + "…"
         lines.append(f"  {many:,} {code}: for instance design {mine[0]['design']}, {text}")
-    if len(found) > REASONS:
-        lines.append(f"  and {len(found) - REASONS} other reasons")
+    if len(found) > MAX_PRINTED_REASONS:
+        lines.append(f"  and {len(found) - MAX_PRINTED_REASONS} other reasons")
     return lines
 
 

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 from pinbase.processes.pool import cores
-from pinstress.explore.sweep.batches import Batches, DesignProblem, Done, evaluator_of
+from pinstress.explore.sweep.batches import Batches, DesignProblem, SolvedBatch, evaluator_of
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.parameters import Parameter, parameters_of
@@ -45,7 +45,7 @@ class Store(Protocol):
         ...
 
 
-class Kept:
+class MemoryStore:
     """Batches in memory."""
 
     def __init__(self) -> None:
@@ -116,7 +116,7 @@ def solved(
     total, count = len(sweep.values), len(done)
     report(count, total)
 
-    def keep(found: Done) -> None:
+    def keep(found: SolvedBatch) -> None:
         nonlocal count
         each = zip(found.batch.designs, found.batch.values, found.rows, strict=True)
         rising = sorted(each, key=lambda design: design[0])
@@ -165,4 +165,4 @@ def sweep(
     Raises: InputError for bad input. A design that fails is a row with its reason.
     """
     names = [None if x is None else list(x) for x in (pins, cases)]
-    return solved(planned(study, *names), Kept(), jobs, scheduler)
+    return solved(planned(study, *names), MemoryStore(), jobs, scheduler)

@@ -21,8 +21,8 @@ from reports.folder.inside import write_inside
 if TYPE_CHECKING:
     import pyarrow as pa
 
-METADATA = b"pinstress"  # of the schema, a JSON text
-RESULTS = {  # by column: the dimension, or None of a text; SI in a DesignRow
+METADATA_KEY = b"pinstress"  # of the schema, a JSON text
+RESULT_DIMENSIONS = {  # by column: the dimension, or None of a text; SI in a DesignRow
     "max_von_mises": "stress",
     "error_estimate": "stress",
     "safety_factor": "",
@@ -59,7 +59,7 @@ def table_of(
     for k, parameter in enumerate(parameters):
         factor = parameter.number.factor
         columns.append([float(values[k]) / factor for _, values, _ in flat])
-    for name, dimension in RESULTS.items():
+    for name, dimension in RESULT_DIMENSIONS.items():
         factor = study.system.factor(dimension) if dimension else 1.0
         cells = [getattr(row, name) for _, _, row in flat]
         if dimension is not None:
@@ -109,7 +109,7 @@ def read_table(path: Path) -> pa.Table:
 
 def facts(table: pa.Table) -> dict[str, Any]:
     """The study, hash, units and parameters that a table of a sweep names; empty of any other."""
-    stated = (table.schema.metadata or {}).get(METADATA)
+    stated = (table.schema.metadata or {}).get(METADATA_KEY)
     found: dict[str, Any] = json.loads(stated) if stated else {}
     return found
 
@@ -119,7 +119,7 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
 
     fields = [_field("design", pa.int64()), _field("pin", pa.string()), _field("case", pa.string())]
     fields += [_field(p.key, pa.float64(), p.number.unit) for p in parameters]
-    for name, dimension in RESULTS.items():
+    for name, dimension in RESULT_DIMENSIONS.items():
         unit = unit_of(study.system, dimension) if dimension else ""
         fields.append(_field(name, pa.string() if dimension is None else pa.float64(), unit))
     stated = {
@@ -130,7 +130,9 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
         "parameters": {p.key: {"unit": p.number.unit, "law": p.law_text} for p in parameters},
         "required_safety_factor": study.table.analysis.required_safety_factor,
     }
-    return pa.schema(fields, metadata={METADATA: json.dumps(stated, ensure_ascii=False).encode()})
+    return pa.schema(
+        fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}
+    )
 
 
 def _field(name: str, kind: pa.DataType, unit: str = "") -> pa.Field:

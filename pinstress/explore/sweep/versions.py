@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from importlib import metadata, util
 from pathlib import Path
 
-OURS = (
+OWN_PACKAGES = (
     "pinstress",
     "pinbase",
     "loads",
@@ -21,14 +21,14 @@ OURS = (
     "assess",
     "reports",
 )  # whose source makes numbers and outcomes
-MISSING = "missing"
-SHOWN = 8  # digits of the hash of a source
+MISSING_VERSION = "missing"
+SOURCE_HASH_DIGITS = 8  # digits of the hash of a source
 
 
 def versions(packages: Sequence[str]) -> dict[str, str]:
     """The versions of Python, of this program with the start of the hash of its source, and of
-    packages, MISSING for what cannot be imported; and which code a system makes the program take
-    (pinbase.processes.system), whose numbers differ in their last digits.
+    packages, MISSING_VERSION for what cannot be imported; and which code a system makes the
+    program take (pinbase.processes.system), whose numbers differ in their last digits.
     """
     portable = sys.platform != "linux" or os.environ.get("PINSTRESS_PORTABLE") == "1"
     own = {
@@ -41,13 +41,13 @@ def versions(packages: Sequence[str]) -> dict[str, str]:
 
 def _ours() -> str:
     found = hashlib.sha256()
-    for name in OURS:
+    for name in OWN_PACKAGES:
         spec = util.find_spec(name)
         if spec is None or not spec.submodule_search_locations:
-            return MISSING
+            return MISSING_VERSION
         for path, content in _sources(Path(next(iter(spec.submodule_search_locations)))):
             found.update(f"{name}/{path} {len(content)}\n".encode() + content)
-    return f"{_version('pinstress')}, source {found.hexdigest()[:SHOWN]}"
+    return f"{_version('pinstress')}, source {found.hexdigest()[:SOURCE_HASH_DIGITS]}"
 
 
 def _sources(root: Path) -> Iterator[tuple[str, bytes]]:
@@ -59,4 +59,4 @@ def _version(name: str) -> str:
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
-        return MISSING
+        return MISSING_VERSION

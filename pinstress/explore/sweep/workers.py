@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from pinbase.processes.pool import Died, Tell, preload, served
+from pinbase.processes.pool import ProcessDied, Tell, preload, served
 from pinbase.processes.threads import hold_threads
-from pinstress.explore.sweep.batches import Batch, Batches, DesignProblem, Done, solve_batch
+from pinstress.explore.sweep.batches import Batch, Batches, DesignProblem, SolvedBatch, solve_batch
 from pinstress.explore.sweep.evaluate import DesignRow
 
-LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod"  # that solving imports on demand
+WORKER_MODULES = "gmsh", "pymetis", "cvxopt.cholmod"  # that solving imports on demand
 
-Keep = Callable[[Done], None]
-Lost = Callable[[Batch], Done]
+Keep = Callable[[SolvedBatch], None]
+Lost = Callable[[Batch], SolvedBatch]
 
 
 class BatchQueue:
@@ -45,7 +45,7 @@ class BatchQueue:
         self._in_work += 1
         return found
 
-    def done(self, done: Done) -> None:
+    def done(self, done: SolvedBatch) -> None:
         """Keep what was solved."""
         self._in_work -= 1
         self._batches.learn(done)
@@ -77,14 +77,14 @@ def solve_side_by_side(
     called several times in a second.
     """
     hold_threads()
-    preload(*LIBRARIES)
+    preload(*WORKER_MODULES)
 
     def take() -> tuple[str, Batch] | None:
         batch = work.take()
         return None if batch is None else (f"designs {min(batch.designs) + 1} ...", batch)
 
-    def give(batch: Batch, outcome: Done | Died) -> None:
-        if isinstance(outcome, Died):
+    def give(batch: Batch, outcome: SolvedBatch | ProcessDied) -> None:
+        if isinstance(outcome, ProcessDied):
             work.died(batch)
         else:
             work.done(outcome)
@@ -92,11 +92,11 @@ def solve_side_by_side(
     served(partial(_solve, problem), take, give, jobs, lambda _: tick())
 
 
-def _solve(problem: DesignProblem, batch: Batch, _: Tell) -> Done:
+def _solve(problem: DesignProblem, batch: Batch, _: Tell) -> SolvedBatch:
     return solve_batch(problem, batch)
 
 
-def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> Done:
+def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> SolvedBatch:
     """The rows of designs whose process died. table: pin and case of each row."""
     row = partial(
         DesignRow,
@@ -108,4 +108,4 @@ def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> Done:
         code="process-died",
     )
     rows = [[row(pin=pin, case=case) for pin, case in table] for _ in batch.designs]
-    return Done(batch, rows, 0.0)
+    return SolvedBatch(batch, rows, 0.0)

@@ -11,14 +11,14 @@ from fea.support.lugs.fit import carried
 from geometry import ArgumentError, GeometryError, PinLike
 from loads import TableError
 from pinstress.study.model.cases import CaseLoads
-from pinstress.study.model.given import given_case
+from pinstress.study.model.given import given_forces
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
 
-TOLD = 1e-4  # share from which a part is reported beside a larger one
+MIN_REPORTED_SHARE = 1e-4  # share from which a part is reported beside a larger one
 
 
 def unheld(study: Study, task: Task) -> list[str]:
@@ -62,7 +62,7 @@ def _reacted(study: Study, task: Task) -> dict[str, str]:
 def _of_given(study: Study, name: str) -> list[str]:
     case = study.table.case[name]
     assert isinstance(case, GivenCase)
-    loads = CaseLoads(given_case(study, name, case))
+    loads = CaseLoads(given_forces(study, name, case))
     loaded = {*loads.reactions.connections}
     unclamped = [p for p, x in study.table.pin.items() if _stated(study, p, name) and not x.clamp]
     return [
@@ -110,7 +110,7 @@ def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
         (torque, f"a torque of {_shown(balance.left[2] / size('moment'))} {nm} ({torque:.1%} of "
          "the largest)"),
     )  # fmt: skip
-    parts = [text for share, text in found if share > TOLD]
+    parts = [text for share, text in found if share > MIN_REPORTED_SHARE]
     where = "links" if task.lugs else "bands"
     return (
         f"case.{case.case}: the loads on pin {task.pin.name} are not quite in equilibrium"

@@ -12,11 +12,11 @@ import numpy as np
 from loads import (
     Course,
     Dynamics,
-    Impasse,
     LegDynamics,
     Linkage,
     LinkageError,
     Load,
+    MotionBlocked,
     OverTime,
     PeakForces,
     Reactions,
@@ -31,7 +31,7 @@ from loads import (
 from loads.landing import GROUND_RULES, Landing, at_deflection, pushes
 from loads.landing import laws as landing_laws
 from pinbase.arrays import Floats
-from pinstress.study.model.given import given_case
+from pinstress.study.model.given import given_forces
 from pinstress.study.model.impulses import (
     ImpulseLoads,
     ImpulseShare,
@@ -50,7 +50,12 @@ from pinstress.study.model.landing import (
 )
 from pinstress.study.model.mechanism.drives import laws, span, state
 from pinstress.study.model.mechanism.forces import springs
-from pinstress.study.model.mechanism.spatial_leg import AXES, dynamics, hinge_reactions, instants
+from pinstress.study.model.mechanism.spatial_leg import (
+    LEG_AXES,
+    dynamics,
+    hinge_reactions,
+    instants,
+)
 from pinstress.study.model.moving_loads import Acting, MovingLoads, acting
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
@@ -120,7 +125,7 @@ def case_loads(
     case = study.table.case[name]
     try:
         if isinstance(case, GivenCase):
-            return CaseLoads(given_case(study, name, case))
+            return CaseLoads(given_forces(study, name, case))
         if isinstance(case, LegCase):
             return _leg(study, name, case)
         assert mechanism is not None
@@ -133,7 +138,7 @@ def case_loads(
         return _at_instant(study, name, case, mechanism)
     except TableError as error:
         raise study.table_error(f"case.{name}.table", error) from None
-    except Impasse as error:
+    except MotionBlocked as error:
         message = f"case.{name}: {error.message(_shown(study))}"
         raise study.error(message, code=error.code) from None
     except LinkageError as error:
@@ -153,7 +158,7 @@ def _shown(study: Study) -> Callable[[float, bool], str]:
 def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
     at = partial(_hinge, study, name)
     times = instants(study, case)
-    note = f"Axes of the hinge: {AXES}. The moment about z is the actuator's, not the pin's."
+    note = f"Axes of the hinge: {LEG_AXES}. The moment about z is the actuator's, not the pin's."
     found = dynamics(study, times)
     peaks = peak_forces(times, at)
     moving = MovingLoads(partial(_without_joints, at), times)

@@ -8,10 +8,10 @@ from loads import Layout, Reactions, TableError, given_reactions, read_reactions
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
-from pinstress.study.schema.units import SYSTEMS, to_si
+from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 
-def given_case(study: Study, name: str, case: GivenCase) -> Reactions:
+def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
     """The forces of a case, in pin axes. Raises: TableError."""
     if case.table is None:
         forces, moments = (
@@ -21,7 +21,7 @@ def given_case(study: Study, name: str, case: GivenCase) -> Reactions:
         return given_reactions(name, forces, moments)
     known = {c for p in study.table.pin for c in study.connections(p)}
     layout = Layout(case.table_case or name, case.columns, case.labels, case.time_step)
-    system = SYSTEMS[case.table_units or study.table.units]
+    system = UNIT_SYSTEMS[case.table_units or study.table.units]
 
     def unit(written: str, dimension: str) -> float:
         if not written:

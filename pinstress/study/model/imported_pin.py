@@ -14,23 +14,24 @@ from typing import Any
 
 from geometry import CutPin, GeometryError, Pin, PinLike
 from geometry.imported.body_file import BodyFile
-from geometry.imported.imported_pin import MEASURE, SolidBody
-from geometry.imported.recognise import NotTurnedError, Turned, turned
+from geometry.imported.imported_pin import MEASURING_MESH_SIZE, SolidBody
+from geometry.imported.recognise import NotTurnedError, RecognisedProfile, recognised_profile
 from geometry.mesh.solid_mesh import MeshError
 from geometry.shape.polyline import Stripe, with_stripes
 from loads import FileError, require_regular
 from pinbase.processes.limits import MB, Limits
-from pinbase.processes.pool import Died, Job, Tell, can_fork, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Tell, can_fork, in_parallel
 from pinbase.processes.system import portable
 
-KINDS = "hole", "flat", "slot", "passage"
-LARGEST_BODY = 1024 * MB
-MEMORY = 4096 * MB
+CUT_KINDS = "hole", "flat", "slot", "passage"
+MAX_BODY_SIZE = 1024 * MB
+MAX_READER_MEMORY = 4096 * MB
 
 Work = Callable[..., Any]
 
-CAD = Limits(30, 300, MEMORY)  # to measure it; a sound pin takes about a second
-LARGE = Limits(600, 6000, MEMORY)  # for a mesh file, and to mesh a CAD file more finely
+CAD_LIMITS = Limits(30, 300, MAX_READER_MEMORY)  # to measure it; a sound pin takes about a second
+# For a mesh file, and to mesh a CAD file more finely.
+LONG_LIMITS = Limits(600, 6000, MAX_READER_MEMORY)
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
@@ -49,19 +50,19 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
         return SolidBody(file, apart, f"{file.path.name} is taken as a solid, since {error.why}")
 
 
-def turned_apart(file: BodyFile, upright: bool = True) -> Turned:
-    """As `geometry.imported.recognise.turned`, in another process.
+def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
+    """As `geometry.imported.recognise.recognised_profile`, in another process.
 
     Raises: as that and `apart`.
     """
-    found: Turned = apart(turned, file, upright)
+    found: RecognisedProfile = apart(recognised_profile, file, upright)
     return found
 
 
 def require_readable(file: BodyFile) -> None:
     """Raises: GeometryError if the file cannot be read, or is too large."""
     try:
-        require_regular(file.path, LARGEST_BODY)
+        require_regular(file.path, MAX_BODY_SIZE)
     except FileError as error:
         raise GeometryError(f"pin {file.name}: {file.path.name} {error}", error.code) from None
     except FileNotFoundError:
@@ -72,7 +73,7 @@ def require_readable(file: BodyFile) -> None:
         ) from None
 
 
-def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
+def _profiled(file: BodyFile, found: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
     """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
     start, stripes = found.start * file.unit, []
     for place in file.places:
@@ -94,7 +95,7 @@ def _profiled(file: BodyFile, found: Turned, clamps: set[str]) -> Pin | CutPin:
         raise NotTurnedError(file.name, file.path.name, str(error)) from None
     counted = (
         (len(profile.segments), "segment"),
-        *((sum(c.what == kind for c in found.cuts), kind) for kind in KINDS),
+        *((sum(c.what == kind for c in found.cuts), kind) for kind in CUT_KINDS),
     )
     parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
     source = f"{file.path.name} is taken as a profile: {parts}"
@@ -109,13 +110,13 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
 
     Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
     """
-    quick = work is turned or arguments in ((), (MEASURE,))
-    limits = CAD if quick and not file.meshed else LARGE
+    quick = work is recognised_profile or arguments in ((), (MEASURING_MESH_SIZE,))
+    limits = CAD_LIMITS if quick and not file.meshed else LONG_LIMITS
     job: Job[Any] = Job(
         f"pin {file.name}", partial(_read, work, file, arguments, limits.memory), limits
     )
-    (made,) = side_by_side([job], 2, anew=not can_fork())
-    if isinstance(made, Died):
+    (made,) = in_parallel([job], 2, anew=not can_fork())
+    if isinstance(made, ProcessDied):
         why = made.reason
         if made.status == -signal.SIGABRT and not portable():
             why += f"; its memory limit is {limits.memory / 2**30:g} GB"

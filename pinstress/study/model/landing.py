@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from loads import Applied, Law, Linkage, LinkageError, StateDrive
 from loads.landing import (
-    DROPS,
+    DROP_RULES,
     GROUND_RULES,
     Drop,
     GasSpring,
@@ -33,7 +33,9 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
 
-AGREES = 0.1  # of the mechanism's unsprung mass, which changes by as much along a stroke
+UNSPRUNG_MASS_TOLERANCE = (
+    0.1  # of the mechanism's unsprung mass, which changes by as much along a stroke
+)
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
@@ -96,7 +98,7 @@ def unsprung_warnings(study: Study) -> list[str]:
             own = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
         except (InputError, LinkageError, ArgumentError):
             continue  # whoever needs the case says what is wrong with it
-        if abs(case.unsprung - own) > AGREES * own:
+        if abs(case.unsprung - own) > UNSPRUNG_MASS_TOLERANCE * own:
             text = (
                 f"case.{name}.unsprung: {case.unsprung:.4g} kg is stated, but the mechanism's "
                 f"bodies move with the axle like {own:.4g} kg; the stated mass is used for the "
@@ -123,7 +125,7 @@ def _drop(
             "must be smaller",
             "unsprung-too-large",
         )
-    rule = None if case.rule is None else DROPS[case.rule]
+    rule = None if case.rule is None else DROP_RULES[case.rule]
     velocity = case.velocity
     if velocity is None:
         assert case.rule is not None
@@ -183,7 +185,7 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
 
 def drop_note(case: DropCase, leg: Drop) -> str:
     """The clause of a drop, and its unsprung mass where the mechanism gives it."""
-    clause = "" if case.rule is None else f"{DROPS[case.rule].clause}."
+    clause = "" if case.rule is None else f"{DROP_RULES[case.rule].clause}."
     if case.unsprung is not None:
         return clause
     return f"{clause} Unsprung mass {leg.unsprung:.4g} kg, of the mechanism's bodies.".strip()

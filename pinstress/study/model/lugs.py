@@ -14,8 +14,8 @@ from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import LugRangeTable, LugTable, PinTable
 
-EYE = 2.5  # outer diameter over the band's
-CLAMP_DISTANCE = (
+EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
+CLAMP_DISTANCE_RATIO = (
     0.8  # of the outer diameter: distance from the bore's centre to where the link clamps the eye
 )
 
@@ -83,7 +83,7 @@ def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
     return tuple(out)
 
 
-def lugs_about(study: Study, pin: Pin) -> tuple[Lug, ...]:
+def known_lugs(study: Study, pin: Pin) -> tuple[Lug, ...]:
     """The same of a pin that is known to sit in lugs. Raises: ArgumentError for impossible ones."""
     table = study.table.pin[pin.name]
     made_of = material(study, table.material)
@@ -154,7 +154,7 @@ def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class AssumedLugs:
     """Lugs in which a pin may sit that the study loads and clamps otherwise: pin, with its clamped
     segments as bands on which no link bears. assumed: whether no lug is given. why: there are none.
     """
@@ -165,29 +165,29 @@ class Surroundings:
     why: str = ""
 
 
-def surroundings(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Surroundings:
+def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> AssumedLugs:
     """A lug at every connection, and one of the structure at every clamped segment, with the
     defaults for what the study does not say.
     """
     if not isinstance(pin, Pin):
-        return Surroundings(why="the pin has cuts or is from a file")
+        return AssumedLugs(why="the pin has cuts or is from a file")
     clamped = [pin.surface(name) for name in clamps]
     bare = [name for name in clamped if name not in pin.labels]
     if bare:
-        return Surroundings(why=f"no lug surrounds its clamp ({', '.join(bare)})")
+        return AssumedLugs(why=f"no lug surrounds its clamp ({', '.join(bare)})")
     table = study.table.pin[pin.name]
     free = _freed(pin, clamped)
     names = dict.fromkeys([*free.connections, *clamped, *table.lug])
     if len(names) < 2:
-        return Surroundings(why="one band alone does not show how the pin is supported")
+        return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
         found = tuple(
             _lug(study, pin, name, table.lug.get(name, LugTable()), made_of) for name in names
         )
     except ArgumentError as error:
-        return Surroundings(why=str(error))
-    return Surroundings(free, found, not table.lug)
+        return AssumedLugs(why=str(error))
+    return AssumedLugs(free, found, not table.lug)
 
 
 def _freed(pin: Pin, clamped: list[str]) -> Pin:
@@ -204,7 +204,7 @@ def _freed(pin: Pin, clamped: list[str]) -> Pin:
 
 def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Material) -> Lug:
     band = pin.band(connection)
-    outer = given.outer_diameter or EYE * 2.0 * band.radius
+    outer = given.outer_diameter or EYE_DIAMETER_RATIO * 2.0 * band.radius
     made_of = of_pin if given.material is None else material(study, given.material)
     tilt = _bending(made_of, outer, band.length) if given.tilt is None else _stiffness(given.tilt)
     ring = given.bushing
@@ -233,4 +233,4 @@ def _stiffness(tilt: str | float) -> float:
 
 def _bending(material: Material, outer: float, thickness: float) -> float:
     """Of a shank as wide as the eye, N m/rad."""
-    return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE * outer)
+    return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE_RATIO * outer)

@@ -20,14 +20,14 @@ from geometry import (
     Slot,
 )
 from geometry.imported.body_file import BodyFile
-from geometry.imported.recognise import NotTurnedError, Turned
-from geometry.shape.drill import FLAT_TIP
+from geometry.imported.recognise import NotTurnedError, RecognisedProfile
+from geometry.shape.drill import FLAT_TIP_ANGLE
 from pinstress.study.model.imported_pin import require_readable, turned_apart
-from pinstress.study.model.pins import METRES
+from pinstress.study.model.pins import METRES_PER_UNIT
 from pinstress.study.reading.errors import InputError
 from pinstress.study.schema.types import usable_name
 
-BARE = re.compile(r"[A-Za-z0-9_-]+")
+BARE_KEY_PATTERN = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def imported_text(path: Path, name: str | None, unit: str, material: str) -> str:
@@ -43,7 +43,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
             usable_name(given)
         except ValueError as error:
             raise InputError(f"{what}: {error}", code="unusable-name") from None
-    file = BodyFile(name, path, METRES[unit], ())
+    file = BodyFile(name, path, METRES_PER_UNIT[unit], ())
     try:
         if not path.exists():
             raise GeometryError(f"file {path} does not exist", "no-such-file")
@@ -63,7 +63,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
         raise InputError(str(error), code=error.code) from None
 
 
-def _text(file: BodyFile, found: Turned, unit: str, material: str) -> str:
+def _text(file: BodyFile, found: RecognisedProfile, unit: str, material: str) -> str:
     pin, head = found.pin(file.name), f"[pin.{_key(file.name)}]"
     lines = [
         f"# From {json.dumps(file.path.name)}:",
@@ -136,7 +136,7 @@ def _cut(cut: Cut, one: float, unit: str) -> Iterator[str]:
 
 
 def _bottom(bottom: Bottom, one: float, unit: str) -> Iterator[str]:
-    if bottom.tip < FLAT_TIP:
+    if bottom.tip < FLAT_TIP_ANGLE:
         yield f"tip_angle = {_angle(bottom.tip)}"
     if bottom.radius:
         yield f"bottom_radius = {_length(bottom.radius, one, unit)}"
@@ -164,4 +164,4 @@ def _vector(v: tuple[float, float, float]) -> str:
 
 
 def _key(name: str) -> str:
-    return name if BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)
+    return name if BARE_KEY_PATTERN.fullmatch(name) else json.dumps(name, ensure_ascii=False)

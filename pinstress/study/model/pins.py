@@ -17,7 +17,7 @@ from geometry import (
     Segment,
     Slot,
 )
-from geometry.shape.drill import FLAT_TIP
+from geometry.shape.drill import FLAT_TIP_ANGLE
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
 from loads import on_disk
 from pinbase.errors import Place
@@ -25,8 +25,8 @@ from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import BottomTable, HoleTable, PassageTable, PinTable
 
-TELL = 1e-3  # of the volume
-METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
+MIN_REPORTED_LOSS_OF_VOLUME = 1e-3  # of the volume
+METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
 def material(study: Study, name: str) -> Material:
@@ -94,7 +94,8 @@ def _lost_shape(pin: PinLike) -> str:
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin) and profile.merged:
         return (
-            f"diameters or bores that differ by up to {profile.merged / METRES['mm']:.2g} mm, "
+            f"diameters or bores that differ by up to "
+            f"{profile.merged / METRES_PER_UNIT['mm']:.2g} mm, "
             "less than a billionth of its smallest diameter, are taken as equal"
         )
     if not pin.meshed:
@@ -102,7 +103,7 @@ def _lost_shape(pin: PinLike) -> str:
     from geometry.imported.imported_pin import SolidBody
 
     assert isinstance(pin, SolidBody)
-    if pin.cut_off < TELL:
+    if pin.cut_off < MIN_REPORTED_LOSS_OF_VOLUME:
         return ""
     return (
         f"the sides of its elements are straight where its surface is curved, which changes its "
@@ -182,7 +183,7 @@ def _passage(h: PassageTable, length: float) -> Passage:
 
 
 def _bottom(h: BottomTable) -> Bottom:
-    return Bottom(FLAT_TIP if h.tip_angle is None else h.tip_angle, h.bottom_radius)
+    return Bottom(FLAT_TIP_ANGLE if h.tip_angle is None else h.tip_angle, h.bottom_radius)
 
 
 def _by_segments(name: str, p: PinTable) -> Pin:
@@ -220,5 +221,5 @@ def _from_file(study: Study, name: str, p: PinTable) -> PinLike:
     assert p.geometry is not None
     places = tuple(Band(n, b.z, b.surface, b.connection) for n, b in p.band.items())
     path = on_disk(study.path_to(p.geometry))
-    file = BodyFile(name, path, METRES[p.geometry_unit], places)
+    file = BodyFile(name, path, METRES_PER_UNIT[p.geometry_unit], places)
     return read_body(file, (clamp for _, clamp in _clamps(study, name)))

@@ -12,7 +12,7 @@ from pinstress.study.reading.choices import select
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.sequence import SequenceTable
 
-MOST_INSTANTS = 1_000_000  # of a sequence
+MAX_SEQUENCE_INSTANTS = 1_000_000  # of a sequence
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,8 @@ def require_times(study: Study, times: Mapping[str, Floats | None]) -> None:
             if (course is None) == (step.duration is None):
                 what = "is at rest; give its" if course is None else "has its own time; remove the"
                 raise study.error(f"{where}: {step.case} {what} duration", code="give-one")
-        if count > MOST_INSTANTS:
+        if count > MAX_SEQUENCE_INSTANTS:
             raise study.error(
-                f"sequence.{name}: {count:,} instants; the limit is {MOST_INSTANTS:,}",
+                f"sequence.{name}: {count:,} instants; the limit is {MAX_SEQUENCE_INSTANTS:,}",
                 code="too-large",
             )

@@ -15,7 +15,7 @@ from fea.support.lugs.lug import Lug
 from geometry import PinLike
 from loads import Reactions
 from pinstress.study.model.cases import CaseLoads
-from pinstress.study.model.lugs import Surroundings, given_lugs, lugs, surroundings
+from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, lugs
 from pinstress.study.model.moving_loads import MovingLoads
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
@@ -48,7 +48,7 @@ class Task:
     ranges: dict[str, PinLoads]
     between: dict[str, Between]
     lugs: tuple[Lug, ...] = ()
-    surroundings: Surroundings | None = None
+    surroundings: AssumedLugs | None = None
     impulses: dict[str, PinImpulse] = field(default_factory=dict)
     given: tuple[Lug, ...] = ()
 
@@ -112,7 +112,7 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         if given.impulse is not None:
             impulses[case] = PinImpulse(given.impulse.time, made(given.impulse.reactions))
     in_lugs = lugs(study, pin, clamps) if cases else ()
-    around = surroundings(study, pin, clamps) if cases and not in_lugs else None
+    around = assumed_lugs(study, pin, clamps) if cases and not in_lugs else None
     given_ones = given_lugs(study, pin, in_lugs) if cases else ()
     return Task(
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,

@@ -9,7 +9,7 @@ from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-AGREES = 0.02  # of the profile's weight
+STATED_WEIGHT_TOLERANCE = 0.02  # of the profile's weight
 
 
 def weight_warnings(study: Study) -> list[str]:
@@ -47,7 +47,7 @@ def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
         own = weight(pin(study, name), density, gravity)
     except InputError:
         return ""  # whoever needs the pin says what is wrong with it
-    if abs(stated - own) <= AGREES * own:
+    if abs(stated - own) <= STATED_WEIGHT_TOLERANCE * own:
         return ""
     unit, factor = study.system.force, study.system.factor("force")
     return (

@@ -9,7 +9,7 @@ from loads import TableError, table_cases
 from pinstress.study.reading.errors import InputError, Wrong
 from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.tables import StudyTable
-from pinstress.study.schema.types import ANY, usable_name
+from pinstress.study.schema.types import ANY_CASE, usable_name
 
 
 def with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:
@@ -18,23 +18,23 @@ def with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) ->
 
     Raises: InputError for an unusable table.
     """
-    if not any(ANY in name for name in table.case):
+    if not any(ANY_CASE in name for name in table.case):
         return table
-    cases = {name: case for name, case in table.case.items() if ANY not in name}
+    cases = {name: case for name, case in table.case.items() if ANY_CASE not in name}
     for section, case in table.case.items():
-        if ANY not in section:
+        if ANY_CASE not in section:
             continue
         key = f"case.{section}"
         assert isinstance(case, GivenCase)
         assert case.table is not None
-        if section.count(ANY) > 1:
+        if section.count(ANY_CASE) > 1:
             wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
         elif case.table_case is not None:
             text = f"{key}.table_case: the name with a * already stands for every case of the table"
             wrong.append(Wrong(text, code="give-one"))
         else:
             for name in _names(folder / case.table, case):
-                ours = section.replace(ANY, name)
+                ours = section.replace(ANY_CASE, name)
                 wrong += _mistakes(key, ours, case.table, ours in cases)
                 cases[ours] = case.model_copy(update={"table_case": name})
     return table.model_copy(update={"case": cases})

@@ -9,17 +9,17 @@ from numbers import Integral, Real
 from typing import TYPE_CHECKING, TypedDict, TypeVar, get_args
 
 from pinstress.study.reading.errors import InputError
-from pinstress.study.schema.shown import listed, near, shown
+from pinstress.study.schema.shown import as_text, listed, near
 
 if TYPE_CHECKING:
     from fea.solve.solve_pin import Model
 
 
 V = TypeVar("V")
-LARGEST = sys.float_info.max
+MAX_ARGUMENT = sys.float_info.max
 
 
-class Chosen(TypedDict, total=False):
+class Selection(TypedDict, total=False):
     """Keywords of analysis.plan.prepare; None: as in the study."""
 
     pins: Iterable[str] | None
@@ -55,7 +55,7 @@ def select(
     if isinstance(wanted, str | bytes) or not isinstance(wanted, Iterable):
         like = next(iter(known), "A")
         raise ChoiceError(
-            f"{argument}: must be a list of names such as [{like!r}], not {shown(wanted)}",
+            f"{argument}: must be a list of names such as [{like!r}], not {as_text(wanted)}",
             code="not-a-list",
         )
     asked: list[object] = list(wanted)
@@ -67,7 +67,8 @@ def select(
         if not isinstance(name, str) or name not in known:
             hint = near(name, known)
             raise ChoiceError(
-                f"{argument}: the study has no {what} {shown(name)}; {hint}", code=f"unknown-{what}"
+                f"{argument}: the study has no {what} {as_text(name)}; {hint}",
+                code=f"unknown-{what}",
             )
     chosen = set(asked)
     return [name for name in known if name in chosen]
@@ -90,7 +91,7 @@ def require_tolerance(tolerance: float | None) -> float | None:
 
 def require_positive(argument: str, value: float | None, endless: bool = False) -> float | None:
     """The same. endless: whether it may be infinite. Raises: ChoiceError unless it is positive."""
-    most = math.inf if endless else LARGEST
+    most = math.inf if endless else MAX_ARGUMENT
     right = value is None or (_is_number(value) and 0.0 < value <= most)
     return _require(right, argument, value, "must be a positive number", "not-positive")
 
@@ -103,7 +104,7 @@ def require_count(argument: str, value: int | None) -> int | None:
 
 def _require(right: bool, argument: str, value: V, must: str, code: str) -> V:
     if not right:
-        raise ChoiceError(f"{argument}: {must}, not {shown(value)}", code=code)
+        raise ChoiceError(f"{argument}: {must}, not {as_text(value)}", code=code)
     return value
 
 

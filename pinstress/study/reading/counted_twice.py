@@ -13,14 +13,14 @@ from collections.abc import Iterator, Mapping
 
 from pinstress.study.schema.tables import AnalysisTable
 
-REQUIRED = "analysis.required_safety_factor"
-LEVELS = "limit_factor", "ultimate_factor"
-FITTING = "fitting_factor"
-USUAL_FITTING = 1.15  # 14 CFR 25.625, 23.625
-SAME = 0.005  # relative: factors that differ by no more are one
-IN_WORDS = {
+REQUIRED_FACTOR_KEY = "analysis.required_safety_factor"
+LEVEL_FACTOR_KEYS = "limit_factor", "ultimate_factor"
+FITTING_FACTOR_KEY = "fitting_factor"
+USUAL_FITTING_FACTOR = 1.15  # 14 CFR 25.625, 23.625
+FACTOR_DIFFERENCE_TOLERANCE = 0.005  # relative: factors that differ by no more are one
+FACTOR_WORDS = {
     "ultimate_factor": re.compile(r"ultimate (load|factor)|\b2[3579]\.303\b", re.IGNORECASE),
-    FITTING: re.compile(r"\bfitting\b|\b2[3579]\.625\b", re.IGNORECASE),
+    FITTING_FACTOR_KEY: re.compile(r"\bfitting\b|\b2[3579]\.625\b", re.IGNORECASE),
 }
 
 
@@ -28,7 +28,7 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
     """Which factors of margins the required factor looks to contain, in a sentence. notes: by key,
     where a number comes from; one that names no such factor settles it.
     """
-    required, note = table.required_safety_factor, notes.get(REQUIRED, "")
+    required, note = table.required_safety_factor, notes.get(REQUIRED_FACTOR_KEY, "")
     if required is None or required <= 1.0:
         return ()
     keys = _in_words(table, note) if note else _in_numbers(table, required)
@@ -37,10 +37,11 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
     values = {key: getattr(table, key) for key in keys}
     factors = [f"{key} {value:g}" for key, value in values.items()]
     rest = required / math.prod(values.values())
-    times = [] if note or abs(rest - 1.0) <= SAME else [f"{rest:.3g}"]
+    times = [] if note or abs(rest - 1.0) <= FACTOR_DIFFERENCE_TOLERANCE else [f"{rest:.3g}"]
     found = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
     return (
-        f"{REQUIRED}: {required:g} {found}{' by its note' * bool(note)}, and the margins of safety "
+        f"{REQUIRED_FACTOR_KEY}: {required:g} {found}{' by its note' * bool(note)}, and the "
+        f"margins of safety "
         f"already contain {' and '.join(keys)}; the required factor compares yield with the stress "
         "under the loads of the study as they are (1: no yielding at limit load); if it is another "
         "factor, say in its note where it comes from",
@@ -49,13 +50,19 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
 
 def _in_words(table: AnalysisTable, note: str) -> list[str]:
     """The factors that a note names and margins contain."""
-    return [k for k, words in IN_WORDS.items() if words.search(note) and getattr(table, k) > 1.0]
+    return [
+        k for k, words in FACTOR_WORDS.items() if words.search(note) and getattr(table, k) > 1.0
+    ]
 
 
 def _in_numbers(table: AnalysisTable, required: float) -> list[str]:
     """The factors of which the required one is the product, with one at least that is stated."""
     stated = table.model_fields_set
-    fits = [keys for keys, value in _products(table) if abs(required / value - 1.0) <= SAME]
+    fits = [
+        keys
+        for keys, value in _products(table)
+        if abs(required / value - 1.0) <= FACTOR_DIFFERENCE_TOLERANCE
+    ]
     return max((x for x in fits if stated & set(x)), key=lambda x: len(stated & set(x)), default=[])
 
 
@@ -65,11 +72,11 @@ def _products(table: AnalysisTable) -> Iterator[tuple[list[str], float]]:
     """
     fitting = table.fitting_factor
     if fitting > 1.0:
-        yield [FITTING], fitting
-    for level in LEVELS:
+        yield [FITTING_FACTOR_KEY], fitting
+    for level in LEVEL_FACTOR_KEYS:
         value: float = getattr(table, level)
         if value > 1.0:
             yield [level], value
-            yield ([level, FITTING], value * fitting) if fitting > 1.0 else (
-                [level], value * USUAL_FITTING,
+            yield ([level, FITTING_FACTOR_KEY], value * fitting) if fitting > 1.0 else (
+                [level], value * USUAL_FITTING_FACTOR,
             )  # fmt: skip

@@ -11,8 +11,8 @@ from pinstress.study.schema.shown import ELLIPSIS
 
 T = TypeVar("T")
 
-MOST_LISTED = 20  # errors in a message; it counts the others
-LONGEST_LINE = 800  # characters; a longer line loses its middle
+MAX_LISTED_ERRORS = 20  # errors in a message; it counts the others
+MAX_LINE_LENGTH = 800  # characters; a longer line loses its middle
 
 
 class InputError(Exception):
@@ -39,9 +39,9 @@ class InputError(Exception):
 
 def clipped(line: str) -> str:
     """The beginning, which says where, and the end, which says what would be right."""
-    if len(line) <= LONGEST_LINE:
+    if len(line) <= MAX_LINE_LENGTH:
         return line
-    half = LONGEST_LINE // 2
+    half = MAX_LINE_LENGTH // 2
     return f"{line[:half]} {ELLIPSIS} {line[-half:]}"
 
 
@@ -64,7 +64,9 @@ def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
     from pinstress.study.reading.toml_lines import lines_of  # only for studies that are wrong
 
     lines = lines_of(text, [f"{w.at}:" if w.at else w.message for w in wrong])
-    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[:MOST_LISTED]
+    first = sorted(zip(lines, wrong, strict=True), key=lambda pair: pair[0] or 0)[
+        :MAX_LISTED_ERRORS
+    ]
     listed = []
     for line, w in first:
         where = f"{path}:{line}" if line else f"{path}"
@@ -102,5 +104,5 @@ class Errors:
         """Raises: InputError with all errors, if there are any."""
         if self.lines:
             listed = list(self.lines.items())
-            beyond = max(len(listed) - MOST_LISTED, 0)
-            raise _listed(self.path, listed[:MOST_LISTED], self.more + beyond) from None
+            beyond = max(len(listed) - MAX_LISTED_ERRORS, 0)
+            raise _listed(self.path, listed[:MAX_LISTED_ERRORS], self.more + beyond) from None

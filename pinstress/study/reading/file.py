@@ -22,15 +22,15 @@ from pinstress.study.reading.plausible import questions
 from pinstress.study.reading.references import cross_references
 from pinstress.study.reading.toml_text import read_toml
 from pinstress.study.reading.validation import explain
-from pinstress.study.schema.shown import LISTED, cut, in_toml, shown
+from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
 from pinstress.study.schema.tables import StudyTable
-from pinstress.study.schema.types import KINDS
-from pinstress.study.schema.units import SYSTEMS, UnitSystem
+from pinstress.study.schema.types import PROVENANCE_KINDS
+from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
-LARGEST_STUDY = 16 * MB
-LONGEST_PATH = 4096  # as Linux has it
-MOST_ITEMS = 200_000  # of a list
-LONGEST_KEY = 200  # characters; no name is longer, and messages have it in full
+MAX_STUDY_SIZE = 16 * MB
+MAX_PATH_LENGTH = 4096  # as Linux has it
+MAX_LIST_ITEMS = 200_000  # of a list
+MAX_KEY_LENGTH = 200  # characters; no name is longer, and messages have it in full
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Study:
     @property
     def system(self) -> UnitSystem:
         """The study's unit system."""
-        return SYSTEMS[self.table.units]
+        return UNIT_SYSTEMS[self.table.units]
 
     @property
     def meshes(self) -> Literal["own", "moved"]:
@@ -89,8 +89,8 @@ class Study:
 
     def path_to(self, name: str) -> Path:
         """Path of a file that the study refers to. Raises: InputError for an impossible name."""
-        if "\0" in name or len(name) > LONGEST_PATH:
-            raise self.error(f"{shown(name)} is not a file name", code="not-a-file-name")
+        if "\0" in name or len(name) > MAX_PATH_LENGTH:
+            raise self.error(f"{as_text(name)} is not a file name", code="not-a-file-name")
         return self.path.parent / name
 
     def error(self, message: str, at: str = "", code: str = "") -> InputError:
@@ -129,12 +129,12 @@ def load_study(path: str | os.PathLike[str]) -> Study:
     """
     if not isinstance(path, str | os.PathLike):
         raise InputError(
-            f"{shown(path)} is not the path of a study file; give a string or a Path",
+            f"{as_text(path)} is not the path of a study file; give a string or a Path",
             code="not-a-path",
         )
     path = Path(path)
     try:
-        text = read_regular(path, LARGEST_STUDY).decode("utf-8-sig")
+        text = read_regular(path, MAX_STUDY_SIZE).decode("utf-8-sig")
         text = text.replace("\r\n", "\n").replace("\r", "\n")
     except FileNotFoundError:
         raise InputError(f"{path}: no such file", code="no-such-file") from None
@@ -161,11 +161,11 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
         raise study_error(path, lines, long)
     wrong = [
         Wrong(
-            f"{s.key}: provenance must be given, derived, fitted or assumed, not {shown(s.kind)}",
+            f"{s.key}: provenance must be given, derived, fitted or assumed, not {as_text(s.kind)}",
             code="not-a-choice",
         )
         for s in provenance
-        if s.kind not in KINDS
+        if s.kind not in PROVENANCE_KINDS
     ]
     table = _table(path, lines, raw, wrong)
     wrong += control_characters([*texts(raw), *((s.key, s.note) for s in provenance)])
@@ -205,7 +205,7 @@ def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
 
 def _system(raw: Mapping[str, Any]) -> UnitSystem:
     units = raw.get("units")
-    return SYSTEMS.get(units if isinstance(units, str) else "", SYSTEMS["m-N-s"])
+    return UNIT_SYSTEMS.get(units if isinstance(units, str) else "", UNIT_SYSTEMS["m-N-s"])
 
 
 def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -> StudyTable:
@@ -225,10 +225,10 @@ def _written(value: Any) -> str:
     """A value as the study writes it, shortened; of a table its values with their keys."""
     if isinstance(value, dict):
         own = ((k, v) for k, v in value.items() if not isinstance(v, dict))
-        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(own, LISTED))
+        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(own, MAX_LISTED_NAMES))
     if isinstance(value, list):
-        more = ", ..." * (len(value) > LISTED)
-        return f"[{', '.join(map(_written, value[:LISTED]))}{more}]"
+        more = ", ..." * (len(value) > MAX_LISTED_NAMES)
+        return f"[{', '.join(map(_written, value[:MAX_LISTED_NAMES]))}{more}]"
     if isinstance(value, float):
         return f"{value:.6g}"
     return cut(value) if isinstance(value, str) else in_toml(value)
@@ -239,10 +239,11 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
     note } the value remains. long: where keys go that are too long.
     """
     if isinstance(node, list):
-        if len(node) > MOST_ITEMS:
+        if len(node) > MAX_LIST_ITEMS:
             long.append(
                 Wrong(
-                    f"{key}: {len(node):,} elements; the limit is {MOST_ITEMS:,}", code="too-many"
+                    f"{key}: {len(node):,} elements; the limit is {MAX_LIST_ITEMS:,}",
+                    code="too-many",
                 )
             )
             return []
@@ -256,9 +257,9 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
         if set(node) == {"value"}:
             return node["value"]
     long += [
-        Wrong(f"{key}{': ' * bool(key)}the name {shown(k)} has {len(k):,} characters; the limit is "
-              f"{LONGEST_KEY}", code="too-long")
-        for k in node if len(k) > LONGEST_KEY
+        Wrong(f"{key}{': ' * bool(key)}the name {as_text(k)} has {len(k):,} characters; the limit "
+              f"is {MAX_KEY_LENGTH}", code="too-long")
+        for k in node if len(k) > MAX_KEY_LENGTH
     ]  # fmt: skip
-    inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= LONGEST_KEY}
+    inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= MAX_KEY_LENGTH}
     return {k: unwrapped(node[k], place, found, long) for k, place in inner.items()}

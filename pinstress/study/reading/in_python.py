@@ -10,10 +10,10 @@ from typing import Any
 
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study
-from pinstress.study.schema.shown import shown
+from pinstress.study.schema.shown import as_text
 
-PART = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
-INDEX = re.compile(r"\[(\d+)\]")
+KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
+INDEX_PATTERN = re.compile(r"\[(\d+)\]")
 
 
 def study_from(
@@ -32,7 +32,7 @@ def study_from(
         return parse_study(path, tables)
     if not isinstance(tables, Mapping):
         raise InputError(
-            f"{shown(tables)} is not a study: give a dict or the text of a study file",
+            f"{as_text(tables)} is not a study: give a dict or the text of a study file",
             code="not-a-study",
         )
     import tomlkit
@@ -66,14 +66,14 @@ def key_parts(study: Study, key: str) -> list[str | int]:
     found: list[str | int] = []
     at = 0
     while at < len(key):
-        match = PART.match(key, at)
+        match = KEY_PART_PATTERN.match(key, at)
         if match is None:
             raise study.error(
-                f"{shown(key)} is not a key; a key looks like pin.E.profile[2].diameter",
+                f"{as_text(key)} is not a key; a key looks like pin.E.profile[2].diameter",
                 code="not-a-key",
             )
         found.append(match[1] if match[1] is not None else match[2])
-        found += [int(i) - 1 for i in INDEX.findall(match[3])]
+        found += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
         at = match.end()
     if not found:
         raise study.error("'' is not a key", code="not-a-key")
@@ -90,7 +90,7 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
     except (KeyError, IndexError, TypeError):
         there = part + 1 if isinstance(part, int) else part
         raise study.error(
-            f"{key}: the study has no {shown(there)} there", code="unknown-key"
+            f"{key}: the study has no {as_text(there)} there", code="unknown-key"
         ) from None
 
 
@@ -107,6 +107,6 @@ def _plain(value: Any, key: str) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     raise InputError(
-        f"{key}: {shown(value)} cannot be a value in a study: give a number, text or table",
+        f"{key}: {as_text(value)} cannot be a value in a study: give a number, text or table",
         code="not-a-value",
     )

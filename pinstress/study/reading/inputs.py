@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from loads import MB, FileError, read_regular
-from pinstress.study.reading.file import LONGEST_PATH, Study, raw_study
+from pinstress.study.reading.file import MAX_PATH_LENGTH, Study, raw_study
 from pinstress.study.schema.shown import in_toml
 
-LARGEST_TABLE = 256 * MB
-DIGITS = 12  # of the hash of a file
-APART = "title", "report", "assumptions"  # texts that change no result
+MAX_TABLE_SIZE = 256 * MB
+FILE_HASH_DIGITS = 12  # of the hash of a file
+IGNORED_TEXTS = "title", "report", "assumptions"  # texts that change no result
 
 
 def inputs(study: Study) -> dict[str, str]:
@@ -21,7 +21,7 @@ def inputs(study: Study) -> dict[str, str]:
     return {
         key: _written(study, value)
         for key, value in _leaves(raw, "")
-        if key.split(".")[0].split("[")[0] not in APART
+        if key.split(".")[0].split("[")[0] not in IGNORED_TEXTS
     }
 
 
@@ -42,14 +42,14 @@ def _written(study: Study, value: Any) -> str:
     content = _file(study, value)
     if content is None:
         return value
-    return f"{value} (SHA-256 {hashlib.sha256(content).hexdigest()[:DIGITS]})"
+    return f"{value} (SHA-256 {hashlib.sha256(content).hexdigest()[:FILE_HASH_DIGITS]})"
 
 
 def _file(study: Study, name: str) -> bytes | None:
     """Its content, if a file of the study has that name."""
-    if "." not in name or "\0" in name or len(name) > LONGEST_PATH:
+    if "." not in name or "\0" in name or len(name) > MAX_PATH_LENGTH:
         return None
     try:
-        return read_regular(study.path.parent / name, LARGEST_TABLE)
+        return read_regular(study.path.parent / name, MAX_TABLE_SIZE)
     except (OSError, FileError, ValueError):
         return None

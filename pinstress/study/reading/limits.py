@@ -9,14 +9,16 @@ from typing import Any
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.schema.tables import StudyTable
 
-CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")  # all but tab and line ends
+CONTROL_CHARACTER_PATTERN = re.compile(
+    r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]"
+)  # all but tab and line ends
 
-MOST_PINS = MOST_CASES = 1000
-MOST_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
-MOST_LOADS = 1000  # of a case
-MOST_SLENDER = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
-MOST_STEPPED = 3000.0  # largest diameter over smallest
-MOST_BODIES = 500  # and joints: three unknowns each, in dense equations
+MAX_PINS = MAX_CASES = 1000
+MAX_PIN_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute
+MAX_CASE_LOADS = 1000  # of a case
+MAX_SLENDERNESS = 1000.0  # length over diameter: beyond it the numerics fail, after many minutes
+MAX_DIAMETER_RATIO = 3000.0  # largest diameter over smallest
+MAX_BODIES = 500  # and joints: three unknowns each, in dense equations
 
 
 def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
@@ -34,7 +36,7 @@ def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
 def control_characters(found: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
     """Errors for texts with characters that command terminals and that PDF and XML cannot show."""
     for key, text in found:
-        if bad := CONTROL.search(text):
+        if bad := CONTROL_CHARACTER_PATTERN.search(text):
             what = f"has the control character U+{ord(bad[0]):04X}"
             yield Wrong(f"{key}: {what}; remove it", code="control-character")
 
@@ -51,11 +53,11 @@ def too_many(table: StudyTable) -> Iterator[str]:
         key = f"pin.{name}.{'meridian' if pin.profile is None else 'profile'}"
         length = pin.meridian[-1][0] if pin.meridian else sum(s.length for s in pin.profile or ())
         slender = length / max(diameters)
-        if slender > MOST_SLENDER:
-            yield f"{key}: {_odd('as long as it is wide', slender, MOST_SLENDER)}"
+        if slender > MAX_SLENDERNESS:
+            yield f"{key}: {_odd('as long as it is wide', slender, MAX_SLENDERNESS)}"
         stepped = max(diameters) / min(diameters)
-        if stepped > MOST_STEPPED:
-            yield f"{key}: {_odd('as wide as elsewhere', stepped, MOST_STEPPED)}"
+        if stepped > MAX_DIAMETER_RATIO:
+            yield f"{key}: {_odd('as wide as elsewhere', stepped, MAX_DIAMETER_RATIO)}"
 
 
 def _odd(what: str, found: float, most: float) -> str:
@@ -63,21 +65,21 @@ def _odd(what: str, found: float, most: float) -> str:
 
 
 def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:
-    yield "pin", "pins", table.pin, MOST_PINS
-    yield "case", "cases", table.case, MOST_CASES
+    yield "pin", "pins", table.pin, MAX_PINS
+    yield "case", "cases", table.case, MAX_CASES
     for name, pin in table.pin.items():
-        yield f"pin.{name}.profile", "segments", pin.profile or (), MOST_PARTS
-        yield f"pin.{name}.meridian", "corners", pin.meridian or (), MOST_PARTS
-        yield f"pin.{name}.bore_meridian", "corners", pin.bore_meridian or (), MOST_PARTS
-        yield f"pin.{name}.hole", "holes", pin.hole, MOST_PARTS
-        yield f"pin.{name}.flat", "flats", pin.flat, MOST_PARTS
-        yield f"pin.{name}.slot", "slots", pin.slot, MOST_PARTS
-        yield f"pin.{name}.passage", "passages", pin.passage, MOST_PARTS
-        yield f"pin.{name}.band", "bands", pin.band, MOST_PARTS
+        yield f"pin.{name}.profile", "segments", pin.profile or (), MAX_PIN_PARTS
+        yield f"pin.{name}.meridian", "corners", pin.meridian or (), MAX_PIN_PARTS
+        yield f"pin.{name}.bore_meridian", "corners", pin.bore_meridian or (), MAX_PIN_PARTS
+        yield f"pin.{name}.hole", "holes", pin.hole, MAX_PIN_PARTS
+        yield f"pin.{name}.flat", "flats", pin.flat, MAX_PIN_PARTS
+        yield f"pin.{name}.slot", "slots", pin.slot, MAX_PIN_PARTS
+        yield f"pin.{name}.passage", "passages", pin.passage, MAX_PIN_PARTS
+        yield f"pin.{name}.band", "bands", pin.band, MAX_PIN_PARTS
     for name, case in table.case.items():
-        yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MOST_LOADS
+        yield f"case.{name}.apply", "loads", getattr(case, "apply", ()), MAX_CASE_LOADS
     if (mechanism := table.mechanism) is not None:
-        yield "mechanism.joint", "joints", mechanism.joint, MOST_BODIES
-        yield "mechanism.body", "bodies", mechanism.body, MOST_BODIES
-        yield "mechanism.slider", "sliders", mechanism.slider, MOST_BODIES
-        yield "mechanism.drive", "drives", mechanism.drive, MOST_BODIES
+        yield "mechanism.joint", "joints", mechanism.joint, MAX_BODIES
+        yield "mechanism.body", "bodies", mechanism.body, MAX_BODIES
+        yield "mechanism.slider", "sliders", mechanism.slider, MAX_BODIES
+        yield "mechanism.drive", "drives", mechanism.drive, MAX_BODIES

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from pinstress.study.schema.pins import MaterialTable, PinTable
-from pinstress.study.schema.shown import shown
+from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.tables import StudyTable
-from pinstress.study.schema.units import SYSTEMS, UnitSystem, split, to_si
+from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem, split, to_si
 
 
 @dataclass(frozen=True)
-class Usual:
+class UsualRange:
     """What a quantity lies between, in SI, of whose, and near what; and the units in which it is
     stated, metric and imperial, the first to say it in.
     """
@@ -28,33 +28,39 @@ class Usual:
     imperial: tuple[str, ...]
 
 
-LENGTHS = ("mm", "m", "cm"), ("in", "ft")
-IMPERIAL_STRESSES = "ksi", "psi", "Msi"
-USUAL = {
-    "modulus": Usual(
+LENGTH_UNITS = ("mm", "m", "cm"), ("in", "ft")
+IMPERIAL_STRESS_UNITS = "ksi", "psi", "Msi"
+USUAL_RANGES = {
+    "modulus": UsualRange(
         "stress", 1e9, 1.2e12, 2e11, "a structural material", ("GPa", "MPa", "Pa"),
-        IMPERIAL_STRESSES,
+        IMPERIAL_STRESS_UNITS,
     ),
-    "strength": Usual(
-        "stress", 1e6, 6e9, 5e8, "a structural material", ("MPa", "GPa", "Pa"), IMPERIAL_STRESSES
+    "strength": UsualRange(
+        "stress",
+        1e6,
+        6e9,
+        5e8,
+        "a structural material",
+        ("MPa", "GPa", "Pa"),
+        IMPERIAL_STRESS_UNITS,
     ),
-    "density": Usual(
+    "density": UsualRange(
         "density", 1e2, 2.3e4, 7850.0, "a solid material", ("kg/m^3", "g/cm^3", "t/mm^3"),
         ("lb/in^3", "lb/ft^3"),
     ),
-    "diameter": Usual("length", 1e-4, 3.0, 0.03, "a pin", *LENGTHS),
-    "length": Usual("length", 1e-5, 10.0, 0.03, "a pin", *LENGTHS),
-    "gravity": Usual(
+    "diameter": UsualRange("length", 1e-4, 3.0, 0.03, "a pin", *LENGTH_UNITS),
+    "length": UsualRange("length", 1e-5, 10.0, 0.03, "a pin", *LENGTH_UNITS),
+    "gravity": UsualRange(
         "acceleration", 1.0, 200.0, 9.81, "a machine", ("m/s^2", "mm/s^2"), ("ft/s^2", "in/s^2")
     ),
 }  # fmt: skip
-MOST_STRAIN = 1.0 / 20.0  # at which a material yields
+MAX_YIELD_STRAIN = 1.0 / 20.0  # at which a material yields
 
 
 @dataclass(frozen=True)
-class Stated:
-    """A number of the study: a key of USUAL, its own key, its value in SI and as it is written;
-    most: in SI, where less than the usual is plausible.
+class StatedValue:
+    """A number of the study: a key of USUAL_RANGES, its own key, its value in SI and as it is
+    written; most: in SI, where less than the usual is plausible.
     """
 
     kind: str
@@ -64,9 +70,9 @@ class Stated:
     most: float = math.inf
 
     @property
-    def usual(self) -> Usual:
+    def usual(self) -> UsualRange:
         """What it usually is."""
-        return USUAL[self.kind]
+        return USUAL_RANGES[self.kind]
 
     def plausible(self, value: float) -> bool:
         """Whether a value (SI) would be."""
@@ -78,7 +84,7 @@ def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tup
     return tuple(text for each in _numbers(table, raw) if (text := _question(each, system)))
 
 
-def _numbers(table: StudyTable, raw: Any) -> Iterator[Stated]:
+def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:
     """Everything that has a usual range."""
     for name, material in table.material.items():
         yield from _of_material(f"material.{name}", material, raw["material"][name])
@@ -88,40 +94,42 @@ def _numbers(table: StudyTable, raw: Any) -> Iterator[Stated]:
         if gravity := raw["mechanism"].get("gravity"):
             x, y = table.mechanism.gravity
             written = gravity[abs(y) >= abs(x)]
-            yield Stated("gravity", "mechanism.gravity", math.hypot(x, y), written)
+            yield StatedValue("gravity", "mechanism.gravity", math.hypot(x, y), written)
         for name, body in table.mechanism.body.items():
             if body.bar is not None:
                 written = raw["mechanism"]["body"][name]["bar"]["density"]
                 key = f"mechanism.body.{name}.bar.density"
-                yield Stated("density", key, body.bar.density, written)
+                yield StatedValue("density", key, body.bar.density, written)
     if table.spatial_leg is not None and "gravity" in raw["spatial_leg"]:
         written = raw["spatial_leg"]["gravity"]
-        yield Stated("gravity", "spatial_leg.gravity", table.spatial_leg.gravity, written)
+        yield StatedValue("gravity", "spatial_leg.gravity", table.spatial_leg.gravity, written)
 
 
-def _of_material(key: str, material: MaterialTable, raw: dict[str, Any]) -> Iterator[Stated]:
+def _of_material(key: str, material: MaterialTable, raw: dict[str, Any]) -> Iterator[StatedValue]:
     E, strength = material.youngs_modulus, material.yield_strength
-    modulus = Stated("modulus", f"{key}.youngs_modulus", E, raw["youngs_modulus"])
+    modulus = StatedValue("modulus", f"{key}.youngs_modulus", E, raw["youngs_modulus"])
     yield modulus
     if material.density is not None:
-        yield Stated("density", f"{key}.density", material.density, raw["density"])
+        yield StatedValue("density", f"{key}.density", material.density, raw["density"])
     if strength is not None:
-        most = MOST_STRAIN * E if modulus.plausible(E) else math.inf
-        yield Stated("strength", f"{key}.yield_strength", strength, raw["yield_strength"], most)
+        most = MAX_YIELD_STRAIN * E if modulus.plausible(E) else math.inf
+        yield StatedValue(
+            "strength", f"{key}.yield_strength", strength, raw["yield_strength"], most
+        )
 
 
-def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[Stated]:
+def _of_pin(key: str, pin: PinTable, raw: dict[str, Any]) -> Iterator[StatedValue]:
     for i, segment in enumerate(pin.profile or ()):
         at, written = f"{key}.profile[{i + 1}]", raw["profile"][i]
-        yield Stated("length", f"{at}.length", segment.length, written["length"])
+        yield StatedValue("length", f"{at}.length", segment.length, written["length"])
         if not isinstance(segment.diameter, tuple):
-            yield Stated("diameter", f"{at}.diameter", segment.diameter, written["diameter"])
+            yield StatedValue("diameter", f"{at}.diameter", segment.diameter, written["diameter"])
             continue
         for k, value in enumerate(segment.diameter):
-            yield Stated("diameter", f"{at}.diameter[{k + 1}]", value, written["diameter"][k])
+            yield StatedValue("diameter", f"{at}.diameter[{k + 1}]", value, written["diameter"][k])
 
 
-def _question(stated: Stated, system: UnitSystem) -> str:
+def _question(stated: StatedValue, system: UnitSystem) -> str:
     usual = stated.usual
     if stated.value == 0.0 or stated.plausible(abs(stated.value)):
         return ""
@@ -129,19 +137,21 @@ def _question(stated: Stated, system: UnitSystem) -> str:
     one = to_si(f"1 {unit}", usual.dimension, system)
     if usual.low <= stated.value <= usual.high:  # then the modulus may as well be wrong
         return (
-            f"{stated.key}: {shown(stated.written)} is {stated.value / one:,.4g} {unit}, more than "
-            f"{MOST_STRAIN:.0%} of youngs_modulus ({stated.most / MOST_STRAIN / one:,.4g} {unit}); "
+            f"{stated.key}: {as_text(stated.written)} is {stated.value / one:,.4g} {unit}, more "
+            f"than "
+            f"{MAX_YIELD_STRAIN:.0%} of youngs_modulus "
+            f"({stated.most / MAX_YIELD_STRAIN / one:,.4g} {unit}); "
             "check the units of both"
         )
     is_, low, most = (f"{value / one:,.4g}" for value in (stated.value, *ends))
     hint = f"; did you mean {likely}?" if (likely := _likely(stated, system)) else ""
     return (
-        f"{stated.key}: {shown(stated.written)} is {is_} {unit}, but the usual range for "
+        f"{stated.key}: {as_text(stated.written)} is {is_} {unit}, but the usual range for "
         f"{usual.whose} is {low} to {most} {unit}{hint}"
     )
 
 
-def _likely(stated: Stated, system: UnitSystem) -> str:
+def _likely(stated: StatedValue, system: UnitSystem) -> str:
     """The number as it is written with the unit in which it is most usual, if there is one: of the
     units of its own kind the one nearest to the typical value, else of the others.
     """
@@ -150,7 +160,7 @@ def _likely(stated: Stated, system: UnitSystem) -> str:
         return ""
     (number, unit), usual = found, stated.usual
     kinds = [usual.metric, usual.imperial]
-    if unit in usual.imperial or (not unit and system is SYSTEMS["in-lbf-s"]):
+    if unit in usual.imperial or (not unit and system is UNIT_SYSTEMS["in-lbf-s"]):
         kinds.reverse()
     for units in kinds:
         values = {u: abs(number) * to_si(f"1 {u}", usual.dimension, system) for u in units}

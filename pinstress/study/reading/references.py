@@ -25,7 +25,7 @@ from pinstress.study.schema.mechanism import (
     drive_name,
 )
 from pinstress.study.schema.pins import MaterialTable
-from pinstress.study.schema.shown import near, shown
+from pinstress.study.schema.shown import as_text, near
 from pinstress.study.schema.tables import StudyTable
 
 
@@ -49,7 +49,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         for key, connection in pin.connections:
             if connection in bears:
                 yield Wrong(
-                    f"pin.{name}.{key}: connection {shown(connection)} already bears on pin "
+                    f"pin.{name}.{key}: connection {as_text(connection)} already bears on pin "
                     f"{bears[connection]}; a connection bears on one pin only",
                     code="duplicate-connection",
                 )
@@ -99,7 +99,7 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
 def _known(where: str, what: str, name: str, names: Mapping[str, object]) -> Iterator[Wrong]:
     if name not in names:
         code = f"unknown-{what.split()[-1]}"
-        yield Wrong(f"{where}: no {what} {shown(name)}; ", partial(near, name, names), code=code)
+        yield Wrong(f"{where}: no {what} {as_text(name)}; ", partial(near, name, names), code=code)
 
 
 def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
@@ -131,14 +131,18 @@ def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
                 text = f"{where}.case: an instant of a motion does not last; name the motion"
                 yield Wrong(text, code="not-in-sequences")
             elif isinstance(case, MotionCase | DropCase | LegCase) and step.duration is not None:
-                text = f"{where}.duration: {shown(step.case)} has its own time; remove this"
+                text = f"{where}.duration: {as_text(step.case)} has its own time; remove this"
                 yield Wrong(text, code="key-not-applicable")
             elif isinstance(case, StaticCase | GroundCase) and step.duration is None:
-                text = f"{where}: {shown(step.case)} is at rest; give its duration"
+                text = f"{where}: {as_text(step.case)} is at rest; give its duration"
                 yield Wrong(text, code="missing-key")
 
 
-METHODS = {"signed-von-mises": "fatigue", "critical-plane": "fatigue", "fkm-p-ram": "fkm"}
+MATERIAL_TABLE_OF_METHOD = {
+    "signed-von-mises": "fatigue",
+    "critical-plane": "fatigue",
+    "fkm-p-ram": "fkm",
+}
 
 
 def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
@@ -153,7 +157,10 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
     if fatigue.method == "fkm-p-ram" and (fatigue.failure_probability or 0.0) > 0.5:
         text = 'fatigue.failure_probability: must be at most 0.5 for method "fkm-p-ram"'
         yield Wrong(text, code="out-of-range")
-    needs, used = METHODS[fatigue.method], {pin.material for pin in table.pin.values()}
+    needs, used = (
+        MATERIAL_TABLE_OF_METHOD[fatigue.method],
+        {pin.material for pin in table.pin.values()},
+    )
     given = [name for name in used & table.material.keys() if getattr(table.material[name], needs)]
     if not given:
         yield Wrong(
@@ -192,7 +199,7 @@ def _of_pins(
         return
     for connection, pin in bears.items():
         if connection not in have:
-            text = f"pin.{pin}: connection {shown(connection)} is not in the mechanism; "
+            text = f"pin.{pin}: connection {as_text(connection)} is not in the mechanism; "
             yield Wrong(text, partial(near, connection, have), code="unknown-connection")
 
 
@@ -268,7 +275,7 @@ def _two_bodies(
     for body in pair or ():
         yield from _known(f"{where}.bodies", "body", body, bodies)
     if pair is not None and pair[0] == pair[1]:
-        text = f"{where}.bodies: {shown(pair[0])} twice; name two different bodies"
+        text = f"{where}.bodies: {as_text(pair[0])} twice; name two different bodies"
         yield Wrong(text, code="same-body")
 
 

@@ -13,15 +13,15 @@ from itertools import count
 
 # A string that does not end goes on to the end of its line or of the text: were it no token, every
 # quote in it would be looked at anew.
-TOKEN = re.compile(
+TOKEN_PATTERN = re.compile(
     r'''"""(?:\\.|[^\\])*?(?:"{3,5}|\Z) | \'\'\'.*?(?:'{3,5}|\Z)
     | "(?:\\.|[^"\\\n])*+"? | '[^'\n]*'? | \#[^\n]*'''
     r"""| \n | [][{}=,.] | [^][{}=,.\s"'\#]+""",
     re.VERBOSE | re.DOTALL,
 )
-KEY_END = re.compile(r"[:.\[]| in ")  # after a key in a message
-LONGEST_END = 4
-QUOTED = re.compile(r"'([^']*)'")
+KEY_END_PATTERN = re.compile(r"[:.\[]| in ")  # after a key in a message
+MAX_KEY_END_LENGTH = 4
+QUOTED_PATTERN = re.compile(r"'([^']*)'")
 Place = tuple[str | int, ...]  # keys, and indices from 0 into arrays
 
 
@@ -88,9 +88,9 @@ def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
 def _line(known: dict[str, int], longest: int, message: str) -> int | None:
     # [1] also for the one table that may be written without an array
     spellings = (message, message.replace("[1]", ""))
-    keys = (next(_keys(known, m[: longest + LONGEST_END]), "") for m in spellings)
+    keys = (next(_keys(known, m[: longest + MAX_KEY_END_LENGTH]), "") for m in spellings)
     key = max(keys, key=len)
-    quoted = QUOTED.search(message)
+    quoted = QUOTED_PATTERN.search(message)
     inner = f"{key}.{quoted[1]}".lstrip(".") if quoted else key
     return known.get(inner, known.get(key))
 
@@ -99,7 +99,7 @@ def _keys(known: dict[str, int], message: str) -> Iterator[str]:
     """The known keys with which a message begins, the longest first: looked up where one may end,
     which is much less than to compare it with every key of a large study.
     """
-    for end in reversed([m.start() for m in KEY_END.finditer(message)]):
+    for end in reversed([m.start() for m in KEY_END_PATTERN.finditer(message)]):
         if message[:end] in known:
             yield message[:end]
 
@@ -111,7 +111,7 @@ def _said(place: Sequence[str | int]) -> str:
 
 def _tokens(text: str) -> Iterator[tuple[str, int]]:
     line, at = 1, 0
-    for match in TOKEN.finditer(text + "\n"):
+    for match in TOKEN_PATTERN.finditer(text + "\n"):
         line += text.count("\n", at, match.start())
         at = match.start()
         if not match[0].startswith("#"):

@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.toml_lines import TOKEN
+from pinstress.study.reading.toml_lines import TOKEN_PATTERN
 from pinstress.study.schema.shown import cut
 
-DEEPEST = 50  # tables and arrays inside each other, or parts of a dotted key
-LONGEST_WORD = 1000  # characters of a number or of a key without quotes
+MAX_TOML_DEPTH = 50  # tables and arrays inside each other, or parts of a dotted key
+MAX_WORD_LENGTH = 1000  # characters of a number or of a key without quotes
 
 
 def read_toml(path: Path, text: str) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def _require_moderate(path: Path, text: str) -> None:
     line, at = 1, 0
     open_: list[int] = [0]  # by bracket that is open, outermost first: dots of the key before it
     depth = 0  # brackets and dots together
-    for match in TOKEN.finditer(text):
+    for match in TOKEN_PATTERN.finditer(text):
         token = match[0]
         line += text.count("\n", at, match.start())
         at = match.start()
@@ -51,13 +51,13 @@ def _require_moderate(path: Path, text: str) -> None:
         elif token == ".":
             open_[-1] += 1
             depth += 1
-        elif len(token) > LONGEST_WORD and token[0] not in "\"'#":
+        elif len(token) > MAX_WORD_LENGTH and token[0] not in "\"'#":
             raise InputError(
                 f"{path}:{line}: not valid TOML: {_too_long(text, match)}", code="not-toml"
             )
-        if depth > DEEPEST:
+        if depth > MAX_TOML_DEPTH:
             raise InputError(
-                f"{path}:{line}: not valid TOML: brackets or dots more than {DEEPEST} deep",
+                f"{path}:{line}: not valid TOML: brackets or dots more than {MAX_TOML_DEPTH} deep",
                 code="not-toml",
             )
 
@@ -68,6 +68,5 @@ def _too_long(text: str, word: re.Match[str]) -> str:
     what = (
         f"a {'whole ' * whole}number with too many digits" if number else "a key that is too long"
     )
-    return (
-        f"{what}, {cut(word[0], 40)!r} ({len(word[0]):,} characters; the limit is {LONGEST_WORD:,})"
-    )
+    length = f"{len(word[0]):,} characters; the limit is {MAX_WORD_LENGTH:,}"
+    return f"{what}, {cut(word[0], 40)!r} ({length})"

@@ -10,11 +10,11 @@ from pydantic import ValidationError
 
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.schema.shown import in_toml
-from pinstress.study.schema.types import UNKNOWN_KEY, hint_for_key
+from pinstress.study.schema.types import UNKNOWN_KEY_ERROR, hint_for_key
 
 # By pydantic's type of error: our code, and what would be right. Its other types need a field of a
 # type that no table has; a test feeds every kind of mistake to every key.
-RIGHT = {
+MISTAKE_MESSAGES = {
     "missing": ("missing-key", "is missing"),
     "string_type": ("not-a-text", "must be a text in quotes"),
     "string_too_long": ("too-long", "must have at most {max_length} characters"),
@@ -39,7 +39,7 @@ RIGHT = {
     "union_tag_not_found": ("missing-key", 'is missing; write for instance kind = "given"'),
     "union_tag_invalid": ("not-a-choice", "must be one of {expected_tags}"),
 }
-OTHERWISE = ("not-valid", "cannot have this value")
+OTHER_MISTAKE = ("not-valid", "cannot have this value")
 
 
 def explain(error: ValidationError) -> list[Wrong]:
@@ -51,14 +51,14 @@ def _explained(item: dict[str, Any]) -> Wrong:
     kind, context, value = item["type"], item.get("ctx", {}), item.get("input")
     key = _key(item["loc"], kind)
     hint: Callable[[], str] = str
-    if kind == UNKNOWN_KEY:
+    if kind == UNKNOWN_KEY_ERROR:
         code, message = "unknown-key", item["msg"]
         hint = partial(hint_for_key, context["key"], context["known"])
     elif kind == "value_error":
         mistake = context["error"]
         code, message = getattr(mistake, "code", ""), str(mistake)
     else:
-        code, right = RIGHT.get(kind, OTHERWISE)
+        code, right = MISTAKE_MESSAGES.get(kind, OTHER_MISTAKE)
         message = right.format(**context) + _found(kind, context, value)
     return Wrong(f"{key}: {message}" if key else message, hint, code=code)
 

@@ -10,7 +10,7 @@ from pinstress.study.schema.forces import require_one
 from pinstress.study.schema.types import Angle, PositiveLength, Side, StrictTable, Switch, Whole
 
 Count = Annotated[Whole, Field(ge=1, le=100_000)]  # of teeth
-STANDARD_ANGLE = math.radians(20.0)
+STANDARD_PRESSURE_ANGLE = math.radians(20.0)
 
 
 def _below_45(value: float) -> float:
@@ -42,7 +42,7 @@ class GearTable(StrictTable):
     """Module of the teeth; only checks that the centres are as far apart as it says."""
     internal: Switch = False
     """Whether the larger one is a ring with its teeth inside."""
-    pressure_angle: PressureAngle = STANDARD_ANGLE
+    pressure_angle: PressureAngle = STANDARD_PRESSURE_ANGLE
     """Pressure angle at the pitch circles. The teeth push each other apart with its tangent times
     the force along the pitch circle, on whichever flank they touch."""
 
@@ -73,7 +73,7 @@ class RackTable(StrictTable):
     """Number of teeth of the gear."""
     module: PositiveLength | None = None
     """Module of the teeth."""
-    pressure_angle: PressureAngle = STANDARD_ANGLE
+    pressure_angle: PressureAngle = STANDARD_PRESSURE_ANGLE
     """Pressure angle."""
 
     @model_validator(mode="after")

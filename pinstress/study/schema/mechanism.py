@@ -218,7 +218,7 @@ class SliderDrive(LawTable):
     """Offset that plots subtract from the length."""
 
 
-MOST_TURNS = 1000  # each is followed in steps of 0.25 rad
+MAX_TURNS = 1000  # each is followed in steps of 0.25 rad
 
 
 class RotaryDrive(LawTable):
@@ -249,9 +249,9 @@ class RotaryDrive(LawTable):
                 "together; without one, give no against_line",
                 "give-both",
             )
-        if abs((self.end or 0.0) - (self.start or 0.0)) > MOST_TURNS * 2.0 * math.pi:
+        if abs((self.end or 0.0) - (self.start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
             raise ArgumentError(
-                f"start and end are more than {MOST_TURNS} turns apart", "out-of-range"
+                f"start and end are more than {MAX_TURNS} turns apart", "out-of-range"
             )
         return self
 

@@ -252,8 +252,8 @@ class LugTable(StrictTable):
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 
 
-SHAPES = "profile", "meridian", "geometry"
-ONLY_WITH = {
+SHAPE_KEYS = "profile", "meridian", "geometry"
+SHAPES_OF_KEY = {
     "fillet": ("profile",),
     "bore_meridian": ("meridian",),
     "hole": ("profile", "meridian"),
@@ -308,13 +308,13 @@ class PinTable(StrictTable):
 
     @model_validator(mode="after")
     def _one_shape(self) -> "PinTable":
-        given = [shape for shape in SHAPES if getattr(self, shape) is not None]
+        given = [shape for shape in SHAPE_KEYS if getattr(self, shape) is not None]
         if len(given) != 1:
             raise ArgumentError(
                 'give one of profile = [...], meridian = [...] or geometry = "file.step"',
                 "give-one",
             )
-        for key, shapes in ONLY_WITH.items():
+        for key, shapes in SHAPES_OF_KEY.items():
             if key in self.model_fields_set and given[0] not in shapes:
                 raise ArgumentError(
                     f"{key} can only be used with {' or '.join(shapes)}; remove it",

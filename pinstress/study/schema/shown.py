@@ -8,47 +8,47 @@ import reprlib
 from collections.abc import Iterable
 from itertools import islice
 
-LONGEST = 80  # characters of a name or value in a message
-COMPARED = 1000  # names compared for a hint, which must be quick
-CANDIDATES = 5  # for a hint, by their letters
-PART = 3  # letters, at least, of a name that is part of another
-LISTED = 20  # names that a message lists
+MAX_TEXT_LENGTH = 80  # characters of a name or value in a message
+MAX_COMPARED_NAMES = 1000  # names compared for a hint, which must be quick
+MAX_HINT_CANDIDATES = 5  # for a hint, by their letters
+MIN_PART_LETTERS = 3  # letters, at least, of a name that is part of another
+MAX_LISTED_NAMES = 20  # names that a message lists
 ELLIPSIS = "…"
 
-_SHORT = reprlib.Repr()
-_SHORT.maxlong = _SHORT.maxstring = _SHORT.maxother = LONGEST
+_SHORT_REPR = reprlib.Repr()
+_SHORT_REPR.maxlong = _SHORT_REPR.maxstring = _SHORT_REPR.maxother = MAX_TEXT_LENGTH
 
 
-def cut(text: str, most: int = LONGEST) -> str:
+def cut(text: str, most: int = MAX_TEXT_LENGTH) -> str:
     """The text, or its beginning and an ellipsis."""
     return text if len(text) <= most else text[: most - 1] + ELLIPSIS
 
 
-def shown(value: object) -> str:
+def as_text(value: object) -> str:
     """A value as Python writes it, shortened; also an integer too long for Python to write."""
     if isinstance(value, str):
         return repr(cut(value))
-    if isinstance(value, int) and value.bit_length() > 4 * LONGEST:
+    if isinstance(value, int) and value.bit_length() > 4 * MAX_TEXT_LENGTH:
         return "a whole number of more than 80 digits"
-    return cut(_SHORT.repr(value))
+    return cut(_SHORT_REPR.repr(value))
 
 
 def listed(names: Iterable[object]) -> str:
     """Names after each other: the first few, and how many more there are."""
     names = list(names)
-    more = f" and {len(names) - LISTED:,} more" if len(names) > LISTED else ""
-    return (", ".join(cut(str(name)) for name in names[:LISTED]) or "none") + more
+    more = f" and {len(names) - MAX_LISTED_NAMES:,} more" if len(names) > MAX_LISTED_NAMES else ""
+    return (", ".join(cut(str(name)) for name in names[:MAX_LISTED_NAMES]) or "none") + more
 
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     """The known name that is most like this one, if any is: first but for capitals. None that
     merely has some letters in common.
     """
-    wanted, among = cut(str(name)), [cut(k) for k in islice(known, COMPARED)]
+    wanted, among = cut(str(name)), [cut(k) for k in islice(known, MAX_COMPARED_NAMES)]
     for each in among:
         if each.casefold() == wanted.casefold():
             return each
-    found = difflib.get_close_matches(wanted, among, n=CANDIDATES, cutoff=cutoff)
+    found = difflib.get_close_matches(wanted, among, n=MAX_HINT_CANDIDATES, cutoff=cutoff)
     return next((one for one in found if _misspelt(wanted.casefold(), one.casefold())), None)
 
 
@@ -56,7 +56,7 @@ def _misspelt(a: str, b: str) -> bool:
     """Whether one is part of the other, or a third of the letters at most are wrong, missing, added
     or swapped with the next.
     """
-    if min(len(a), len(b)) >= PART and (a in b or b in a):
+    if min(len(a), len(b)) >= MIN_PART_LETTERS and (a in b or b in a):
         return True
     return _mistakes(a, b) <= max(1, max(len(a), len(b)) // 3)
 
@@ -92,4 +92,4 @@ def in_toml(value: object) -> str:
         return "a list"
     if isinstance(value, datetime.date | datetime.time):
         return f"the date or time {value.isoformat()}"
-    return shown(value)
+    return as_text(value)

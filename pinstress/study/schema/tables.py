@@ -13,9 +13,9 @@ from pinstress.study.schema.leg import SpatialLegTable
 from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import MaterialTable, PinTable
 from pinstress.study.schema.sequence import SequenceTable
-from pinstress.study.schema.shown import shown
+from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.types import (
-    ANY,
+    ANY_CASE,
     CaseName,
     LimitLoads,
     Name,
@@ -193,9 +193,10 @@ class StudyTable(StrictTable):
     def _tables_of_cases(cls, value: Any) -> Any:
         for name, case in value.items() if isinstance(value, dict) else ():
             given = isinstance(case, dict) and case.get("kind") == "given" and "table" in case
-            if ANY in str(name) and not given:
+            if ANY_CASE in str(name) and not given:
                 raise ArgumentError(
-                    f"{shown(name)}: a name with a * stands for every case of a table; give kind = "
+                    f"{as_text(name)}: a name with a * stands for every case of a table; give "
+                    f"kind = "
                     '"given" and table = "file.csv"',
                     "unusable-name",
                 )

@@ -27,18 +27,18 @@ from pydantic import (
 from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.shown import listed, nearest, shown
-from pinstress.study.schema.units import DIMENSIONS, LARGEST, SYSTEMS, to_si
+from pinstress.study.schema.shown import as_text, listed, nearest
+from pinstress.study.schema.units import DIMENSION_EXPONENTS, MAX_SI_VALUE, UNIT_SYSTEMS, to_si
 
-KINDS = ("given", "derived", "fitted", "assumed")
-REMOVED = {
+PROVENANCE_KINDS = ("given", "derived", "fitted", "assumed")
+REMOVED_KEYS = {
     "lug_edges": "it was removed: stress near the edges of lugs is read as surface, section and "
     "contact, without an excluded distance (docs/lugs.md), so delete the line"
 }
-UNKNOWN_KEY = "unknown_key"  # the type of pydantic's error
-SMALLEST = 1.0 / LARGEST  # in SI: its square does not underflow
-FORBIDDEN = '/\\:*?"<>|'  # in names of files, on some system
-LONGEST_NAME = 100  # characters as quoted: two names fit into a file name
+UNKNOWN_KEY_ERROR = "unknown_key"  # the type of pydantic's error
+MIN_SI_VALUE = 1.0 / MAX_SI_VALUE  # in SI: its square does not underflow
+FORBIDDEN_CHARACTERS = '/\\:*?"<>|'  # in names of files, on some system
+MAX_NAME_LENGTH = 100  # characters as quoted: two names fit into a file name
 
 
 class Probe(float):
@@ -59,19 +59,22 @@ class Quantity:
     def __get_pydantic_json_schema__(self, *_: object) -> dict[str, Any]:
         plain: list[dict[str, Any]] = [
             {"type": "number"},
-            {"type": "string", "examples": [DIMENSIONS[self.dimension][1]]},
+            {"type": "string", "examples": [DIMENSION_EXPONENTS[self.dimension][1]]},
         ]
         return {"anyOf": [*plain, sourced(plain)], "dimension": self.dimension}
 
     def _read(self, value: object, info: core_schema.ValidationInfo) -> float:
         if isinstance(value, Probe):
             value.dimension = self.dimension
-        system = (info.context or {}).get("system", SYSTEMS["m-N-s"])
+        system = (info.context or {}).get("system", UNIT_SYSTEMS["m-N-s"])
         return to_si(value, self.dimension, system)
 
 
-PROVENANCE: dict[str, Any] = {
-    "provenance": {"enum": list(KINDS), "description": "where the numbers here come from"},
+PROVENANCE_PROPERTIES: dict[str, Any] = {
+    "provenance": {
+        "enum": list(PROVENANCE_KINDS),
+        "description": "where the numbers here come from",
+    },
     "note": {"type": "string", "description": "why, in words"},
 }
 
@@ -80,7 +83,7 @@ def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
     """Descriptions and provenance for a table's JSON Schema."""
     for key, words in described(table).items():
         schema["properties"][table.model_fields[key].alias or key]["description"] = words
-    schema["properties"].update(PROVENANCE)
+    schema["properties"].update(PROVENANCE_PROPERTIES)
 
 
 def described(table: type["StrictTable"]) -> dict[str, str]:
@@ -109,7 +112,7 @@ def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
         "type": "object",
         "properties": {
             "value": {"anyOf": value},
-            **PROVENANCE,
+            **PROVENANCE_PROPERTIES,
         },
         "required": ["value", "provenance"],
         "additionalProperties": False,
@@ -131,8 +134,8 @@ class Within(AfterValidator):
 def _positive(value: float) -> float:
     if not value > 0.0:
         raise ArgumentError("must be positive", "not-positive")
-    if value < SMALLEST:
-        raise ArgumentError(f"must be at least {SMALLEST:g} in SI units", "out-of-range")
+    if value < MIN_SI_VALUE:
+        raise ArgumentError(f"must be at least {MIN_SI_VALUE:g} in SI units", "out-of-range")
     return value
 
 
@@ -154,21 +157,24 @@ PIN_SIZED = Within(_pin_sized, "from 1 µm to 1 km")
 
 
 def usable_name(name: str) -> str:
-    bad, instead = [c for c in dict.fromkeys(name) if c in FORBIDDEN], "letters, digits, - and _"
+    bad, instead = (
+        [c for c in dict.fromkeys(name) if c in FORBIDDEN_CHARACTERS],
+        "letters, digits, - and _",
+    )
     what = ""
     if bad:
         what = f"cannot be part of a file name on every system, because of {' '.join(bad)}"
     elif not name or name[0] in ". ":
         what = "cannot be part of a file name"
-    elif len(quote(name)) > LONGEST_NAME:
+    elif len(quote(name)) > MAX_NAME_LENGTH:
         what, instead = (
             "is too long for a part of a file name",
-            f"at most {LONGEST_NAME} characters",
+            f"at most {MAX_NAME_LENGTH} characters",
         )
     elif not name.isprintable():
         what = "has unprintable characters"
     if what:
-        raise ArgumentError(f"{shown(name)} {what}; use {instead}", "unusable-name")
+        raise ArgumentError(f"{as_text(name)} {what}; use {instead}", "unusable-name")
     return name
 
 
@@ -215,11 +221,11 @@ Stiffness = Annotated[Annotated[float, Quantity("stiffness")], NOT_NEGATIVE]
 Damping = Annotated[Annotated[float, Quantity("damping")], NOT_NEGATIVE]
 TorsionalStiffness = Annotated[Annotated[float, Quantity("torsional stiffness")], NOT_NEGATIVE]
 TorsionalDamping = Annotated[Annotated[float, Quantity("torsional damping")], NOT_NEGATIVE]
-ANY = "*"  # in a section's name, for every case of its table
+ANY_CASE = "*"  # in a section's name, for every case of its table
 
 
 def _usable_section(name: str) -> str:
-    usable_name(name.replace(ANY, "case"))
+    usable_name(name.replace(ANY_CASE, "case"))
     return name
 
 
@@ -249,11 +255,11 @@ def _coordinate(value: object) -> float | str:
 Coordinate = Annotated[float | str, PlainValidator(_coordinate, json_schema_input_type=float | str)]
 
 
-TILTS = ("guided", "free")
+TILT_KINDS = ("guided", "free")
 Tilt = Annotated[
     Annotated[Literal["guided", "free"], Tag("<way>")]
     | Annotated[TiltStiffness, Tag("<stiffness>")],
-    Discriminator(lambda value: "<way>" if value in TILTS else "<stiffness>"),
+    Discriminator(lambda value: "<way>" if value in TILT_KINDS else "<stiffness>"),
 ]
 
 
@@ -279,13 +285,15 @@ class StrictTable(BaseModel):
 
 
 def _unknown(key: object, known: list[str]) -> InitErrorDetails:
-    context: dict[str, Any] = {"text": f"unknown key {shown(key)}; ", "key": key, "known": known}
-    return InitErrorDetails(type=PydanticCustomError(UNKNOWN_KEY, "{text}", context), input=None)
+    context: dict[str, Any] = {"text": f"unknown key {as_text(key)}; ", "key": key, "known": known}
+    return InitErrorDetails(
+        type=PydanticCustomError(UNKNOWN_KEY_ERROR, "{text}", context), input=None
+    )
 
 
 def hint_for_key(key: str, known: list[str]) -> str:
     """What an unknown key may mean: found only for errors that are printed, since it takes time."""
-    if key in REMOVED:
-        return REMOVED[key]
+    if key in REMOVED_KEYS:
+        return REMOVED_KEYS[key]
     near = nearest(key, known, cutoff=0.5)
     return f"did you mean {near!r}?" if near else f"known here: {listed(known)}"

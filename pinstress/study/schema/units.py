@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.shown import in_toml, nearest, shown
+from pinstress.study.schema.shown import as_text, in_toml, nearest
 
 # dimension: its exponents of length, force and time, and an example with a unit
-DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
+DIMENSION_EXPONENTS: dict[str, tuple[tuple[int, int, int], str]] = {
     "length": ((1, 0, 0), "2 in"),
     "force": ((0, 1, 0), "500 lbf"),
     "time": ((0, 0, 1), "0.15 s"),
@@ -37,22 +37,26 @@ DIMENSIONS: dict[str, tuple[tuple[int, int, int], str]] = {
     "angular acceleration": ((0, 0, -2), "3 rad/s^2"),
 }
 
-UNIT_NEEDED = ("angle", "angular velocity", "angular acceleration")  # degrees or radians?
+DIMENSIONS_NEEDING_UNIT = (
+    "angle",
+    "angular velocity",
+    "angular acceleration",
+)  # degrees or radians?
 
 
-MINUS = "\N{MINUS SIGN}"  # which reports print
-COMMA = re.compile(r"\s*[-+]?\d*,\d")
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-LONGEST = 200  # characters of a quantity with its unit
+MINUS_SIGN = "\N{MINUS SIGN}"  # which reports print
+DECIMAL_COMMA_PATTERN = re.compile(r"\s*[-+]?\d*,\d")
+NUMBER_PATTERN = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+MAX_QUANTITY_LENGTH = 200  # characters of a quantity with its unit
 # A power of a unit: a small number, or a ratio of two in brackets. Other numbers in a unit are
 # refused: pint would spend hours on 9^9^9.
-_SMALL = r"[-+]?\d{1,2}+(?:\.\d{1,3}+)?"
-POWER = re.compile(
-    rf"(?<=[\w)])\s*+(?:\^|\*\*)\s*+(?:{_SMALL}|\(\s*{_SMALL}\s*(?:/\s*{_SMALL}\s*)?\))"
+_SMALL_NUMBER_PATTERN = r"[-+]?\d{1,2}+(?:\.\d{1,3}+)?"
+POWER_PATTERN = re.compile(
+    rf"(?<=[\w)])\s*+(?:\^|\*\*)\s*+(?:{_SMALL_NUMBER_PATTERN}|\(\s*{_SMALL_NUMBER_PATTERN}\s*(?:/\s*{_SMALL_NUMBER_PATTERN}\s*)?\))"
     r"(?![\w.]|\s*(?:\^|\*\*))"
 )
-NUMBERS = re.compile(r"\^|\*\*|(?<!\w)(?!1\s*/)\d")
-LARGEST = 1e18  # in SI: beyond any modulus, and its fourth power does not overflow
+OTHER_NUMBER_PATTERN = re.compile(r"\^|\*\*|(?<!\w)(?!1\s*/)\d")
+MAX_SI_VALUE = 1e18  # in SI: beyond any modulus, and its fourth power does not overflow
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ class UnitSystem:
 
     def factor(self, dimension: str) -> float:
         """SI value of this system's unit of a dimension."""
-        exponents, _ = DIMENSIONS[dimension]
+        exponents, _ = DIMENSION_EXPONENTS[dimension]
         return math.prod(f**e for f, e in zip(self.in_si, exponents, strict=True))
 
     def unit(self, dimension: str) -> str:
@@ -90,7 +94,7 @@ class UnitSystem:
 
 _POUND_FORCE = 0.45359237 * 9.80665
 
-SYSTEMS = {
+UNIT_SYSTEMS = {
     s.name: s
     for s in (
         UnitSystem("in-lbf-s", "in", "lbf", "s", "psi", (0.0254, _POUND_FORCE, 1.0)),
@@ -102,7 +106,7 @@ SYSTEMS = {
 
 # The usual units as pint has them (a test compares them): importing pint takes longer than checking
 # a study, so it is used only for other units, and to find what is wrong with one.
-USUAL: dict[str, tuple[str, float]] = {
+USUAL_UNITS: dict[str, tuple[str, float]] = {
     "m": ("length", 1.0),
     "cm": ("length", 0.01),
     "mm": ("length", 0.001),
@@ -156,7 +160,7 @@ def _registry() -> Any:
 
 @cache
 def _expected(dimension: str) -> Any:
-    exponents, _ = DIMENSIONS[dimension]
+    exponents, _ = DIMENSION_EXPONENTS[dimension]
     unit = _registry().Unit("")
     for base, e in zip(("m", "N", "s"), exponents, strict=True):
         unit = unit * _registry().Unit(base) ** e
@@ -168,7 +172,7 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
 
     Raises: ArgumentError saying what is wrong with it and what would be right.
     """
-    _, example = DIMENSIONS[dimension]
+    _, example = DIMENSION_EXPONENTS[dimension]
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise ArgumentError(
             f"{in_toml(value)} is not {_a(dimension)}; write a number, or a text like {example!r}",
@@ -180,11 +184,11 @@ def to_si(value: object, dimension: str, system: UnitSystem) -> float:
         try:
             si = _plain(float(value), dimension, system)
         except OverflowError:  # a whole number
-            raise ArgumentError(f"{shown(value)} is {_beyond()}", "too-large") from None
+            raise ArgumentError(f"{as_text(value)} is {_beyond()}", "too-large") from None
     if not math.isfinite(si):
-        raise ArgumentError(f"must be finite, not {shown(value)}", "not-finite")
-    if abs(si) > LARGEST:
-        raise ArgumentError(f"{shown(value)} is {_beyond()}", "too-large")
+        raise ArgumentError(f"must be finite, not {as_text(value)}", "not-finite")
+    if abs(si) > MAX_SI_VALUE:
+        raise ArgumentError(f"{as_text(value)} is {_beyond()}", "too-large")
     return si
 
 
@@ -193,12 +197,12 @@ def _a(dimension: str) -> str:
 
 
 def _beyond() -> str:
-    return f"too large: the limit is {LARGEST:g} in SI units"
+    return f"too large: the limit is {MAX_SI_VALUE:g} in SI units"
 
 
 def _plain(number: float, dimension: str, system: UnitSystem) -> float:
-    if dimension in UNIT_NEEDED:
-        _, example = DIMENSIONS[dimension]
+    if dimension in DIMENSIONS_NEEDING_UNIT:
+        _, example = DIMENSION_EXPONENTS[dimension]
         raise ArgumentError(
             f"{number:g} needs a unit, degrees or radians; write for instance {example!r}",
             "missing-unit",
@@ -208,33 +212,34 @@ def _plain(number: float, dimension: str, system: UnitSystem) -> float:
 
 def split(text: str) -> tuple[float, str] | None:
     """A quantity's number and unit; None for a text that does not begin with a number."""
-    text = text.strip() if len(text) <= LONGEST else ""
-    number = NUMBER.match(text)
+    text = text.strip() if len(text) <= MAX_QUANTITY_LENGTH else ""
+    number = NUMBER_PATTERN.match(text)
     return (float(number[0]), text[number.end() :].strip()) if number else None
 
 
 def _parse(text: str, dimension: str, system: UnitSystem) -> float:
-    _, example = DIMENSIONS[dimension]
-    if len(text) > LONGEST:
+    _, example = DIMENSION_EXPONENTS[dimension]
+    if len(text) > MAX_QUANTITY_LENGTH:
         raise ArgumentError(
-            f"{shown(text)} has {len(text):,} characters; write a number and a unit like "
+            f"{as_text(text)} has {len(text):,} characters; write a number and a unit like "
             f"{example!r}",
             "too-long",
         )
-    if COMMA.match(text):
+    if DECIMAL_COMMA_PATTERN.match(text):
         raise ArgumentError(
-            f"{shown(text)} has a comma; write decimals with a point, and thousands without a mark",
+            f"{as_text(text)} has a comma; write decimals with a point, and thousands without a "
+            f"mark",
             "decimal-comma",
         )
     found = split(text)
-    if found is None and MINUS in text:
-        hyphen = text.replace(MINUS, "-")
+    if found is None and MINUS_SIGN in text:
+        hyphen = text.replace(MINUS_SIGN, "-")
         raise ArgumentError(
-            f"{shown(text)} has a minus that is no hyphen; write {hyphen!r}", "not-a-number"
+            f"{as_text(text)} has a minus that is no hyphen; write {hyphen!r}", "not-a-number"
         )
     if found is None:
         raise ArgumentError(
-            f"{shown(text)} does not begin with a number; write for instance {example!r}",
+            f"{as_text(text)} does not begin with a number; write for instance {example!r}",
             "not-a-number",
         )
     number, unit = found
@@ -245,8 +250,8 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
 
 @lru_cache(1000)
 def _unit_factor(unit: str, dimension: str, text: str) -> float:
-    if unit in USUAL and USUAL[unit][0] == dimension:
-        return USUAL[unit][1]
+    if unit in USUAL_UNITS and USUAL_UNITS[unit][0] == dimension:
+        return USUAL_UNITS[unit][1]
     return _by_pint(unit, dimension, text)
 
 
@@ -255,7 +260,7 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
 
     near = _meant(unit, dimension)
     try:
-        if NUMBERS.search(POWER.sub("", unit)):
+        if OTHER_NUMBER_PATTERN.search(POWER_PATTERN.sub("", unit)):
             raise ValueError("a number other than a power")
         parsed = _registry().Quantity(1.0, unit)
         return float(parsed.to(_expected(dimension)).magnitude)
@@ -263,19 +268,19 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
         names: Any = error.unit_names
         unknown = str(names if isinstance(names, str) else names[0])
         near = near or nearest(unknown, [*_symbols(), *map(str, _registry())])
-        what, code = f"unknown unit {shown(unknown)} in {shown(text)}", "unknown-unit"
+        what, code = f"unknown unit {as_text(unknown)} in {as_text(text)}", "unknown-unit"
     except pint.DimensionalityError:
-        what, code = f"{shown(text)} is not {_a(dimension)}", "wrong-dimension"
+        what, code = f"{as_text(text)} is not {_a(dimension)}", "wrong-dimension"
     except Exception:  # pint's parser raises what its tokenizer raises
-        what, code = f"cannot read the unit in {shown(text)}", "unreadable-unit"
-    _, example = DIMENSIONS[dimension]
+        what, code = f"cannot read the unit in {as_text(text)}", "unreadable-unit"
+    _, example = DIMENSION_EXPONENTS[dimension]
     hint = f"did you mean {near!r}?" if near else f"write for instance {example!r}"
     raise ArgumentError(f"{what}; {hint}", code)
 
 
 def _meant(unit: str, dimension: str) -> str | None:
     """The usual unit of a dimension that is spelled so but for capitals, blanks and dots."""
-    spelled = {_bare(usual): usual for usual, (of, _) in USUAL.items() if of == dimension}
+    spelled = {_bare(usual): usual for usual, (of, _) in USUAL_UNITS.items() if of == dimension}
     return spelled.get(_bare(unit))
 
 
@@ -285,4 +290,4 @@ def _bare(unit: str) -> str:
 
 def _symbols() -> dict[str, None]:
     """The names in the usual units, each once."""
-    return dict.fromkeys(name for unit in USUAL for name in re.findall(r"[A-Za-z]+", unit))
+    return dict.fromkeys(name for unit in USUAL_UNITS for name in re.findall(r"[A-Za-z]+", unit))

@@ -7,9 +7,9 @@ from pydantic import Field, model_validator
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import Coordinate, Number, StrictTable, Whole
 
-MOST_DESIGNS = 1_000_000
-MOST_PARAMETERS = 100
-MOST_SAMPLES = 10_000_000
+MAX_DESIGNS = 1_000_000
+MAX_PARAMETERS = 100
+MAX_SAMPLES = 10_000_000
 Pair = tuple[Coordinate, Coordinate]
 Triple = tuple[Coordinate, Coordinate, Coordinate]
 
@@ -37,18 +37,20 @@ class ParameterTable(StrictTable):
     whose limits are three standard deviations away, cut off at the limits."""
     within: Pair | None = None
     """Limits at which a normal or lognormal law is cut off."""
-    steps: Annotated[Whole, Field(ge=1, le=MOST_DESIGNS)] | None = None
+    steps: Annotated[Whole, Field(ge=1, le=MAX_DESIGNS)] | None = None
     """Number of values in a grid: evenly from `from` to `to`, of a law the middles of so many parts
     that are equally likely."""
 
     @model_validator(mode="after")
     def _one_law(self) -> "ParameterTable":
         ends = self.from_ is not None, self.to is not None
-        laws = [x for x in LAWS if getattr(self, x) is not None]
+        laws = [x for x in PROBABILITY_LAWS if getattr(self, x) is not None]
         if any(ends) and not all(ends):
             raise ArgumentError("from and to belong together", "give-both")
         if len(laws) + any(ends) != 1:
-            raise ArgumentError(f"give from and to, or one of {', '.join(LAWS)}", "give-one")
+            raise ArgumentError(
+                f"give from and to, or one of {', '.join(PROBABILITY_LAWS)}", "give-one"
+            )
         if self.within is not None and not (self.normal or self.lognormal):
             raise ArgumentError(
                 "within cuts off a normal or a lognormal law only", "not-applicable"
@@ -56,7 +58,7 @@ class ParameterTable(StrictTable):
         return self
 
 
-LAWS = ("uniform", "normal", "lognormal", "triangular", "tolerance")
+PROBABILITY_LAWS = ("uniform", "normal", "lognormal", "triangular", "tolerance")
 
 
 class CorrelationTable(StrictTable):
@@ -74,16 +76,14 @@ class VaryTable(StrictTable):
     sample: Literal["grid", "sobol", "latin-hypercube", "random"] = "grid"
     """The designs: all combinations of `steps` values ("grid"), or `count` points of a scrambled
     Sobol sequence, a Latin hypercube or a random sample."""
-    count: Annotated[Whole, Field(ge=1, le=MOST_DESIGNS)] = 256
+    count: Annotated[Whole, Field(ge=1, le=MAX_DESIGNS)] = 256
     """Number of designs, except of a grid."""
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
     """Of the random numbers: the same seed gives the same designs."""
-    parameters: Annotated[
-        dict[str, ParameterTable], Field(min_length=1, max_length=MOST_PARAMETERS)
-    ]
+    parameters: Annotated[dict[str, ParameterTable], Field(min_length=1, max_length=MAX_PARAMETERS)]
     """By key of the study as messages spell it, elements counted from 1, in quotes:
     "pin.B.profile[2].diameter"."""
-    correlations: Annotated[list[CorrelationTable], Field(max_length=MOST_PARAMETERS**2)] = []
+    correlations: Annotated[list[CorrelationTable], Field(max_length=MAX_PARAMETERS**2)] = []
     """Correlations of normal laws; pairs that are not listed are independent."""
 
 
@@ -97,11 +97,11 @@ class ReliabilityTable(StrictTable):
     probability: Annotated[Number, Field(gt=0.0, lt=1.0)] = 0.001
     """Largest allowed probability of failure; also that with which the reported factor of safety is
     not reached."""
-    samples: Annotated[Whole, Field(ge=10, le=MOST_SAMPLES)] = 2_000
+    samples: Annotated[Whole, Field(ge=10, le=MAX_SAMPLES)] = 2_000
     """Number of designs of plain (Monte Carlo) sampling."""
-    importance_samples: Annotated[Whole, Field(ge=0, le=MOST_SAMPLES)] = 1_000
+    importance_samples: Annotated[Whole, Field(ge=0, le=MAX_SAMPLES)] = 1_000
     """Number of designs of importance sampling about the design points of FORM; 0 for none."""
-    sobol_samples: Annotated[Whole, Field(ge=0, le=MOST_SAMPLES)] = 256
+    sobol_samples: Annotated[Whole, Field(ge=0, le=MAX_SAMPLES)] = 256
     """Base samples of the Sobol indices, which take as many designs for each parameter and twice
     more, rounded down to eight sets of a power of two; 0 for none. Not for correlated numbers."""
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1

@@ -10,11 +10,11 @@ from reports.data.results import Floats
 
 Point = tuple[float, float, float]
 VIEW_ANGLE = 30.0  # degrees, vertical
-ASPECT = 1.5
-ACROSS, UPRIGHT = 0.86, 0.62  # of the picture that the pin may fill
-ABOVE = 0.07  # of the picture's height, from the pin to the label of its peak
-TURN = np.radians(25.0)  # from the peak, so that it does not face the viewer squarely
-LEAN = 0.55  # towards the nearer end
+ASPECT_RATIO = 1.5
+FILLED_WIDTH, FILLED_HEIGHT = 0.86, 0.62  # of the picture that the pin may fill
+LABEL_CLEARANCE = 0.07  # of the picture's height, from the pin to the label of its peak
+VIEW_TURN_ANGLE = np.radians(25.0)  # from the peak, so that it does not face the viewer squarely
+VIEW_AXIAL_LEAN = 0.55  # towards the nearer end
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class View:
     def of(points: Floats, peak: Floats) -> View:
         """From the side of the maximum and slightly from one end; the axis is horizontal."""
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + TURN
+        angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + VIEW_TURN_ANGLE
         end = _seen_from(points, peak)
-        towards = np.array([np.cos(angle), np.sin(angle), LEAN * end])
+        towards = np.array([np.cos(angle), np.sin(angle), VIEW_AXIAL_LEAN * end])
         towards /= np.linalg.norm(towards)
         up = np.cross(np.array([0.0, 0.0, 1.0]), towards)
         up /= np.linalg.norm(up)
@@ -48,7 +48,7 @@ class View:
         heights = (points - self.centre) @ self.up
         height = float((place - self.centre) @ self.up)
         visible = 2.0 * np.linalg.norm(self.eye - self.centre) * np.tan(np.radians(VIEW_ANGLE / 2))
-        clear = float(heights.max() + ABOVE * visible)
+        clear = float(heights.max() + LABEL_CLEARANCE * visible)
         return np.asarray(place + (clear - height) * self.up)
 
 
@@ -68,8 +68,8 @@ def _seen_from(points: Floats, peak: Floats) -> float:
 def _distance(seen: Floats) -> float:
     """Distance of the eye at which all points (N, 3: right, up, towards it) are in the picture."""
     half = np.tan(np.radians(VIEW_ANGLE / 2))
-    right = seen[:, 2] + np.abs(seen[:, 0]) / (half * ASPECT * ACROSS)
-    up = seen[:, 2] + np.abs(seen[:, 1]) / (half * UPRIGHT)
+    right = seen[:, 2] + np.abs(seen[:, 0]) / (half * ASPECT_RATIO * FILLED_WIDTH)
+    up = seen[:, 2] + np.abs(seen[:, 1]) / (half * FILLED_HEIGHT)
     return float(max(right.max(), up.max()))
 
 

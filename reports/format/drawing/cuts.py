@@ -5,10 +5,10 @@ dashed, and their sizes in words.
 from __future__ import annotations
 
 from reports.data.results import CutShape
-from reports.format.drawing.svg import INK
+from reports.format.drawing.svg import INK_COLOUR
 from reports.format.numbers import short
 
-HIDDEN = 'stroke-dasharray="4 2"'
+HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
 
 
 def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
@@ -24,9 +24,10 @@ def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
         out.append(f'<path d="M{a:.2f},{d + away:.2f}H{b:.2f}V{c:.2f}H{a:.2f}Z" fill="#fff"/>')
     for points, hidden in cut.lines:
         drawn = " ".join("{:.2f},{:.2f}".format(*at(z, x)) for z, x in points)
-        more = HIDDEN if hidden else ""
+        more = HIDDEN_LINE_STYLE if hidden else ""
         out.append(
-            f'<polyline points="{drawn}" fill="none" stroke="{INK}" stroke-width="0.8" {more}/>'
+            f'<polyline points="{drawn}" fill="none" stroke="{INK_COLOUR}" '
+            f'stroke-width="0.8" {more}/>'
         )
     title = f"<title>{cut.name}</title>"
     return f'<g class="cut">{title}{"".join(out)}</g>'

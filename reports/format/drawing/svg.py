@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from html import escape
 
-INK = "#222222"
-LETTER = 6.1  # mean width of a letter of the text
+INK_COLOUR = "#222222"
+MEAN_LETTER_WIDTH = 6.1  # mean width of a letter of the text
 
 
-def line(x1: float, y1: float, x2: float, y2: float, more: str = "", ink: str = INK) -> str:
+def line(x1: float, y1: float, x2: float, y2: float, more: str = "", ink: str = INK_COLOUR) -> str:
     return (
         f'<line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}" stroke="{ink}" '
         f'stroke-width="0.8" {more}/>'
@@ -19,11 +19,11 @@ def text(x: float, y: float, words: str, halo: bool = False) -> str:
     """Text centred at x; halo: on a white rim, so that it is read over lines."""
     behind = ' stroke="#fff" stroke-width="3" paint-order="stroke"' if halo else ""
     return (
-        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle" fill="{INK}"{behind}>'
+        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle" fill="{INK_COLOUR}"{behind}>'
         f"{escape(words)}</text>"
     )
 
 
 def wide(words: str) -> float:
     """About how wide a text is, with a little room."""
-    return LETTER * len(words) + 8.0
+    return MEAN_LETTER_WIDTH * len(words) + 8.0

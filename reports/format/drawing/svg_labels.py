@@ -6,13 +6,13 @@ import numpy as np
 
 from reports.data.results import Floats
 
-DIRECTIONS = np.array(
+LABEL_DIRECTIONS = np.array(
     [(1, -1), (-1, -1), (1, 1), (-1, 1), (1, 0), (-1, 0), (0, -1), (0, 1)], dtype=float
 )
-REACHES = (1.0, 1.7)
-SAMPLES = 24  # points that stand for a line
+LABEL_REACHES = (1.0, 1.7)
+SAMPLES_PER_LINE = 24  # points that stand for a line
 # What hiding each costs; so does being far away, or off the picture.
-POINT, LABEL, LINE, FAR, OUTSIDE = 6.0, 10.0, 1.0, 0.5, 20.0
+POINT_COST, LABEL_COST, LINE_COST, DISTANCE_COST, OUTSIDE_COST = 6.0, 10.0, 1.0, 0.5, 20.0
 
 
 def label_offsets(
@@ -24,7 +24,7 @@ def label_offsets(
     points: (F, J, 2). sizes: (J, 2) of the labels. lines: (F, S, 2, 2) their ends. gap: between
     a point and its label. picture: its width and height, beyond which nothing is seen.
     """
-    along = np.linspace(0.0, 1.0, SAMPLES)[:, None]
+    along = np.linspace(0.0, 1.0, SAMPLES_PER_LINE)[:, None]
     start, end = lines[:, :, None, 0], lines[:, :, None, 1]
     inked = (start + along * (end - start)).reshape(len(points), -1, 2)
     offsets = np.zeros((points.shape[1], 2))
@@ -32,17 +32,17 @@ def label_offsets(
     for j in range(points.shape[1]):
         half = 0.5 * sizes[j]
         best = np.inf
-        for reach in REACHES:
-            for direction in DIRECTIONS:
+        for reach in LABEL_REACHES:
+            for direction in LABEL_DIRECTIONS:
                 slant = 0.8 if direction.all() else 1.0
                 offset = direction * (half + slant * reach * gap)
                 centre = points[:, j] + offset
                 cost = (
-                    FAR * (reach - 1.0)
-                    + LINE * _inside(inked, centre, half + 2.0) / SAMPLES * 8.0
-                    + POINT * _inside(points, centre, half + 4.0)
-                    + OUTSIDE * _outside(centre, half, np.array(picture))
-                    + LABEL * sum(_overlaps(centre, half, *box) for box in boxes)
+                    DISTANCE_COST * (reach - 1.0)
+                    + LINE_COST * _inside(inked, centre, half + 2.0) / SAMPLES_PER_LINE * 8.0
+                    + POINT_COST * _inside(points, centre, half + 4.0)
+                    + OUTSIDE_COST * _outside(centre, half, np.array(picture))
+                    + LABEL_COST * sum(_overlaps(centre, half, *box) for box in boxes)
                 )
                 if cost < best - 1e-9:
                     best, offsets[j] = cost, offset

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from reports.format.files.csv import Cell
 
-AT_ONCE = 100_000  # rows of a group
+ROWS_PER_GROUP = 100_000  # rows of a group
 
 
 def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
@@ -31,4 +31,4 @@ def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Ce
 
 
 def _group(left: Iterator[Sequence[Cell]]) -> list[Sequence[Cell]]:
-    return list(islice(left, AT_ONCE))
+    return list(islice(left, ROWS_PER_GROUP))

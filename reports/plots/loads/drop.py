@@ -8,7 +8,7 @@ from reports.data.results import DropRecord, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import Abscissa, Panel, Plot, curves
 
-NAMES = {
+ENERGY_NAMES = {
     "kinetic": "kinetic",
     "spring": "strut's spring",
     "tyre": "tyre",
@@ -23,7 +23,9 @@ def drop_plots(d: DropRecord, units: Units) -> list[Plot]:
     """Over time, and over stroke if there is a strut."""
     forces = {"vertical": d.vertical, "along the strut": d.strut, "drag on the leg": d.leg_drag}
     lengths = {"stroke": d.stroke, "tyre": d.deflection}
-    energies = {words: d.energies[key] for key, words in NAMES.items() if d.energies[key].any()}
+    energies = {
+        words: d.energies[key] for key, words in ENERGY_NAMES.items() if d.energies[key].any()
+    }
     panels = [
         Panel(f"force [{units.force}]", {k: v for k, v in forces.items() if v.any()}, height=190.0),
         Panel(f"stroke, deflection [{units.length}]", lengths),

@@ -8,7 +8,7 @@ from reports.data.results import LegTable, Units
 from reports.format.file_names import plot_name
 from reports.plots.spec import Abscissa, Panel, Plot, curves
 
-MOTION = {
+MOTION_QUANTITIES = {
     "wheel_omega": "angular velocity of the wheel",
     "wheel_alpha": "angular acceleration of the wheel",
     "v_C": "velocity of C",
@@ -16,24 +16,24 @@ MOTION = {
     "v_D": "velocity of D",
     "a_D": "acceleration of D",
 }
-MOMENTA = {
+MOMENTUM_QUANTITIES = {
     "p_leg_rate": "rate of momentum, leg",
     "p_wheel_rate": "rate of momentum, wheel",
     "L_leg_rate": "rate of angular momentum, leg",
     "L_wheel_rate": "rate of angular momentum, wheel",
 }
-HINGE = {"F_B": "force on the hinge B", "M_B": "moment on the hinge B"}
-GROUPS = {
-    "motion": ("rotation of the wheel, velocities and accelerations", MOTION),
-    "momenta": ("rates of momentum and of angular momentum", MOMENTA),
-    "hinge": ("force and moment on the hinge, actuator moment and spin moment", HINGE),
+HINGE_QUANTITIES = {"F_B": "force on the hinge B", "M_B": "moment on the hinge B"}
+QUANTITY_GROUPS = {
+    "motion": ("rotation of the wheel, velocities and accelerations", MOTION_QUANTITIES),
+    "momenta": ("rates of momentum and of angular momentum", MOMENTUM_QUANTITIES),
+    "hinge": ("force and moment on the hinge, actuator moment and spin moment", HINGE_QUANTITIES),
 }
 
 
 def leg_plots(table: LegTable, units: Units) -> Iterator[Plot]:
     """One plot per group, components in the aircraft's axes against time."""
     x = Abscissa(f"time [{units.time}]", table.time)
-    for group, (what, members) in GROUPS.items():
+    for group, (what, members) in QUANTITY_GROUPS.items():
         panels = [_vector(table, name, title) for name, title in members.items()]
         if group == "hinge":
             panels += [_scalar(table, name) for name in ("actuator", "spin_moment")]

@@ -12,12 +12,12 @@ from reports.format.file_names import plot_name
 from reports.format.numbers import short
 from reports.plots.spec import Plot, Spec, clipped, headed, rows
 
-ROUND = 72  # sides of a pitch circle
-BETWEEN = 5  # positions between the first and the last
-WIDTH, LOWEST, HIGHEST = 560.0, 160.0, 560.0
-MARGIN = 0.06  # of the size, around the linkage
-LETTER, LINE, GAP = 7.0, 13.0, 7.0
-SAME = 1e-6  # of the linkage's size: positions nearer than this are drawn once
+PITCH_CIRCLE_SIDES = 72  # sides of a pitch circle
+INTERMEDIATE_POSITIONS = 5  # positions between the first and the last
+DIAGRAM_WIDTH, MIN_DIAGRAM_HEIGHT, MAX_DIAGRAM_HEIGHT = 560.0, 160.0, 560.0
+DIAGRAM_MARGIN = 0.06  # of the size, around the linkage
+LABEL_LETTER_WIDTH, LABEL_LINE_HEIGHT, LABEL_GAP = 7.0, 13.0, 7.0
+POSITION_TOLERANCE = 1e-6  # of the linkage's size: positions nearer than this are drawn once
 
 
 def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
@@ -35,7 +35,7 @@ def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
         "title": headed(title),
         "usermeta": {"columns": [f"x [{units.length}]", f"y [{units.length}]"]},
         "data": rows([]),
-        "width": WIDTH,
+        "width": DIAGRAM_WIDTH,
         "height": frame.height,
         "encoding": {name: frame.axis(k, units) for k, name in enumerate("xy")},
         "layer": [
@@ -57,10 +57,10 @@ class _Frame:
         every = np.concatenate([np.asarray(p).reshape(-1, 2) for p in parts])
         low, high = every.min(axis=0), every.max(axis=0)
         self.size = float((high - low).max()) or 1.0
-        span = high - low + 2.0 * MARGIN * self.size
-        scale = min(WIDTH / span[0], HIGHEST / span[1])
-        self.height = max(scale * float(span[1]), LOWEST)
-        half = 0.5 * np.array([WIDTH, self.height]) / scale
+        span = high - low + 2.0 * DIAGRAM_MARGIN * self.size
+        scale = min(DIAGRAM_WIDTH / span[0], MAX_DIAGRAM_HEIGHT / span[1])
+        self.height = max(scale * float(span[1]), MIN_DIAGRAM_HEIGHT)
+        half = 0.5 * np.array([DIAGRAM_WIDTH, self.height]) / scale
         middle = 0.5 * (low + high)
         self.scale, self.low, self.high = scale, middle - half, middle + half
 
@@ -86,13 +86,13 @@ def _instants(motion: LinkageMotion, size: float) -> list[int]:
     """The first and, where it differs, the last."""
     points = motion.joint_position
     moved = float(np.abs(points[-1] - points[0]).max())
-    return [0] if motion.time is None or moved < SAME * size else [0, len(points) - 1]
+    return [0] if motion.time is None or moved < POSITION_TOLERANCE * size else [0, len(points) - 1]
 
 
 def _intermediate(motion: LinkageMotion) -> list[int]:
     if motion.time is None:
         return []
-    inner = np.linspace(0, len(motion.condition) - 1, BETWEEN + 2)[1:-1]
+    inner = np.linspace(0, len(motion.condition) - 1, INTERMEDIATE_POSITIONS + 2)[1:-1]
     return [round(float(k)) for k in inner]
 
 
@@ -125,7 +125,7 @@ def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
     if not curve.round:
         return list(curve.ends[k])
     centre, mark = curve.ends[k]
-    angle = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)
+    angle = np.linspace(0.0, 2.0 * np.pi, PITCH_CIRCLE_SIDES + 1)
     x, y = mark - centre
     turned = np.stack(
         [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], 1
@@ -186,7 +186,7 @@ def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Sp
     ]
     named = [(clipped(name), point) for name, point in at.items()] + bodies
     points = np.array([point for _, point in named]).reshape(-1, 2)
-    sizes = np.array([[LETTER * len(name), LINE] for name, _ in named])
+    sizes = np.array([[LABEL_LETTER_WIDTH * len(name), LABEL_LINE_HEIGHT] for name, _ in named])
     segments = [
         [motion.joint_position[k][motion.joints.index(j)] for j in pair]
         for k in instants for joints in motion.links
@@ -194,7 +194,9 @@ def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Sp
     ]  # fmt: skip
     ends = frame.pixels(np.array(segments).reshape(1, -1, 2, 2))
     at_pixels = frame.pixels(points)
-    placed = at_pixels + label_offsets(at_pixels[None], sizes, ends, GAP, (WIDTH, frame.height))
+    placed = at_pixels + label_offsets(
+        at_pixels[None], sizes, ends, LABEL_GAP, (DIAGRAM_WIDTH, frame.height)
+    )
     shown = [
         {"px": float(x), "py": float(y), "name": name}
         for (name, _), (x, y) in zip(named, placed, strict=True)

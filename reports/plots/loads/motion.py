@@ -10,11 +10,11 @@ from reports.data.results import LinkageMotion, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import ten_to
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, level, rows
-from reports.plots.theme import SERIES
+from reports.plots.theme import SERIES_COLOURS
 
-GUIDANCE = 40.0  # degrees; designers keep transmission angles above
-NEGLIGIBLE = 1e-9
-MOST = len(SERIES)  # bodies in one plot
+MIN_TRANSMISSION_ANGLE = 40.0  # degrees; designers keep transmission angles above
+NEGLIGIBLE_MOTION_SHARE = 1e-9
+MAX_BODIES_PER_PLOT = len(SERIES_COLOURS)  # bodies in one plot
 
 
 def motion_plots(motion: LinkageMotion, units: Units) -> Iterator[Plot]:
@@ -33,8 +33,8 @@ def _bodies(motion: LinkageMotion, time: Abscissa, units: Units) -> Iterator[Plo
     still = [clipped(b) for k, b in enumerate(motion.bodies) if k not in turning]
     names = ", ".join(still)
     note = f"; not rotating: {names if len(names) < 70 else f'{len(still)} bodies'}"
-    for part, first in enumerate(range(0, len(turning), MOST), start=1):
-        shown = turning[first : first + MOST]
+    for part, first in enumerate(range(0, len(turning), MAX_BODIES_PER_PLOT), start=1):
+        shown = turning[first : first + MAX_BODIES_PER_PLOT]
         panels = [
             Panel(heading, {motion.bodies[b]: values[:, b] for b in shown})
             for values, heading in (
@@ -44,8 +44,8 @@ def _bodies(motion: LinkageMotion, time: Abscissa, units: Units) -> Iterator[Plo
             )
         ]
         title = f"{motion.case}: rotating bodies"
-        if len(turning) > MOST:
-            title += f", {part} of {-(-len(turning) // MOST)}"
+        if len(turning) > MAX_BODIES_PER_PLOT:
+            title += f", {part} of {-(-len(turning) // MAX_BODIES_PER_PLOT)}"
         name = "bodies" if part == 1 else f"bodies-{part}"
         spec = curves(title, time, panels, common=True)
         yield Plot(plot_name(name, motion.case), title + (note if still else ""), spec)
@@ -57,7 +57,8 @@ def _turning(motion: LinkageMotion) -> list[int]:
     return [
         b
         for b in range(len(motion.bodies))
-        if speeds[b] > NEGLIGIBLE * speeds.max() or rates[b] > NEGLIGIBLE * rates.max()
+        if speeds[b] > NEGLIGIBLE_MOTION_SHARE * speeds.max()
+        or rates[b] > NEGLIGIBLE_MOTION_SHARE * rates.max()
     ]
 
 
@@ -78,10 +79,12 @@ def _transmission(motion: LinkageMotion, time: Abscissa) -> Plot:
     caption = title
     if angles:
         limits = {"domain": [0.0, 92.0]}
-        under = _poor(), level(GUIDANCE)
+        under = _poor(), level(MIN_TRANSMISSION_ANGLE)
         heading = "transmission angle [deg]"
         panels.insert(0, Panel(heading, angles, under, scale=limits, height=150.0, zero=False))
-        caption += f"; shaded: below {GUIDANCE:.0f} deg, where forces increase rapidly"
+        caption += (
+            f"; shaded: below {MIN_TRANSMISSION_ANGLE:.0f} deg, where forces increase rapidly"
+        )
     spec = curves(title, time, panels)
     return Plot(plot_name("transmission", motion.case), caption, spec)
 
@@ -92,7 +95,7 @@ def _poor() -> Spec:
         "mark": {"type": "rect", "style": "shade"},
         "encoding": {
             "x": {"value": 0}, "x2": {"value": "width"},
-            "y": {"datum": 0.0, "type": "quantitative"}, "y2": {"datum": GUIDANCE},
+            "y": {"datum": 0.0, "type": "quantitative"}, "y2": {"datum": MIN_TRANSMISSION_ANGLE},
         },
     }  # fmt: skip
 
@@ -118,7 +121,7 @@ def _ledger(motion: LinkageMotion, time: Abscissa, units: Units) -> Plot:
         "friction": p.friction,
     }
     largest = max(float(np.abs(v).max()) for v in (*given.values(), p.kinetic_rate))
-    acting = {n: v for n, v in given.items() if np.abs(v).max() > NEGLIGIBLE * largest}
+    acting = {n: v for n, v in given.items() if np.abs(v).max() > NEGLIGIBLE_MOTION_SHARE * largest}
     rate = {"rate of kinetic energy, and sum of powers": p.kinetic_rate}
     panels = [
         Panel(f"power {unit}", acting or {"drives": p.drives}),

@@ -8,7 +8,7 @@ from reports.data.results import Floats, PeakReaction, ReactionTable, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short
 from reports.plots.spec import (
-    FORMAT,
+    NUMBER_FORMAT,
     Abscissa,
     Panel,
     Plot,
@@ -20,9 +20,9 @@ from reports.plots.spec import (
     rows,
 )
 
-NEGLIGIBLE = 1e-9
-LOG_SPAN = 100.0
-WITHOUT = "no-pin"  # connections that bear on no pin of the study
+NEGLIGIBLE_REACTION_SHARE = 1e-9
+LOG_SCALE_RATIO = 100.0
+NO_PIN_NAME = "no-pin"  # connections that bear on no pin of the study
 
 
 def reaction_plot(
@@ -54,7 +54,7 @@ def reaction_plot(
     if governs is not None:
         caption += ", the dashed line the governing instant"
     spec = curves(title, x, panels, common=True)
-    return Plot(plot_name("reactions", table.case, pin or WITHOUT), caption, spec)
+    return Plot(plot_name("reactions", table.case, pin or NO_PIN_NAME), caption, spec)
 
 
 def along(table: ReactionTable, units: Units) -> Abscissa:
@@ -100,7 +100,7 @@ def _components_that_act(
         ("M", table.moments, f"{units.force}·{units.length}"),
     ):
         values = all_values[:, members]
-        least = NEGLIGIBLE * float(np.abs(all_values).max(initial=0.0))
+        least = NEGLIGIBLE_REACTION_SHARE * float(np.abs(all_values).max(initial=0.0))
         for axis in range(3):
             if float(np.abs(values[:, :, axis]).max(initial=0.0)) > least:
                 shown[f"{letter}{'xyz'[axis]} [{unit}]"] = values[:, :, axis]
@@ -111,7 +111,7 @@ def bars(table: ReactionTable, units: Units) -> Plot:
     """One bar per connection with its magnitude, and the published value."""
     values = [peak.force for peak in table.largest]
     known = [v for v in (*values, *table.published.values()) if v > 0.0]
-    log = bool(known) and max(known) / min(known) > LOG_SPAN
+    log = bool(known) and max(known) / min(known) > LOG_SCALE_RATIO
     floor = 0.5 * min(known) if log else 0.0
     members = [
         {"name": _name(table, c), "force": max(value, floor), "text": engineering(value),
@@ -149,7 +149,7 @@ def _key(table: ReactionTable) -> str:
 def _published(table: ReactionTable, units: Units) -> list[Spec]:
     if not table.published:
         return []
-    tooltip = {"field": "published", "type": "quantitative", "format": FORMAT,
+    tooltip = {"field": "published", "type": "quantitative", "format": NUMBER_FORMAT,
                "title": f"published [{units.force}]"}  # fmt: skip
     return [{
         "transform": [{"filter": "isValid(datum.published)"}],

@@ -7,14 +7,14 @@ import numpy as np
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Floats, Units
 from reports.format.file_names import plot_name
-from reports.plots.spec import FORMAT, Abscissa, Panel, Plot, clipped, curves, headed, rows
+from reports.plots.spec import NUMBER_FORMAT, Abscissa, Panel, Plot, clipped, curves, headed, rows
 
 
 def history_plot(history: PointHistory, units: Units) -> Plot:
     """Signed and plain von Mises stress at a point, case by case with zero load between them, over
     the instants.
     """
-    signed, plain = (_course([getattr(c, name) for c in history.cases]) for name in NAMES)
+    signed, plain = (_course([getattr(c, name) for c in history.cases]) for name in STRESS_COLUMNS)
     title = f"Pin {clipped(history.pin)}, point {history.point}: stress over the cases"
     panel = Panel(f"stress [{units.stress}]", {"signed": signed, "von Mises": plain}, height=170.0)
     x = Abscissa("instant, case after case", np.arange(len(signed), dtype=np.float64))
@@ -23,7 +23,7 @@ def history_plot(history: PointHistory, units: Units) -> Plot:
     return Plot(plot_name("stress-history", history.pin), caption, curves(title, x, [panel]))
 
 
-NAMES = ("signed", "von_mises")
+STRESS_COLUMNS = ("signed", "von_mises")
 
 
 def _named(case: CaseHistory) -> str:
@@ -55,8 +55,8 @@ def collective_plot(point: PointFatigue, unit: str, units: Units) -> Plot:
                   "scale": {"type": "log", "nice": False}},
             "y": {"field": "y", "type": "quantitative", "title": heads[1]},
             "tooltip": [
-                {"field": "x", "type": "quantitative", "title": heads[0], "format": FORMAT},
-                {"field": "y", "type": "quantitative", "title": heads[1], "format": FORMAT},
+                {"field": "x", "type": "quantitative", "title": heads[0], "format": NUMBER_FORMAT},
+                {"field": "y", "type": "quantitative", "title": heads[1], "format": NUMBER_FORMAT},
             ],
         },
     })  # fmt: skip

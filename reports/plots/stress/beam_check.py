@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from assess.strength.records import WINDOW
+from assess.strength.records import COMPARISON_WINDOW
 from reports.data.results import BeamCheck, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, bands, curves
 
-HEADROOM = 1.25  # over the beam's peak; higher values are cut off
+HEADROOM_FACTOR = 1.25  # over the beam's peak; higher values are cut off
 
 
 def beam_plots(check: BeamCheck, units: Units) -> Iterator[Plot]:
@@ -44,7 +44,7 @@ def _stress(check: BeamCheck, units: Units, loaded: Spec) -> Panel:
             "finite elements, load on the surface": check.fea_axial_stress,
             "finite elements, load on the axis": check.fea_axial_stress_axis_load,
         },
-        (loaded, bands([(WINDOW[0] * length, WINDOW[1] * length)], "band")),
+        (loaded, bands([(COMPARISON_WINDOW[0] * length, COMPARISON_WINDOW[1] * length)], "band")),
         scale={"domain": list(_limits(check))},
         height=260.0,
     )
@@ -54,8 +54,8 @@ def _limits(check: BeamCheck) -> tuple[float, float]:
     solid = np.concatenate([check.fea_axial_stress, check.fea_axial_stress_axis_load])
     peak = float(np.max(check.beam_axial_stress))
     low = min(0.0, float(np.min(solid)), float(np.min(check.beam_axial_stress)))
-    top = min(float(np.max(solid)), HEADROOM * peak)
-    return max(low, -HEADROOM * peak) - 0.05 * peak, max(top, peak) + 0.05 * peak
+    top = min(float(np.max(solid)), HEADROOM_FACTOR * peak)
+    return max(low, -HEADROOM_FACTOR * peak) - 0.05 * peak, max(top, peak) + 0.05 * peak
 
 
 def _cut_off(check: BeamCheck, units: Units) -> str:

@@ -9,8 +9,8 @@ from reports.data.results import Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering
 from reports.plots.spec import (
-    FORMAT,
-    ZOOM,
+    NUMBER_FORMAT,
+    ZOOM_PARAMETER,
     Plot,
     Spec,
     bands,
@@ -21,7 +21,7 @@ from reports.plots.spec import (
     rows,
 )
 
-HEADROOM = 1.18  # above the largest value, for names and labels
+LABEL_HEADROOM_FACTOR = 1.18  # above the largest value, for names and labels
 
 
 def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
@@ -38,9 +38,9 @@ def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
               "scale": {"domain": [min(z), max(z)], "nice": False}}  # fmt: skip
     hidden = {**across, "title": None, "axis": {"labels": False}}
     lugs = [bands([_extent(band) for band in joint.bands]), level(0.0, style="zero")]
-    top = HEADROOM * max(q for band in joint.bands for _, q in band.line_load)
+    top = LABEL_HEADROOM_FACTOR * max(q for band in joint.bands for _, q in band.line_load)
     loads = [_load(band, force, top) for band in joint.bands]
-    loads[0]["params"] = [ZOOM]
+    loads[0]["params"] = [ZOOM_PARAMETER]
     spec = {
         "title": headed(title),
         "usermeta": {"columns": [f"z [{units.length}]", _moment_heading(units)]},
@@ -78,8 +78,8 @@ def _y(top: float = 0.0) -> Spec:
 
 
 def _tooltip(heading: str) -> list[Spec]:
-    return [{"field": "x", "title": "z", "format": FORMAT, "type": "quantitative"},
-            {**_y(), "title": heading, "format": FORMAT}]  # fmt: skip
+    return [{"field": "x", "title": "z", "format": NUMBER_FORMAT, "type": "quantitative"},
+            {**_y(), "title": heading, "format": NUMBER_FORMAT}]  # fmt: skip
 
 
 def _extent(band: BandContact) -> tuple[float, float]:
@@ -102,7 +102,7 @@ def _moment(joint: JointResult, units: Units) -> list[Spec]:
     largest = int(moment.argmax())
     at = {"x": float(z[largest]), "y": float(moment[largest]),
           "text": f"largest {engineering(joint.bending_moment)}"}  # fmt: skip
-    left, top = z[largest] < np.mean(z), HEADROOM * float(moment[largest])
+    left, top = z[largest] < np.mean(z), LABEL_HEADROOM_FACTOR * float(moment[largest])
     noted = {
         "data": rows([at]),
         "mark": {"type": "text", "style": "hot-note", "align": "left" if left else "right",
@@ -111,7 +111,7 @@ def _moment(joint: JointResult, units: Units) -> list[Spec]:
                      "text": {"field": "text", "type": "nominal"}},
     }  # fmt: skip
     line = {
-        "params": [ZOOM],
+        "params": [ZOOM_PARAMETER],
         "mark": {"type": "line", "clip": True, "point": {"size": 12}},
         "encoding": {"y": _y(top), "tooltip": _tooltip(_moment_heading(units))},
     }

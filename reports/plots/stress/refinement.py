@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from fea.core.peak import Refinement
 from reports.data.results import PinResult, Units
 from reports.format.file_names import plot_name
-from reports.plots.spec import FORMAT, Plot, Spec, clipped, headed, level, rows
+from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, clipped, headed, level, rows
 from reports.plots.theme import dashes
 
-HEADING, ENERGY = "maximum: deviation [%]", "strain energy: deviation [%]"
+MAXIMUM_HEADING, ENERGY_HEADING = "maximum: deviation [%]", "strain energy: deviation [%]"
 
 
 def refinement_plot(case: str, pins: Sequence[PinResult], units: Units) -> Plot:
@@ -35,16 +35,16 @@ def _plot(
     ]  # fmt: skip
     names = list(dict.fromkeys(_text(*both) for both in zip(labels, pins, strict=True)))
     stress, energy = f"maximum [{units.stress}]", f"strain energy [{units.force} {units.length}]"
-    panels = [_panel("y", HEADING, ("value", stress), names)]
+    panels = [_panel("y", MAXIMUM_HEADING, ("value", stress), names)]
     known = any(step["e"] is not None for step in steps)
     if known:
-        panels.append(_panel("e", ENERGY, ("energy", energy), names))
+        panels.append(_panel("e", ENERGY_HEADING, ("energy", energy), names))
     else:
         steps = [{k: v for k, v in step.items() if k not in ("e", "energy")} for step in steps]
     panels[-1]["layer"][1]["encoding"]["x"]["title"] = "unknowns, logarithmic"
     title = f"{title}: mesh refinement of the maximum von Mises stress"
     title += " and of the strain energy" if known else ""
-    columns = ["unknowns", stress, HEADING, energy, ENERGY][: 5 if known else 3]
+    columns = ["unknowns", stress, MAXIMUM_HEADING, energy, ENERGY_HEADING][: 5 if known else 3]
     return Plot(name, f"{title}, as deviations from the finest mesh", {
         "title": headed(title),
         "usermeta": {"columns": [*columns, "row"]},
@@ -82,7 +82,7 @@ def _panel(field: str, heading: str, value: tuple[str, str], names: list[str]) -
             "tooltip": [
                 {"field": "row", "type": "nominal", "title": "row"},
                 {"field": "x", "type": "quantitative", "title": "unknowns", "format": ","},
-                {"field": column, "type": "quantitative", "title": title, "format": FORMAT},
+                {"field": column, "type": "quantitative", "title": title, "format": NUMBER_FORMAT},
                 {"field": field, "type": "quantitative", "title": heading, "format": ".3~f"},
             ],
         },

@@ -10,8 +10,8 @@ from reports.format.file_names import plot_name
 from reports.format.numbers import engineering
 from reports.format.ranges import error_range
 from reports.plots.spec import (
-    FORMAT,
-    ZOOM,
+    NUMBER_FORMAT,
+    ZOOM_PARAMETER,
     Plot,
     Spec,
     bands,
@@ -23,7 +23,7 @@ from reports.plots.spec import (
     table,
 )
 
-FILLS = {"band": "band", "held": "governs"}
+FILL_STYLES = {"band": "band", "held": "governs"}
 
 
 def surface_plot(
@@ -73,13 +73,13 @@ def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> 
     heading = {"x": "z", "y": f"von Mises, {name}"}
     key: Spec = {"datum": name, "scale": {"domain": names}}
     return {
-        **({"params": [ZOOM]} if name == names[0] else {}),
+        **({"params": [ZOOM_PARAMETER]} if name == names[0] else {}),
         "data": table({"x": z[part], "y": read[part]}),
         "mark": {"type": "line", "clip": True, "point": {"size": 8, "opacity": 0.01}},
         "encoding": {
             "y": {"field": "y", "type": "quantitative", "title": None, "scale": {"zero": True}},
             "color": key if len(names) > 1 else {**key, "legend": None},
-            "tooltip": [{"field": k, "type": "quantitative", "title": text, "format": FORMAT}
+            "tooltip": [{"field": k, "type": "quantitative", "title": text, "format": NUMBER_FORMAT}
                         for k, text in heading.items()],
         },
     }  # fmt: skip
@@ -142,7 +142,7 @@ def _strip(shape: PinShape | None, across: Spec) -> list[Spec]:
         return []
     at, shown = 0.0, []
     for length, _, _, label, kind in shape.segments:
-        if kind in FILLS:
+        if kind in FILL_STYLES:
             shown.append({"x": at, "x2": at + length, "middle": at + 0.5 * length, "kind": kind,
                           "label": clipped(label, 12)})  # fmt: skip
         at += length
@@ -151,7 +151,7 @@ def _strip(shape: PinShape | None, across: Spec) -> list[Spec]:
         {"transform": [{"filter": f"datum.kind === '{kind}'"}],
          "mark": {"type": "rect", "style": style, "clip": True, "filled": kind == "band"},
          "encoding": {**x, "x2": {"field": "x2"}}}
-        for kind, style in FILLS.items()
+        for kind, style in FILL_STYLES.items()
     ]  # fmt: skip
     middle: Spec = {"x": {**x["x"], "field": "middle"}}
     named: Spec = {"text": {"field": "label", "type": "nominal"}}

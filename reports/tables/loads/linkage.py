@@ -10,10 +10,10 @@ from reports.data.results import LinkageMotion, Results
 from reports.format.files.csv import Cell
 from reports.tables.table import Table
 
-BODIES = ("x", "y", "angle_deg", "vx", "vy", "omega", "ax", "ay", "alpha")
-JOINTS = ("x", "y", "vx", "vy", "ax", "ay")
-PATHS = ("x", "y", "vx", "vy", "speed", "curvature")
-CHECKS = (
+BODY_COLUMNS = ("x", "y", "angle_deg", "vx", "vy", "omega", "ax", "ay", "alpha")
+JOINT_COLUMNS = ("x", "y", "vx", "vy", "ax", "ay")
+PATH_COLUMNS = ("x", "y", "vx", "vy", "speed", "curvature")
+LINKAGE_CHECK_COLUMNS = (
     "shaking_fx",
     "shaking_fy",
     "shaking_moment",
@@ -30,14 +30,14 @@ def linkage_tables(results: Results) -> list[Table]:
     """Motion, joints, transmission, linkage, sliders and, where points are named, paths of all
     cases.
     """
-    paths = [("paths", ("case", "time", "point", *PATHS), _paths)]
+    paths = [("paths", ("case", "time", "point", *PATH_COLUMNS), _paths)]
     return [
         Table.of(name, columns, (row for m in results.motion for row in rows(m)))
         for name, columns, rows in (
-            ("motion", ("case", "time", "body", *BODIES), _bodies),
-            ("joints", ("case", "time", "joint", *JOINTS), _joints),
+            ("motion", ("case", "time", "body", *BODY_COLUMNS), _bodies),
+            ("joints", ("case", "time", "joint", *JOINT_COLUMNS), _joints),
             ("transmission", ("case", "time", "link", "degrees"), _transmission),
-            ("linkage", ("case", "time", *CHECKS), _checks),
+            ("linkage", ("case", "time", *LINKAGE_CHECK_COLUMNS), _checks),
             ("sliders", ("case", "time", "slider", "normal", "couple", "friction"), _sliders),
             *(paths if any(m.paths for m in results.motion) else ()),
         )

@@ -21,8 +21,8 @@ from reports.data.results import (
 from reports.format.files.csv import Cell
 from reports.tables.table import Table
 
-REACTIONS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")
-DRIVE = (
+REACTION_COLUMNS = ("case", "time", "connection", "body", "fx", "fy", "fz", "mx", "my", "mz")
+DRIVE_COLUMNS = (
     "time",
     "position",
     "velocity",
@@ -33,7 +33,7 @@ DRIVE = (
     "kinetic_energy",
     "potential_energy",
 )
-BEAM = (
+BEAM_CHECK_COLUMNS = (
     "z",
     "shear",
     "moment",
@@ -41,7 +41,7 @@ BEAM = (
     "fea_axial_stress",
     "fea_axial_stress_axis_load",
 )
-MOTION = (
+MOTION_CHECK_COLUMNS = (
     "time",
     "speed",
     "acceleration",
@@ -52,7 +52,7 @@ MOTION = (
 
 def reactions_table(results: Results) -> Table:
     """The forces and moments on the pins, world axes: a row per instant and connection."""
-    return Table("reactions", REACTIONS, Instants(results.reactions))
+    return Table("reactions", REACTION_COLUMNS, Instants(results.reactions))
 
 
 def reactions_pin_axes_table(results: Results) -> Table:
@@ -61,7 +61,7 @@ def reactions_pin_axes_table(results: Results) -> Table:
         replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
         for t in results.reactions
     )
-    return Table("reactions_pin_axes", REACTIONS, Instants(turned))
+    return Table("reactions_pin_axes", REACTION_COLUMNS, Instants(turned))
 
 
 def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
@@ -112,25 +112,25 @@ def drive_table(results: Results) -> Table:
     )
     turning = any(table.kind != "slider" for table in results.drive)
     mixed = ("position", "velocity", "acceleration", "force") if turning else ()
-    return Table.of("drive", ("case", *DRIVE, "drive", "kind"), rows, mixed)
+    return Table.of("drive", ("case", *DRIVE_COLUMNS, "drive", "kind"), rows, mixed)
 
 
 def _drive_values(table: DriveTable, t: int) -> list[Cell]:
     """Of one instant; without time there is no work."""
     absent = ("time", "work") if table.time is None else ()
-    return [None if name in absent else float(getattr(table, name)[t]) for name in DRIVE]
+    return [None if name in absent else float(getattr(table, name)[t]) for name in DRIVE_COLUMNS]
 
 
 def beam_check_table(check: BeamCheck) -> Table:
     """Shear, moment and axial stresses along the cantilever pin."""
-    rows = zip(*(getattr(check, name) for name in BEAM), strict=True)
-    return Table.of("beam_check", BEAM, rows)
+    rows = zip(*(getattr(check, name) for name in BEAM_CHECK_COLUMNS), strict=True)
+    return Table.of("beam_check", BEAM_CHECK_COLUMNS, rows)
 
 
 def motion_check_table(check: MotionCheck) -> Table:
     """A joint's speed and acceleration, from the linkage and in closed form."""
-    rows = zip(*(getattr(check, name) for name in MOTION), strict=True)
-    return Table.of("motion_check", MOTION, rows)
+    rows = zip(*(getattr(check, name) for name in MOTION_CHECK_COLUMNS), strict=True)
+    return Table.of("motion_check", MOTION_CHECK_COLUMNS, rows)
 
 
 def leg_table(tables: tuple[LegTable, ...]) -> Table:

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from reports.data.changes import Change
+from reports.data.changes import Remedy
 from reports.data.results import Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
 
-INTRODUCTION = (
+REMEDIES_NOTE = (
     "Each of these alone brings the pin to the required factor in the worst of its cases, if "
     "nothing else is changed. Larger diameters, with bores and fillets, are estimated to a few per "
     "cent on one mesh, under the same loads."
 )
-CONTACT = (
+CONTACT_NOTE = (
     "In contact with lugs stress is not quite proportional to loads: take the load as an estimate."
 )
-BENEATH = "What lies beneath contact is larger than surface and section, and counts: {}."
-SAME = 1.0 - 1e-9
-SINGULAR = "Of singular rows the factor is reached only outside the excluded zones: first {}."
-REMEDIES = {
+BENEATH_NOTE = "What lies beneath contact is larger than surface and section, and counts: {}."
+ROUND_OFF_FACTOR = 1.0 - 1e-9
+SINGULAR_ROWS_NOTE = (
+    "Of singular rows the factor is reached only outside the excluded zones: first {}."
+)
+SINGULARITY_REMEDIES = {
     "sharp corner": "give the sharp corner a radius",
     "edge of a clamp": "replace the clamp by its hub, or by loads in equilibrium",
     "edge of a load": 'spread the load by distribution = "cosine", a pressure without such an edge',
@@ -53,18 +55,18 @@ def change_notes(results: Results) -> list[str]:
         if change.diameter_note:
             pins.setdefault(change.diameter_note, []).append(change.pin)
     notes = [f"{'Pins' if pin[1:] else 'Pin'} {', '.join(pin)}: {n}." for n, pin in pins.items()]
-    notes += [CONTACT] * any(not c.proportional for c in results.changes)
+    notes += [CONTACT_NOTE] * any(not c.proportional for c in results.changes)
     by_contact = [c.pin for c in results.changes if _by_contact(results, c)]
-    notes += [BENEATH.format(", ".join(by_contact))] * bool(by_contact)
+    notes += [BENEATH_NOTE.format(", ".join(by_contact))] * bool(by_contact)
     remedies = _remedies(results)
-    return notes + [SINGULAR.format("; ".join(remedies))] * bool(remedies)
+    return notes + [SINGULAR_ROWS_NOTE.format("; ".join(remedies))] * bool(remedies)
 
 
-def _by_contact(results: Results, change: Change) -> bool:
+def _by_contact(results: Results, change: Remedy) -> bool:
     """Whether what lies beneath contact says what is needed."""
     row = next(p for p in results.pins if (p.pin, p.case) == (change.pin, change.case))
     contact = row.places.contact if row.places else None
-    needed = SAME * change.yield_strength / change.required
+    needed = ROUND_OFF_FACTOR * change.yield_strength / change.required
     return contact is not None and contact.upper_end >= needed
 
 
@@ -72,15 +74,19 @@ def _remedies(results: Results) -> list[str]:
     """What each singularity that governs one of the rows needs."""
     rows = {(c.pin, c.case) for c in results.changes if c.singular}
     zones = [z for p in results.pins if (p.pin, p.case) in rows for z in p.singular_at if z.governs]
-    return [text for kind, text in REMEDIES.items() if any(z.kind.endswith(kind) for z in zones)]
+    return [
+        text
+        for kind, text in SINGULARITY_REMEDIES.items()
+        if any(z.kind.endswith(kind) for z in zones)
+    ]
 
 
-def _loads(change: Change) -> str:
+def _loads(change: Remedy) -> str:
     about = "" if change.proportional else "≈ "
     return f"{about}{engineering(change.load_factor, 3)}"
 
 
-def _time(change: Change) -> str:
+def _time(change: Remedy) -> str:
     if change.given_time is None or change.impulse_time is None:
         return DASH
     return f"{short(change.given_time)} → {engineering(change.impulse_time, 3)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from reports.data.envelope import EnvelopeCell, case_names, elsewhere, envelope
+from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note
 from reports.data.results import Results
 from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, finite
@@ -16,8 +16,8 @@ COLUMNS = (
     *("max_von_mises", "safety_factor", "utilisation_high", "outcome", "governs"),
     *("force_unit", "length_unit", "stress_unit"),
 )
-FULL = 1.0  # utilisation at which a cell has its full colour
-READING = (
+FULL_COLOUR_UTILISATION = 1.0  # utilisation at which a cell has its full colour
+ENVELOPE_NOTE = (
     "Utilisation of each pin in each case: required over actual factor of safety (1 where none is "
     "required), the upper end of a range. The worst case of each pin is framed. Forces, moments "
     "and stresses are in envelope.csv."
@@ -59,12 +59,16 @@ def matrix(results: Results) -> Matrix | None:
     cells = {(cell.result.pin, cell.result.case): cell for cell in envelope(results)}
     pins = list(dict.fromkeys(pin for pin, _ in cells))
     rows = [(case, [cells.get((pin, case)) for pin in pins]) for case in cases]
-    return Matrix(pins, rows, elsewhere(results))
+    return Matrix(pins, rows, omitted_note(results))
 
 
 def heat(cell: EnvelopeCell) -> float:
     """Share of a cell's full colour, in per cent."""
-    return 0.0 if cell.used is None else 100.0 * min(cell.used, FULL) / FULL
+    return (
+        0.0
+        if cell.used is None
+        else 100.0 * min(cell.used, FULL_COLOUR_UTILISATION) / FULL_COLOUR_UTILISATION
+    )
 
 
 def cell_text(cell: EnvelopeCell) -> str:

@@ -13,14 +13,14 @@ from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite
 from reports.tables.table import Table
 
-PROBABILITIES = ("10 %", "50 %", "90 %")
-METHODS = {
+LIFE_PROBABILITIES = ("10 %", "50 %", "90 %")
+METHOD_NAMES = {
     "signed-von-mises": "signed von Mises stress",
     "critical-plane": "Findley's critical plane",
     "fkm-p-ram": "P_RAM of the FKM guideline for local strains",
 }
-HISTORY = ("pin", "case", "time", "point", "von_mises", "signed")
-POINTS = ("pin", "point", "x", "y", "z", "chosen")
+HISTORY_COLUMNS = ("pin", "case", "time", "point", "von_mises", "signed")
+POINT_COLUMNS = ("pin", "point", "x", "y", "z", "chosen")
 COLUMNS = (
     *("pin", "point", "x", "y", "z", "method", "damage", "life", "life_10", "life_50", "life_90"),
     *("utilisation", "amplitude", "mean_stress", "note", "normal_x", "normal_y", "normal_z"),
@@ -31,8 +31,8 @@ COLUMNS = (
 def fatigue_tables(results: Results) -> list[Table]:
     """Histories, their points, and damage."""
     return [
-        Table.of("stress_history", HISTORY, _history(results)),
-        Table.of("critical_points", POINTS, _points(results)),
+        Table.of("stress_history", HISTORY_COLUMNS, _history(results)),
+        Table.of("critical_points", POINT_COLUMNS, _points(results)),
         Table.of("fatigue", COLUMNS, _rows(results.fatigue)),
     ]
 
@@ -55,7 +55,7 @@ def _rows(fatigue: Fatigue | None) -> Iterator[list[Cell]]:
     if fatigue is None:
         return
     for p in fatigue.points:
-        lives = p.lives or (None,) * len(PROBABILITIES)
+        lives = p.lives or (None,) * len(LIFE_PROBABILITIES)
         yield [
             *(p.pin, p.point, *p.location, p.method, p.damage, p.life, *lives),
             *(p.utilisation, p.amplitude, p.mean, p.note),
@@ -83,7 +83,7 @@ def fatigue_grid(results: Results) -> Grid | None:
     worst = worst_points(fatigue)
     scattered = any(p.lives for p in fatigue.points)
     instead = any(p.method != fatigue.method for p in worst)
-    head += [f"at {p}" for p in PROBABILITIES] if scattered else []
+    head += [f"at {p}" for p in LIFE_PROBABILITIES] if scattered else []
     head += ["utilisation"] if fatigue.life is not None else []
     head += [f"amplitude [{stress}]", f"mean [{stress}]"]
     head += ["method"] if instead else []
@@ -91,7 +91,7 @@ def fatigue_grid(results: Results) -> Grid | None:
     body = []
     for p in worst:
         least, most = ("≥ ", "≤ ") if p.pin in fatigue.not_decided else ("", "")
-        lives = [most + life_words(x) for x in p.lives] or [DASH] * len(PROBABILITIES)
+        lives = [most + life_words(x) for x in p.lives] or [DASH] * len(LIFE_PROBABILITIES)
         damage = least + _or_infinite(p.damage) if p.damage or least else "none"
         body.append(
             [
@@ -140,7 +140,7 @@ def fatigue_sentence(fatigue: Fatigue) -> str:
 
 
 def _worst(worst: PointFatigue, fatigue: Fatigue) -> str:
-    unit, method = fatigue.unit, METHODS[worst.method]
+    unit, method = fatigue.unit, METHOD_NAMES[worst.method]
     if not worst.damage:
         return f"Fatigue: no damage at any critical point{_elsewhere(fatigue)} ({method})."
     text = f"Fatigue: pin {worst.pin} reaches damage 1 after {life_words(worst.life)} {unit}s"

@@ -13,11 +13,11 @@ from reports.format.ranges import factor_range
 from reports.format.words import verdict_words
 from reports.tables.table import Table
 
-CHECK = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
+CHECK_FIELDS = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
 # The model's result for the same pin, with its verdict.
-MODEL = ("model", "max_von_mises", "safety_factor", "verdict")
-NUMERIC = ("stress", "strength", "factor", "time")
-HAND_CHECKS = (
+MODEL_FIELDS = ("model", "max_von_mises", "safety_factor", "verdict")
+NUMERIC_CHECK_COLUMNS = ("stress", "strength", "factor", "time")
+HAND_CHECKS_NOTE = (
     "Hand checks use nominal stresses: from beam theory or averaged over a section, without stress "
     "concentration at corners and edges. They cover the whole pin, including excluded zones such "
     "as "
@@ -27,9 +27,19 @@ HAND_CHECKS = (
 )
 
 
-ENDS = ("safety_factor_low", "safety_factor_high")  # of a singular row's factor
-ADDED = ("basis", "governs")  # later than the others, so last
-COLUMNS = ("pin", "case", "check", *CHECK[1:], *MODEL, "stress_unit", "time_unit", *ENDS, *ADDED)
+RANGE_END_COLUMNS = ("safety_factor_low", "safety_factor_high")  # of a singular row's factor
+LATER_CHECK_FIELDS = ("basis", "governs")  # later than the others, so last
+COLUMNS = (
+    "pin",
+    "case",
+    "check",
+    *CHECK_FIELDS[1:],
+    *MODEL_FIELDS,
+    "stress_unit",
+    "time_unit",
+    *RANGE_END_COLUMNS,
+    *LATER_CHECK_FIELDS,
+)
 
 
 def hand_check_rows(results: Results) -> Table:
@@ -44,7 +54,7 @@ def write_hand_checks(results: Results, directory: Path) -> None:
     if not checked:
         return
     units = results.units
-    parts = [f"# Hand checks: {markdown.escaped(results.title)}", HAND_CHECKS]
+    parts = [f"# Hand checks: {markdown.escaped(results.title)}", HAND_CHECKS_NOTE]
     for pin in checked:
         title, (head, body, numeric) = f"{pin.pin}, {pin.case}", hand_check_table(pin, units)
         parts += [f"## {markdown.escaped(title)}", markdown.table(head, body, numeric)]
@@ -71,7 +81,7 @@ def hand_check_table(pin: PinResult, units: Units) -> tuple[list[str], list[list
     rows = [_model(pin, units), *(_check(check) for check in pin.hand_checks)]
     names = list(headings)
     body = [[row[name] for name in names] for row in rows]
-    return list(headings.values()), body, [name in NUMERIC for name in names]
+    return list(headings.values()), body, [name in NUMERIC_CHECK_COLUMNS for name in names]
 
 
 def _model(pin: PinResult, units: Units) -> dict[str, str]:
@@ -108,9 +118,9 @@ def _check(check: HandCheck) -> dict[str, str]:
 
 def _rows(checked: list[PinResult], units: Units) -> Iterator[list[Cell]]:
     for pin in checked:
-        model = [getattr(pin, name) for name in MODEL]
+        model = [getattr(pin, name) for name in MODEL_FIELDS]
         for check in pin.hand_checks:
-            own = [getattr(check, name) for name in CHECK]
+            own = [getattr(check, name) for name in CHECK_FIELDS]
             ends = pin.safety_factor_interval or (None, None)
-            added = [getattr(check, name) for name in ADDED]
+            added = [getattr(check, name) for name in LATER_CHECK_FIELDS]
             yield [pin.pin, pin.case, *own, *model, units.stress, units.time, *ends, *added]

@@ -18,7 +18,7 @@ COLUMNS = (
     "pulse",
 )
 
-NOTE = (
+LANDING_NOTE = (
     "An unconverged row decides nothing. Factors of a singular row are those outside the excluded "
     "zones, over half and twice the excluded distance; they can show that a pin fails but not that "
     "it is safe."
@@ -38,7 +38,7 @@ def write_landing(results: Results, directory: Path) -> None:
         f"# Landing: safety factors over the impulse range\n\n{markdown.escaped(results.title)}",
         landing_tables(results),
         "All combinations are superposed from one solution per pin. The verdict is that of the "
-        f"case itself. {NOTE}",
+        f"case itself. {LANDING_NOTE}",
     ]
     (directory / "landing_range.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 

@@ -11,11 +11,11 @@ from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite
 from reports.tables.table import Table
 
-INTRODUCTION = (
+LIMIT_LOAD_NOTE = (
     "A pin whose safety factor is below one yields somewhere, which need not matter. It collapses "
     "when all its loads, in proportion, reach the limit load; below, it bends and stays bent."
 )
-LEFT_OUT = (
+LEFT_OUT_NOTE = (
     "Left out: fracture, buckling, large displacements, and what flow does to the pressures of "
     "lugs."
 )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from assess.strength.margin import RATIO, PinMargin
-from reports.data.governing import governing, not_made
+from assess.strength.margin import RATIO_DIMENSION, PinMargin
+from reports.data.governing import governing, skipped
 from reports.data.results import Results
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, finite, short
@@ -16,10 +16,11 @@ from reports.tables.table import Table
 COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
            "utilisation", "margin", "unit", "time", "basis", "not_made", "governs")  # fmt: skip
 
-SHOWN = {name: name for name in ("pin", "case", "check", "margin", "utilisation", "loads", "at",
-         "time", "demand", "allowable", "clause")}  # fmt: skip
-NUMERIC = ("time", "demand", "allowable", "utilisation", "margin")
-READING_MARGINS = (
+_SHOWN = ("pin", "case", "check", "margin", "utilisation", "loads", "at", "time", "demand",
+          "allowable", "clause")  # fmt: skip
+MARGIN_HEADINGS = {name: name for name in _SHOWN}
+NUMERIC_MARGIN_COLUMNS = ("time", "demand", "allowable", "utilisation", "margin")
+MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case beside the von Mises stress against yield, which the safety factors above judge. "
     "Checks against yield are made at limit load, those against rupture and collapse at "
@@ -27,13 +28,13 @@ READING_MARGINS = (
     "a pin whose joint was solved take the moments and forces of the joint model, unless the study "
     "asks for those of the formulas; checks for comparison govern nothing."
 )
-READING_ARMS = (
+BENDING_ARMS_NOTE = (
     "The largest bending moment along the pin, with the force of each link even over its band, "
     "as EN 1993-1-8 takes it, and concentrated at the band's middle, next to that of the joint "
     "model. Above 1, the formula is conservative."
 )
-ARMS = ("pin", "case", "time", "layout", "moment_even", "moment_concentrated", "moment_joint",
-        "joint_model", "moment_unit")  # fmt: skip
+BENDING_ARM_COLUMNS = ("pin", "case", "time", "layout", "moment_even", "moment_concentrated",
+                       "moment_joint", "joint_model", "moment_unit")  # fmt: skip
 
 
 def margins_table(results: Results) -> Table:
@@ -61,7 +62,9 @@ def _row(found: PinMargin, results: Results) -> dict[str, Any]:
         "factor": finite(m.factor),
         "utilisation": finite(m.utilisation),
         "margin": finite(m.margin),
-        "unit": m.dimension if m.dimension == RATIO else unit_name(m.dimension, results.units),
+        "unit": m.dimension
+        if m.dimension == RATIO_DIMENSION
+        else unit_name(m.dimension, results.units),
         "time": finite(m.time),
         "basis": m.basis,
         "not_made": f"needs {m.needs}" if m.needs else "",
@@ -84,7 +87,7 @@ def worst_grid(results: Results) -> Grid | None:
     rows = [_cells(found, results) for found in worst.values()]
     names = ("pin", "case", "check", "margin", "utilisation", "loads", "at", "clause")
     body = [[row[name] for name in names] for row in rows]
-    return Grid(list(names), body, [name in NUMERIC for name in names])
+    return Grid(list(names), body, [name in NUMERIC_MARGIN_COLUMNS for name in names])
 
 
 def margins_grid(results: Results, pin: str, case: str) -> Grid | None:
@@ -98,7 +101,7 @@ def not_made_words(results: Results) -> list[str]:
     """A line for everything that checks need and the study does not give, with these checks."""
     pins = {p.pin for p in results.pins}
     lines = []
-    for needs, of in not_made(results).items():
+    for needs, of in skipped(results).items():
         own = list(dict.fromkeys(m.pin for m in of))
         where = "" if len(own) == len(pins) else f" (pin{'s' * (len(own) > 1)} {', '.join(own)})"
         methods = "; ".join(dict.fromkeys(m.margin.method for m in of))
@@ -108,7 +111,7 @@ def not_made_words(results: Results) -> list[str]:
 
 def not_made_briefly(results: Results) -> str:
     """The same in a sentence without the checks; empty where all were made."""
-    every = not_made(results)
+    every = skipped(results)
     alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
     needs = ", ".join(alone)
     return f"Checks skipped, missing: {needs}." if needs else ""
@@ -121,7 +124,7 @@ def arms_table(results: Results) -> Table:
         [a.pin, a.case, a.time, a.layout, a.even, a.concentrated, a.joint, a.model, unit]
         for a in results.arms
     )
-    return Table.of("bending_arms", ARMS, rows)
+    return Table.of("bending_arms", BENDING_ARM_COLUMNS, rows)
 
 
 def arms_grid(results: Results) -> Grid | None:
@@ -146,10 +149,14 @@ def arms_grid(results: Results) -> Grid | None:
 def _grid(found: list[PinMargin], results: Results, without: tuple[str, ...] = ()) -> Grid | None:
     rows = [_cells(m, results) for m in found]
     empty = {name for name in ("at", "time") if all(row[name] == DASH for row in rows)}
-    names = [n for n in SHOWN if n not in without and n not in empty]
-    heads = {**SHOWN, "time": f"time [{results.units.time}]"}
+    names = [n for n in MARGIN_HEADINGS if n not in without and n not in empty]
+    heads = {**MARGIN_HEADINGS, "time": f"time [{results.units.time}]"}
     body = [[row[name] for name in names] for row in rows]
-    return Grid([heads[n] for n in names], body, [n in NUMERIC for n in names]) if body else None
+    return (
+        Grid([heads[n] for n in names], body, [n in NUMERIC_MARGIN_COLUMNS for n in names])
+        if body
+        else None
+    )
 
 
 def _signed(margin: float | None) -> str:
@@ -160,7 +167,7 @@ def _signed(margin: float | None) -> str:
 
 def _cells(found: PinMargin, results: Results) -> dict[str, str]:
     m = found.margin
-    unit = "" if m.dimension == RATIO else f" {unit_name(m.dimension, results.units)}"
+    unit = "" if m.dimension == RATIO_DIMENSION else f" {unit_name(m.dimension, results.units)}"
     used = None if m.utilisation is None else 100.0 * m.utilisation
     return {
         "pin": found.pin,

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from reports.data.decision import DEPENDS, limit, outcome, worst_first
-from reports.data.dependence import BENEATH
-from reports.data.envelope import elsewhere, in_detail
+from reports.data.dependence import BENEATH_CONTACT
+from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results, Units
 from reports.format.files import markdown
 from reports.format.numbers import DASH, engineering, finite, ratio, short
@@ -18,10 +18,10 @@ from reports.format.ranges import (
     utilisation_range,
 )
 from reports.format.words import (
-    BELOW_CONTACT,
-    JOINT,
-    MEANING,
-    READING,
+    BENEATH_CONTACT_NOTE,
+    JOINT_RANGE_NOTE,
+    RESULT_ROWS_NOTE,
+    VERDICT_MEANINGS,
     depends_words,
     headline,
     result_words,
@@ -49,7 +49,7 @@ COLUMNS = (
     "note",
 )
 # After the units, so that columns of earlier versions keep their positions.
-LATER = (
+LATER_COLUMNS = (
     "yields",
     *("max_von_mises_low", "max_von_mises_high", "safety_factor_low", "safety_factor_high"),
     *("error_mesh", "error_time", "error_series", "error_model"),
@@ -60,8 +60,8 @@ LATER = (
     *("governs", "surface", "section", "beneath", "beneath_error", "reach", "reach_required"),
     "length_unit",
 )
-TEXTS = ("pin", "case", "result", "governs", "verdict", "model")
-OVER_JOINT = "joint_high"  # in whose place the whole range is shown
+TEXT_COLUMNS = ("pin", "case", "result", "governs", "verdict", "model")
+JOINT_RANGE_COLUMN = "joint_high"  # in whose place the whole range is shown
 
 
 def safety_factor_rows(results: Results) -> list[Row]:
@@ -81,7 +81,7 @@ def _depends(pin: PinResult, units: Units) -> str | None:
     return depends_words(pin.depends_on, units) if outcome(pin) == DEPENDS else None
 
 
-def shown_rows(results: Results) -> list[Row]:
+def display_rows(results: Results) -> list[Row]:
     """The same for display, the worst first: text where a number may be an interval."""
     required = limit(results)
     return [
@@ -91,7 +91,7 @@ def shown_rows(results: Results) -> list[Row]:
             "error_estimate": error_range(pin),
             "safety_factor": factor_range(pin),
             "utilisation": utilisation_range(pin, required),
-            OVER_JOINT: joint_range(pin),
+            JOINT_RANGE_COLUMN: joint_range(pin),
         }
         for pin in worst_first(results)
     ]
@@ -159,7 +159,7 @@ def _places(pin: PinResult) -> Row:
         "section": finite(section.max_von_mises) if section else None,
         **{
             name: finite(getattr(contact, name)) if contact else None
-            for name in (BENEATH, "beneath_error", "reach", "reach_required")
+            for name in (BENEATH_CONTACT, "beneath_error", "reach", "reach_required")
         },
     }
 
@@ -183,21 +183,21 @@ def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
         "max_von_mises": f"max von Mises [{units.stress}]",
         "error_estimate": f"± [{units.stress}]",
         "governs": "at",
-        OVER_JOINT: f"joint [{units.stress}]",
-        BENEATH: f"beneath [{units.stress}]",
+        JOINT_RANGE_COLUMN: f"joint [{units.stress}]",
+        BENEATH_CONTACT: f"beneath [{units.stress}]",
         "time": f"time [{units.time}]",
         "verdict": "verdict",
         "model": "model",
     }
     empty = [
         k
-        for k in ("governs", OVER_JOINT, BENEATH, "time")
+        for k in ("governs", JOINT_RANGE_COLUMN, BENEATH_CONTACT, "time")
         if all(row[k] in (None, DASH) for row in rows)
     ]
     return {name: text for name, text in headings.items() if name not in empty}
 
 
-def shown(name: str, row: Row) -> str:
+def display_text(name: str, row: Row) -> str:
     """A value of a row for display: four digits, a dash for no value."""
     value = row[name]
     if name == "verdict":
@@ -214,9 +214,14 @@ def safety_factors_table(results: Results) -> Table:
     units = results.units
     return Table.of(
         "safety_factors",
-        (*COLUMNS, "stress_unit", "time_unit", *LATER),
+        (*COLUMNS, "stress_unit", "time_unit", *LATER_COLUMNS),
         (
-            [*(row[n] for n in COLUMNS), units.stress, units.time, *(row.get(n) for n in LATER)]
+            [
+                *(row[n] for n in COLUMNS),
+                units.stress,
+                units.time,
+                *(row.get(n) for n in LATER_COLUMNS),
+            ]
             for row in safety_factor_rows(results)
         ),
     )
@@ -229,20 +234,20 @@ def write_safety_factors(results: Results, directory: Path) -> None:
 
 
 def _markdown(everything: Results) -> str:
-    results = in_detail(everything)
-    rows = shown_rows(results)
+    results = detailed_rows(everything)
+    rows = display_rows(results)
     columns = shown_columns(rows, results)
     parts = [
         f"# Safety factors: {markdown.escaped(results.title)}",
         markdown.escaped(headline(everything)),
         markdown.table(
             tuple(columns.values()),
-            [[shown(name, row) for name in columns] for row in rows],
-            [name not in TEXTS for name in columns],
+            [[display_text(name, row) for name in columns] for row in rows],
+            [name not in TEXT_COLUMNS for name in columns],
         ),
-        *([rest] if (rest := elsewhere(everything)) else []),
+        *([rest] if (rest := omitted_note(everything)) else []),
         *reading(columns),
-        "\n".join(f"- {name}: {sentence}" for name, sentence in MEANING.items()),
+        "\n".join(f"- {name}: {sentence}" for name, sentence in VERDICT_MEANINGS.items()),
     ]
     if grid := published_maxima(results):
         parts += ["## Published maxima", markdown.table(grid.head, grid.body, grid.numeric)]
@@ -257,7 +262,11 @@ def _markdown(everything: Results) -> str:
 def reading(columns: Iterable[str]) -> list[str]:
     """How the table with these columns is to be read, a paragraph each."""
     names = tuple(columns)
-    return [READING, *[JOINT] * (OVER_JOINT in names), *[BELOW_CONTACT] * (BENEATH in names)]
+    return [
+        RESULT_ROWS_NOTE,
+        *[JOINT_RANGE_NOTE] * (JOINT_RANGE_COLUMN in names),
+        *[BENEATH_CONTACT_NOTE] * (BENEATH_CONTACT in names),
+    ]
 
 
 def _note(pin: PinResult) -> str:

@@ -12,23 +12,25 @@ from reports.tables.table import Table
 
 COLUMNS = ("pin", "case", "key", "value", "unit", "max_von_mises", "stress_per_unit",
            "safety_factor", "factor_per_unit", "step", "factor_with_step", "one_sided")  # fmt: skip
-MIXED = ("value", "stress_per_unit", "factor_per_unit", "step")
-NUMBERS = ("value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step")
-MOST = 8  # rows of a pin that are shown
-BRIEFLY = 3
-LEAST = 1e-3  # relative effect of what is shown
-INTRODUCTION = (
+MIXED_UNIT_COLUMNS = ("value", "stress_per_unit", "factor_per_unit", "step")
+NUMBER_FIELDS = ("value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step")
+MAX_SHOWN_ROWS = 8  # rows of a pin that are shown
+MAX_BRIEF_ROWS = 3
+MIN_SHOWN_EFFECT = 1e-3  # relative effect of what is shown
+SENSITIVITIES_NOTE = (
     "What a little more of one dimension does to the factor of safety while the loads stay as they "
     "are: derivatives of the reported maximum, times the step. The largest effects of each pin are "
     "shown; sensitivities.csv has all, those of loads and material too. Steps are small; what a "
     "large change does is not in proportion."
 )
-SINGULAR = (
+SINGULAR_SENSITIVITIES_NOTE = (
     "Of singular rows this is of the maximum outside the excluded zones, whose size goes with the "
     "diameter where they are."
 )
-CHANGING = "one-sided: {count} cells of contact are about to open or to close."
-ONE_SIDED = "one-sided: stress is as large, within its error, {places}, which may govern instead."
+CHANGING_CELLS_NOTE = "one-sided: {count} cells of contact are about to open or to close."
+ONE_SIDED_NOTE = (
+    "one-sided: stress is as large, within its error, {places}, which may govern instead."
+)
 
 
 def sensitivities_table(results: Results) -> Table:
@@ -38,7 +40,7 @@ def sensitivities_table(results: Results) -> Table:
         for found in results.sensitivities
         for row in _rows(found, results.units)
     ]
-    return Table.of("sensitivities", COLUMNS, rows, mixed=MIXED)
+    return Table.of("sensitivities", COLUMNS, rows, mixed=MIXED_UNIT_COLUMNS)
 
 
 def sensitivities_json(results: Results) -> list[dict[str, Any]]:
@@ -50,7 +52,7 @@ def sensitivities_json(results: Results) -> list[dict[str, Any]]:
             "max_von_mises": finite(found.maximum),
             "safety_factor": finite(found.factor),
             "parameters": [
-                {name: row[name] for name in ("key", "unit", *NUMBERS)}
+                {name: row[name] for name in ("key", "unit", *NUMBER_FIELDS)}
                 for row in _rows(found, results.units)
             ],
             "tied_places": [list(place) for place in found.tied_places],
@@ -93,7 +95,7 @@ def _unit(each: Sensitivity, units: Units) -> str:
     return unit_name(each.kind, units)
 
 
-def sensitivities_grid(results: Results, most: int = MOST) -> Grid | None:
+def sensitivities_grid(results: Results, most: int = MAX_SHOWN_ROWS) -> Grid | None:
     """A row for each dimension that matters, the largest effects of each pin first."""
     length, stress = results.units.length, results.units.stress
     rows = [
@@ -122,7 +124,7 @@ def sensitivities_grid(results: Results, most: int = MOST) -> Grid | None:
 
 def _shown(found: PinSensitivities) -> list[Sensitivity]:
     """Dimensions whose effect is not negligible."""
-    least = LEAST * found.maximum
+    least = MIN_SHOWN_EFFECT * found.maximum
     return [x for x in found.rows if x.kind == "length" and abs(x.stress * x.step) >= least]
 
 
@@ -144,15 +146,15 @@ def sensitivity_notes(results: Results) -> list[str]:
         ]
         places += [f"at t = {short(time)} {units.time}" for time in found.tied_times]
         if places and _shown(found):
-            notes.append(f"{who}, {ONE_SIDED.format(places=' and '.join(places))}")
+            notes.append(f"{who}, {ONE_SIDED_NOTE.format(places=' and '.join(places))}")
         if found.changing and _shown(found):
-            notes.append(f"{who}, {CHANGING.format(count=found.changing)}")
+            notes.append(f"{who}, {CHANGING_CELLS_NOTE.format(count=found.changing)}")
         if found.without:
             keys = ", ".join(key for key, _ in found.without)
             notes.append(f"{who}, no derivative by {keys}: {found.without[0][1]}.")
     rows = {(found.pin, found.case) for found in results.sensitivities if _shown(found)}
     if any((p.pin, p.case) in rows and p.verdict == "singular" for p in results.pins):
-        notes.append(SINGULAR)
+        notes.append(SINGULAR_SENSITIVITIES_NOTE)
     without: dict[str, list[str]] = {}
     for found in results.sensitivities:
         if found.note:

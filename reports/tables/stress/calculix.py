@@ -20,7 +20,7 @@ COLUMNS = (
     *("bending_moment", "bending_moment_calculix", "load_elsewhere", "mesh_change"),
     *("force_unit", "length_unit", "load_factor_same_mesh", "load_factor_calculix"),
 )
-LOADS = (
+OPINION_LOAD_COLUMNS = (
     *("pin", "case", "connection", "z_start", "z_end", "line_load", "line_load_calculix"),
     *("length_unit", "force_unit"),
 )
@@ -35,7 +35,7 @@ def opinion_tables(results: Results) -> list[Table]:
     """A row per pin and case, and the loads per length of those in contact."""
     return [
         Table.of("second_opinion", COLUMNS, _rows(results)),
-        Table.of("second_opinion_loads", LOADS, _loads(results)),
+        Table.of("second_opinion_loads", OPINION_LOAD_COLUMNS, _loads(results)),
     ]
 
 

@@ -11,16 +11,16 @@ from reports.format.files.csv import Cell
 from reports.format.numbers import finite
 from reports.tables.table import Table
 
-BANDS = (
+BAND_COLUMNS = (
     *("pin", "case", "connection", "force", "contact_angle", "mean_pressure", "couple"),
     *("clearance", "outer_diameter", "length_unit", "force_unit", "stress_unit"),
     "bearing_share",
 )
-LINES = (
+LINE_LOAD_COLUMNS = (
     *("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit"),
     *("z_start", "z_end"),
 )
-RANGES = (
+RANGE_COLUMNS = (
     *("pin", "case", "what", "value", "max_von_mises", "stress_unit"),
     *("length", "length_unit", "model", "lugs", "max_von_mises_low", "max_von_mises_high"),
     "beneath",
@@ -32,9 +32,9 @@ def joint_tables(results: Results) -> list[Table]:
     joint changed.
     """
     return [
-        Table.of("joint_bands", BANDS, _bands(results)),
-        Table.of("line_loads", LINES, _lines(results)),
-        Table.of("joint_range", RANGES, _ranges(results)),
+        Table.of("joint_bands", BAND_COLUMNS, _bands(results)),
+        Table.of("line_loads", LINE_LOAD_COLUMNS, _lines(results)),
+        Table.of("joint_range", RANGE_COLUMNS, _ranges(results)),
     ]
 
 

@@ -11,13 +11,13 @@ from reports.format.files.csv import Cell
 from reports.format.numbers import finite
 from reports.tables.table import Table
 
-PLACES = (
+PLACE_COLUMNS = (
     *("pin", "case", "place", "governs", "max_von_mises", "error_estimate", "safety_factor"),
     *("verdict", "x", "y", "z", "time", "axial_force", "shear_force", "bending_moment", "torque"),
     *("plastic_utilisation", "reach", "reach_required"),
     *("length_unit", "force_unit", "stress_unit", "time_unit"),
 )
-EDGES = (
+EDGE_COLUMNS = (
     *("pin", "case", "connection", "end", "K", "exponent", "yield_distance", "max_pressure"),
     *("max_von_mises", "error_estimate", "length_unit", "stress_unit"),
 )
@@ -105,8 +105,8 @@ def place_tables(results: Results) -> list[Table]:
     edges of lugs.
     """
     return [
-        Table.of("places", PLACES, _places(results)),
-        Table.of("contact_edges", EDGES, _edges(results)),
+        Table.of("places", PLACE_COLUMNS, _places(results)),
+        Table.of("contact_edges", EDGE_COLUMNS, _edges(results)),
     ]
 
 

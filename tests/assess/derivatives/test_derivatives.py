@@ -15,12 +15,12 @@ from assess.derivatives.records import Derivatives, SolvedCase
 from assess.derivatives.virtual_work import shape_gradient, work
 from benchmarks.pins.derivatives import by_differences, moved_maximum, richardson
 from benchmarks.random_pins import trials
-from fea.beam.stress_concentration import BENDING, shoulder_factor
+from fea.beam.stress_concentration import BENDING_FIT, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.assembly import Section, elasticity
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.solve.refine import STEP, singularities_of
+from fea.solve.refine import MESH_RATIO, singularities_of
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import Pin, Segment
 from geometry.mesh.moved.outline_motion import OtherShapeError, OutlineNodes, Reach
@@ -79,8 +79,8 @@ CASES: Mapping[str, tuple[Pin, tuple[str, ...], PinLoads]] = {
 def solved(pin: Pin, clamps: tuple[str, ...], loads: PinLoads, level: int = 0) -> SolvedCase:
     zones = singularities_of(pin, STEEL, clamps, (loads,))
     problem = SectionProblem(pin, STEEL, clamps, (loads,), zones)
-    before = [harmonic_result(harmonic_solution(problem, 0, STEP), zones, loads)]
-    section = harmonic_solution(problem, level, STEP, before if level else ())
+    before = [harmonic_result(harmonic_solution(problem, 0, MESH_RATIO), zones, loads)]
+    section = harmonic_solution(problem, level, MESH_RATIO, before if level else ())
     return SolvedCase(pin, STEEL, clamps, loads, section, zones)
 
 
@@ -224,7 +224,7 @@ def test_the_radius_of_a_fillet_is_petersons() -> None:
     nominal = 32.0 * M / (np.pi * d**3)
 
     def peterson(r: float) -> float:
-        return nominal * (shoulder_factor(BENDING, D, d, r) or 0.0)
+        return nominal * (shoulder_factor(BENDING_FIT, D, d, r) or 0.0)
 
     slope = (peterson(1.02 * rho) - peterson(0.98 * rho)) / (0.04 * rho)
     assert ours.by_dimension["fillet"] == pytest.approx(slope, rel=0.1)

@@ -20,14 +20,14 @@ from benchmarks.joints.joint_derivatives import (
 )
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Asked
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
-from fea.support.contact.solve_joint import Cells
+from fea.solve.requirement import Requirement
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import Pin, Segment
 from tests.fea.support.contact.test_solve_in_lugs import LUGS, PIN, STEADY, STEEL
 
-ROUGH = Cells(4, 24, 8)
+ROUGH = Resolution(4, 24, 8)
 BRONZE, ALUMINIUM = Material("bronze", 110e9, 0.34), Material("aluminium", 70e9, 0.33)
 GUIDED = tuple(replace(lug, tilt=math.inf) for lug in LUGS)
 LOOSE = tuple(replace(lug, clearance=2e-5) for lug in GUIDED)
@@ -177,7 +177,7 @@ def test_of_a_solution_by_forces_clearances_and_shape() -> None:
     what is symmetric there is none. By the diameter it is as between two other solutions.
     """
     lugs = tuple(replace(lug, clearance=1e-5) for lug in GUIDED)
-    (made,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), Asked(0.1))
+    (made,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (STEADY,)), Requirement(0.1))
     solution, (solved, model, links) = made.solution, solved_in_lugs(made, STEEL)
     every = tuple(parameters(PIN, STEEL, lugs))
     ours = joint_derivatives(solved, model, links, every)
@@ -195,7 +195,7 @@ def test_of_a_solution_by_forces_clearances_and_shape() -> None:
     stress = []
     for times in (1.02, 0.98):
         pin, _, same = wide.changed(times * wide.value)
-        (other,) = solve_in_lugs(InLugs(pin, STEEL, same, (STEADY,)), Asked(0.1))
+        (other,) = solve_in_lugs(PinProblem(pin, STEEL, same, (STEADY,)), Requirement(0.1))
         stress.append(other.solution.peak.max_von_mises or 0.0)
     slope = (stress[0] - stress[1]) / (0.04 * wide.value)
     assert ours.by_parameter[wide.key] == pytest.approx(slope, rel=0.02)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from assess.opinion.calculix import (
-    JOB,
+    JOB_NAME,
     CalculixError,
     displacements,
     installed,
@@ -119,8 +119,8 @@ def test_an_error_that_calculix_only_prints_is_told(tmp_path: Path) -> None:
 def test_results_that_are_missing_or_not_finite_are_told(tmp_path: Path) -> None:
     with raises(CalculixError, "unreadable-results"):
         solved(tmp_path, PRINTED)
-    (tmp_path / f"{JOB}.dat").write_text("\n displacements\n\n 1 NaN 0. 0.\n")
-    (tmp_path / f"{JOB}.frd").write_text(
+    (tmp_path / f"{JOB_NAME}.dat").write_text("\n displacements\n\n 1 NaN 0. 0.\n")
+    (tmp_path / f"{JOB_NAME}.frd").write_text(
         " -4  STRESS      6    1\n -1         1" + 6 * " 1.00000E+00" + "\n -3\n"
     )
     with raises(CalculixError, "not-finite"):
@@ -155,7 +155,7 @@ def test_what_a_run_printed_and_wrote_is_read(
         "echo Total CalculiX Time: 2.5\n"
     )
     (tmp_path / "ccx").chmod(0o755)
-    (tmp_path / f"{JOB}.inp").touch()
+    (tmp_path / f"{JOB_NAME}.inp").touch()
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
     assert installed()
     printed = run(tmp_path)

@@ -23,10 +23,10 @@ from assess.opinion.calculix_joint_deck import JointDeck, surface_weights
 from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pin_mesh
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
@@ -328,15 +328,15 @@ def test_calculix_agrees_on_a_clevis(clearance: float) -> None:
     pin, lugs = clevis(clearance)
     loads = PinLoads("pull", ("L", "M", "R"), FORK @ TURN)
     theirs = joint_opinion(pin, STEEL, lugs, loads, Fineness(rings=6, sectors=16, eye=2))
-    ours = JointModel(pin, STEEL, lugs, Cells(rings=6)).solve(loads)
+    ours = ContactModel(pin, STEEL, lugs, Resolution(rings=6)).solve(loads)
     middle = np.array([0.023])
     mine, other = ours.bending_moment(middle)[0], theirs.bending_moment(middle)
     assert other == pytest.approx(mine, rel=0.03)
     apart = np.abs(theirs.force - ours.loads.forces[0, :, :2])
     assert apart.max() < 0.08 * np.abs(theirs.force).max()
-    asked = Asked(model="harmonic", meshes=2)
+    asked = Requirement(model="harmonic", meshes=2)
     answer = solve_pin(ours.pin, STEEL, (), (ours.loads,), asked)[0].answer
-    assert isinstance(answer, HarmonicAnswer)
+    assert isinstance(answer, HarmonicField)
     fields, angle = answer.fields, math.atan2(0.8, 0.6)
     near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - 0.023).argmin()
     own = Circumference(fields, ours.loads).envelope(np.array([near]), np.array([angle]))

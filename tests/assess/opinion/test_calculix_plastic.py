@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from assess.opinion.calculix_plastic import factor_reached, limit_opinion
-from assess.opinion.opinions import SAME_LIMIT
+from assess.opinion.opinions import MAX_LIMIT_LOAD_DIFFERENCE
 from assess.plastic.pin_body import acting_at, pin_body
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
@@ -28,7 +28,7 @@ def test_an_opinion_on_a_limit_load() -> None:
     pin = Pin("p", parts, fillet=0.05 * D)
     loads = PinLoads("c", ("a",), np.array([[[600.0, 800.0, 0.0]]]))
     found = limit_opinion(pin, STEEL, ("start",), loads)
-    assert found.difference == pytest.approx(0.0, abs=SAME_LIMIT)
+    assert found.difference == pytest.approx(0.0, abs=MAX_LIMIT_LOAD_DIFFERENCE)
     assert not found.complaint
     assert "limit load is" in replace(found, theirs=1.1 * (found.ours or 0.0)).complaint
 

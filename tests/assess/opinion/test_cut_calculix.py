@@ -8,7 +8,7 @@ import pytest
 from benchmarks.cuts.cut_calculix import in_calculix
 from benchmarks.random_pins import STEEL
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
 D = 0.02
@@ -32,7 +32,7 @@ def test_a_hole_between_two_clamps(z: float) -> None:
     pin = CutPin(TWICE, (Hole(z, 0.006, 0.3),))
     loads = PinLoads("pull", ("B",), np.array([[[0.0, 0.0, 40e3]]]))
     clamps = ("start", "end")
-    (ours,) = solve_pin(pin, STEEL, clamps, (loads,), Asked(0.01))
+    (ours,) = solve_pin(pin, STEEL, clamps, (loads,), Requirement(0.01))
     assert ours.peak.model == "harmonic+local"
     theirs = in_calculix(pin, clamps, loads, 2.0**0.5)
     assert ours.peak.max_von_mises == pytest.approx(theirs.maximum, rel=0.06)

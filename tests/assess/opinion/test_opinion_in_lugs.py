@@ -10,16 +10,21 @@ import pytest
 
 from assess.opinion import calculix_in_lugs
 from assess.opinion.calculix import CalculixError
-from assess.opinion.calculix_in_lugs import HALF, Seated, across, opinion_in_lugs
+from assess.opinion.calculix_in_lugs import (
+    HALF_MODEL_MESHES,
+    PinInLugs,
+    opinion_in_lugs,
+    transverse,
+)
 from assess.opinion.calculix_joint import JointOpinion, edges, joint_deck
 from assess.opinion.calculix_joint_mesh import Fineness, pin_mesh
 from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.support.contact.records import BandContact, JointResult
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
@@ -30,7 +35,7 @@ BRONZE = Material("bronze", 100e9, 0.34)
 TWO = Pin("P", tuple(Segment(0.01, D, connection=name) for name in "AB"))
 AXIAL = np.array([0.0, 0.0, 20.0])
 APART = PinLoads("pull", ("A", "B"), np.array([[[-F, 0.0, 0.0], [F, 0.0, 0.0]]]))
-SEATED = Seated(TWO, STEEL, (Lug("A", 0.05, STEEL), Lug("B", 0.05, STEEL)))
+SEATED = PinInLugs(TWO, STEEL, (Lug("A", 0.05, STEEL), Lug("B", 0.05, STEEL)))
 
 BAND = BandOpinion("A", (0.0, 1.0, 3.0), (10.0, 20.0), (14.0, 18.0))
 CONTACT = ContactOpinion((BAND,), 100.0, 103.0, 900, 0.02, 0.1)
@@ -64,7 +69,7 @@ def test_what_is_beyond_its_limit_is_complained_of() -> None:
 
 def test_forces_across_are_balanced_and_the_rest_is_small_or_refused() -> None:
     loads = replace(APART, forces=APART.forces + AXIAL)
-    found = across(SEATED, replace(loads, body=np.array([0.0, 9.8, 0.0])))
+    found = transverse(SEATED, replace(loads, body=np.array([0.0, 9.8, 0.0])))
     assert found.surfaces == ("A", "B")
     assert found.forces[0] == pytest.approx(APART.forces[0])
     assert not found.body.any()
@@ -74,16 +79,16 @@ def test_forces_across_are_balanced_and_the_rest_is_small_or_refused() -> None:
         replace(APART, body=np.array([0.0, 3e3, 0.0])),
     ):
         with raises(ArgumentError, "other-loads"):
-            across(SEATED, wrong)
+            transverse(SEATED, wrong)
 
 
 def test_lugs_that_calculix_has_no_model_of() -> None:
     tight = replace(SEATED, lugs=(replace(SEATED.lugs[0], clearance=-1e-5), SEATED.lugs[1]))
     with raises(ArgumentError, "interference", "A"):
-        across(tight, APART)
+        transverse(tight, APART)
     held = replace(SEATED, lugs=(*SEATED.lugs, Lug("wall", 0.05, STEEL)))
     with raises(ArgumentError, "structure", "wall"):
-        across(held, APART)
+        transverse(held, APART)
 
 
 def test_a_bushing_is_a_layer_of_its_own_material() -> None:
@@ -125,7 +130,7 @@ def stand_in(
     )
 
 
-PEAK = Peak("P", "pull", "harmonic", "converged", "", 5e6, 1e5, (0.01, 0.0, 0.004), APART)
+PEAK = Maximum("P", "pull", "harmonic", "converged", "", 5e6, 1e5, (0.01, 0.0, 0.004), APART)
 JOINT = JointResult(
     "contact", (band("A", (4e6, 4e6, 6e6, 6e6), 0.0), band("B", (5e6,), 0.01)), 260.0, ()
 )
@@ -146,8 +151,10 @@ def test_our_loads_are_spread_over_the_rings_of_calculix(monkeypatch: pytest.Mon
     assert other.ours == pytest.approx(other.theirs)
     assert one.ends == pytest.approx((0.0, 0.005, 0.01))
     assert found.contact.moment == pytest.approx(F * 0.01)
-    assert found.contact.stress_change == pytest.approx(HALF[1].rings / HALF[0].rings - 1.0)
-    assert found.theirs == pytest.approx(1e6 * HALF[1].rings)
+    assert found.contact.stress_change == pytest.approx(
+        HALF_MODEL_MESHES[1].rings / HALF_MODEL_MESHES[0].rings - 1.0
+    )
+    assert found.theirs == pytest.approx(1e6 * HALF_MODEL_MESHES[1].rings)
     assert found.unknowns == 7
     assert len(told) == 2
 
@@ -178,16 +185,16 @@ def test_calculix_agrees_on_a_clevis_with_a_bushing() -> None:
     plain = tuple(Lug(name, 0.05, STEEL, tilt=66e3) for name in "LMR")
     soft = Bushing(0.004, Material("plastic", 10e9, 0.35))
     lugs = (plain[0], replace(plain[1], bushing=soft, tilt=math.inf), plain[2])
-    given = InLugs(pin, STEEL, lugs, (PinLoads("pull", ("L", "M", "R"), fork),))
-    (solved,) = solve_in_lugs(given, Asked(0.1))
+    given = PinProblem(pin, STEEL, lugs, (PinLoads("pull", ("L", "M", "R"), fork),))
+    (solved,) = solve_in_lugs(given, Requirement(0.1))
     assert solved.joint is not None
-    seated, peak = Seated(pin, STEEL, lugs), solved.solution.peak
+    seated, peak = PinInLugs(pin, STEEL, lugs), solved.solution.peak
     coarse = Fineness(rings=4, sectors=16, layers=1, eye=1), Fineness(rings=4, sectors=16, eye=2)
     found = opinion_in_lugs(seated, peak, solved.joint, meshes=coarse)
     assert found.complaint == ""
     assert found.contact is not None
     assert abs(found.contact.moment_difference) < 0.05
-    (without,) = solve_in_lugs(replace(given, lugs=plain), Asked(0.1))
+    (without,) = solve_in_lugs(replace(given, lugs=plain), Requirement(0.1))
     assert without.joint is not None
     assert without.joint.bending_moment is not None
     assert abs(found.contact.moment / without.joint.bending_moment - 1.0) > 0.1

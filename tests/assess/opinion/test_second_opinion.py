@@ -12,10 +12,10 @@ from assess.opinion import calculix
 from assess.opinion.calculix_compare import _outside, second_opinions
 from assess.opinion.opinions import Opinion
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.solid.evaluate import solid_solution
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import CutPin, Flat, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize
 from tests.support.pins import calculix_stand_in
@@ -48,14 +48,14 @@ def test_a_failure_of_calculix_is_in_the_opinion(
     (tmp_path / "ccx").write_text("#!/bin/sh\necho '*ERROR in nonsense'\n")
     (tmp_path / "ccx").chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:/bin:/usr/bin")
-    peak = Peak("P", "up", "beam", "converged", "", 1e8, 1e6, governing=FIRST)
+    peak = Maximum("P", "up", "beam", "converged", "", 1e8, 1e6, governing=FIRST)
     (opinion,) = second_opinions(STUB, steel, ("start",), (UP,), (peak,), 0.1)
     assert opinion.complaint == "ccx failed: *ERROR in nonsense"
     assert opinion.theirs is None
 
 
 def test_a_pin_that_is_not_held_has_no_opinion(cantilever_pin: Pin, steel: Material) -> None:
-    peak = Peak("P", "up", "auto", "rigid", "nothing holds it")
+    peak = Maximum("P", "up", "auto", "rigid", "nothing holds it")
     assert second_opinions(cantilever_pin, steel, (), (UP,), (peak,), 0.1) == ()
 
 
@@ -70,8 +70,8 @@ def test_another_program_on_our_deck_agrees_on_a_clamped_pin(steel: Material) ->
     instant that is asked for, whichever model answered.
     """
     peaks = (
-        Peak("P", "up", "harmonic", "converged", "", 5e6, 1e6, governing=UP.at(np.array([1]))),
-        Peak("P", "again", "solid", "converged", "", 5e6, 1e6, governing=FIRST),
+        Maximum("P", "up", "harmonic", "converged", "", 5e6, 1e6, governing=UP.at(np.array([1]))),
+        Maximum("P", "again", "solid", "converged", "", 5e6, 1e6, governing=FIRST),
     )
     cases = (UP, replace(UP, case="again"))
     opinions = second_opinions(STUB, steel, ("start",), cases, peaks, 0.1)
@@ -90,7 +90,7 @@ def test_another_program_agrees_on_a_pin_that_nothing_holds(steel: Material) -> 
     pin = Pin("P", tuple(Segment(0.005, 0.02, connection=c) for c in "ABC"))
     forces = np.array([[[0.0, 1e3, 0.0], [0.0, -2e3, 0.0], [0.0, 1e3, 0.0]]])
     loads = PinLoads("up", ("A", "B", "C"), forces)
-    peak = Peak("P", "up", "harmonic", "converged", "", 1.5e7, 1e6, governing=loads)
+    peak = Maximum("P", "up", "harmonic", "converged", "", 1.5e7, 1e6, governing=loads)
     (one,) = second_opinions(pin, steel, (), (loads,), (peak,), 0.1)
     assert one.displacement is not None
     assert one.displacement < 2e-6
@@ -120,7 +120,7 @@ def test_nodes_that_are_missing_are_told(steel: Material, monkeypatch: pytest.Mo
         return "Total CalculiX Time: 0.5\n"
 
     monkeypatch.setattr(calculix, "run", short)
-    peak = Peak("P", "up", "harmonic", "converged", "", 1e8, 1e6, governing=FIRST)
+    peak = Maximum("P", "up", "harmonic", "converged", "", 1e8, 1e6, governing=FIRST)
     (one,) = second_opinions(STUB, steel, ("start",), (UP,), (peak,), 0.1)
     assert one.complaint.startswith("ccx did not write results for all ")
 
@@ -128,7 +128,7 @@ def test_nodes_that_are_missing_are_told(steel: Material, monkeypatch: pytest.Mo
 @pytest.mark.peers
 def test_calculix_agrees_on_a_clamped_pin(cantilever_pin: Pin, steel: Material) -> None:
     """At the governing instant, the second."""
-    (solved,) = solve_pin(cantilever_pin, steel, ("start",), (UP,), Asked(0.05, "harmonic"))
+    (solved,) = solve_pin(cantilever_pin, steel, ("start",), (UP,), Requirement(0.05, "harmonic"))
     assert solved.instant == 1
     (opinion,) = second_opinions(cantilever_pin, steel, ("start",), (UP,), (solved.peak,), 0.1)
     assert opinion.complaint == ""
@@ -150,7 +150,7 @@ def test_calculix_agrees_on_a_pin_that_nothing_holds(steel: Material) -> None:
     )
     forces = np.array([[[0.0, 1e3, 0.0], [0.0, -2e3, 0.0], [0.0, 1e3, 0.0]]])
     loads = PinLoads("up", ("A", "B", "C"), forces, distribution="cosine")
-    (solved,) = solve_pin(pin, steel, (), (loads,), Asked(0.05))
+    (solved,) = solve_pin(pin, steel, (), (loads,), Requirement(0.05))
     (opinion,) = second_opinions(pin, steel, (), (loads,), (solved.peak,), 0.1)
     assert opinion.complaint == ""
     assert opinion.displacement is not None

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from assess.plastic.hinge import ROOM, beam_bounds
+from assess.plastic.hinge import MIN_HINGE_DISTANCE, beam_bounds
 from assess.plastic.solve import limit_load
 from fea.beam.round_section import Circle
 from fea.core.pin_loads import PinLoads
@@ -40,7 +40,7 @@ def test_a_long_cantilever_bends_and_a_short_one_slips() -> None:
     pin, loads = _pushed(9.75, 0.5)
     long = beam_bounds(pin, STEEL, ("start",), loads)
     assert long.lower[0] < MP / (10.0 * D) < long.upper[0]
-    assert long.upper[0] == pytest.approx(MP / ((10.0 - ROOM) * D), rel=1e-2)
+    assert long.upper[0] == pytest.approx(MP / ((10.0 - MIN_HINGE_DISTANCE) * D), rel=1e-2)
     pin, loads = _pushed(0.2, 0.5)
     short = beam_bounds(pin, STEEL, ("start",), loads)
     assert short.upper[0] == pytest.approx(VP, rel=1e-9)

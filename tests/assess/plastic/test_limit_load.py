@@ -11,10 +11,10 @@ from assess.plastic.flow import FlowRule
 from assess.plastic.flow_field import flow_field
 from assess.plastic.limit_load import bracket, limit_on_mesh
 from assess.plastic.mechanism import isochoric, upper_bound, work_of_flow
-from assess.plastic.pin_body import acting_at, finer, hexahedral, pin_body, plane_of
-from assess.plastic.solve import TETRAHEDRA, body_on, limit_load
+from assess.plastic.pin_body import acting_at, hexahedral, pin_body, plane_of, refine
+from assess.plastic.solve import TETRAHEDRA_NOTE, body_on, limit_load
 from fea.core.material import Material
-from fea.core.pin_loads import Amounts, PinLoads, UnitLoad
+from fea.core.pin_loads import LoadAmounts, PinLoads, UnitLoad
 from fea.core.tractions import tractions_of
 from geometry import CutPin, Hole, Pin, Segment
 from geometry.mesh.hexahedra import HexSize, hexahedra
@@ -88,7 +88,7 @@ def test_patch_of_distorted_elements_flows_uniformly(
 @pytest.mark.parametrize("part", [0.95, 1.1])
 def test_newton_converges_quadratically(monkeypatch: pytest.MonkeyPatch, part: float) -> None:
     """Each residual is below three times the square of the one before, down to round-off."""
-    monkeypatch.setattr(path, "TOLERANCE", 1e-10)
+    monkeypatch.setattr(path, "RESIDUAL_TOLERANCE", 1e-10)
     made = pin_body(bar(), RULE, (), acting_at(couples(1), 0), COARSE)
     along = path.EquilibriumPath(made.body, made.forces)
     work = part * along.compliance * 1.7 * elastic_moment()
@@ -125,7 +125,7 @@ def test_the_upper_bound_holds_for_mechanisms_whose_volume_changes() -> None:
 
 def test_a_mechanism_loses_its_change_of_volume_and_keeps_its_power() -> None:
     made = pin_body(bar(0.5), RULE, (), acting_at(couples(1), 0), COARSE)
-    fine = finer(made.body.elements).elements
+    fine = refine(made.body.elements).elements
     found = limit(bar(0.5), couples(1), COARSE).last.unknowns
     other = isochoric(made.body, made.forces, fine, found)
     assert made.forces @ other == pytest.approx(made.forces @ found, rel=1e-9)
@@ -220,7 +220,7 @@ def test_pins_that_need_tetrahedra_are_refused_with_the_reason() -> None:
     pin, loads = _cantilever()
     cut = CutPin(pin, (Hole(D, D / 4.0),))
     found = limit_load(cut, STEEL, ("start",), loads)
-    assert (found.method, found.note) == ("none", TETRAHEDRA)
+    assert (found.method, found.note) == ("none", TETRAHEDRA_NOTE)
 
 
 def test_the_field_of_flow_is_in_the_axes_of_the_pin() -> None:
@@ -228,7 +228,7 @@ def test_the_field_of_flow_is_in_the_axes_of_the_pin() -> None:
     pin, loads = _cantilever()
     aslant = loads.turned(0.4)
     made = body_on(pin, RULE, ("start",), aslant, COARSE)
-    found = limit_on_mesh(made.body, made.forces, finer(made.body.elements))
+    found = limit_on_mesh(made.body, made.forces, refine(made.body.elements))
     field = flow_field(made, found.last, 0.4)
     tip = field.displacement[field.points[:, 2].argmax()]
     assert math.atan2(tip[1], tip[0]) == pytest.approx(0.4, abs=1e-2)
@@ -243,7 +243,7 @@ def test_hardening_raises_the_limit_to_that_of_the_last_stress() -> None:
     pin, loads = bar(), couples(1)
     hard = FlowRule(Material("steel", 200e9, 0.3, None, YIELD, hardening=((1e-3, 1.2 * YIELD),)))
     made = pin_body(pin, hard, (), acting_at(loads, 0), COARSE)
-    found = limit_on_mesh(made.body, made.forces, finer(made.body.elements))
+    found = limit_on_mesh(made.body, made.forces, refine(made.body.elements))
     assert found.reached == pytest.approx(1.2 * 1.69765 * elastic_moment(), rel=2e-2)
 
 
@@ -259,7 +259,7 @@ def test_pressures_of_contact_are_loads_like_others() -> None:
         size = -float(tractions_of(whole, unit)[0].mean[0])
         on_rings[UnitLoad("", "pressure", unit.n, (("a", size), ("b", size)))] = both
     found = []
-    for pin, loads in ((whole, band), (cut, Amounts("c", on_rings, 1))):
+    for pin, loads in ((whole, band), (cut, LoadAmounts("c", on_rings, 1))):
         turned = acting_at(loads, 0, -plane_of(loads, 0))
         made = pin_body(pin, RULE, ("start",), turned, COARSE)
         assert (made.sector.quarters, made.sector.mirror) == (2, True)

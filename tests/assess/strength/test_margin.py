@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from assess.strength.margin import Margin, not_made
+from assess.strength.margin import Margin, skipped
 
 
 def test_margin_and_utilisation() -> None:
@@ -18,6 +18,6 @@ def test_margin_and_utilisation() -> None:
 def test_no_demand_has_no_end_and_no_strength_no_margin() -> None:
     assert Margin("shear", "", "limit", 0.0, 1.0, 1.0).margin == math.inf
     assert Margin("shear", "", "limit", 1.0, 0.0, 1.0).margin == -1.0
-    missing = not_made("shear", "", "limit", 1.0, "material.steel.shear_strength")
+    missing = skipped("shear", "", "limit", 1.0, "material.steel.shear_strength")
     assert missing.margin is None
     assert missing.utilisation is None

@@ -28,11 +28,11 @@ from assess.strength.model_stress import model_margins
 from assess.strength.pin_checks import formula_margins, pin_checks
 from assess.strength.plastic_bending import plastic_shear
 from assess.strength.section_forces import of_joint, section_forces
-from assess.strength.section_stress import OF_JOINT, bending_check
+from assess.strength.section_stress import JOINT_MODEL_BENDING, bending_check
 from assess.strength.situation import LoadFactors, Situation, with_supports
 from fea.beam.round_section import Circle
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.records import JointForces
 from fea.support.lugs.lug import Lug
@@ -316,7 +316,7 @@ def test_a_shoulder_is_checked_on_both_sides() -> None:
     moment, none = np.array([[0.0, 100.0, 0.0]]), np.zeros((1, 0, 2))
     along = JointForces(z, None, np.zeros((1, 3)), moment, (), none)
     s = replace(in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0), pin=pin)
-    found = bending_check(s, of_joint(s, along), OF_JOINT)
+    found = bending_check(s, of_joint(s, along), JOINT_MODEL_BENDING)
     assert found.stress == pytest.approx(100.0 / (math.pi / 32.0 * 0.02**3))
     assert found.at == "B"
 
@@ -346,12 +346,12 @@ def test_a_limit_load_is_a_margin_at_ultimate_load() -> None:
 @pytest.mark.parametrize(
     ("peak", "demand"),
     [
-        (Peak("P", "c", "beam", "converged", "", 100e6, 2e6), 102e6),
-        (Peak("P", "c", "harmonic", "singular", "", 100e6, 20e6, interval=(90e6, 120e6)), 120e6),
-        (Peak("P", "c", "solid", "rigid", ""), None),
+        (Maximum("P", "c", "beam", "converged", "", 100e6, 2e6), 102e6),
+        (Maximum("P", "c", "harmonic", "singular", "", 100e6, 20e6, interval=(90e6, 120e6)), 120e6),
+        (Maximum("P", "c", "solid", "rigid", ""), None),
     ],
 )
-def test_stress_of_the_model_with_its_error(peak: Peak, demand: float | None) -> None:
+def test_stress_of_the_model_with_its_error(peak: Maximum, demand: float | None) -> None:
     yields, ruptures = model_margins(peak, S235, LoadFactors())
     assert yields.demand == ruptures.demand == demand
     if demand is None:

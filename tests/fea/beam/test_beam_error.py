@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from fea.beam.error_model import AT_CLAMPS, beam_estimate
+from fea.beam.error_model import CLAMP_EDGE_REMARK, beam_estimate
 from fea.beam.line_load import acting
 from fea.beam.stress import BeamStress, beam_stress
-from fea.beam.stress_concentration import BENDING, TENSION, TORSION, shoulder_factor
+from fea.beam.stress_concentration import BENDING_FIT, TENSION_FIT, TORSION_FIT, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
 
@@ -37,7 +37,7 @@ SHAFT = Pin(
 
 def test_notch_factors_multiply_the_nominal_stress(steel: Material) -> None:
     """Tension, torsion and bending, all 0.3 r into the fillet, 0.0314 m from the start."""
-    kt = [shoulder_factor(f, 0.03, d, 0.002) for f in (TENSION, TORSION, BENDING)]
+    kt = [shoulder_factor(f, 0.03, d, 0.002) for f in (TENSION_FIT, TORSION_FIT, BENDING_FIT)]
     nominal = [1 / A, math.sqrt(3) * d / 2 / (2 * I), (0.14 - 0.0314) * d / 2 / I]
     cases = [case((0, 0, 1.0)), case((0, 0, 0), (0, 0, 1.0)), case((1.0, 0, 0))]
     for k, s, loads in zip(kt, nominal, cases, strict=True):
@@ -57,7 +57,7 @@ def test_a_sharp_corner_has_no_maximum(steel: Material) -> None:
     found = beam_estimate(held(sharp, steel, loads), loads, ("start",))
     assert found.error is None
     assert found.without_factor == ("a sharp inner corner at z = 0.03 m",)
-    assert found.leaves_out.endswith(AT_CLAMPS)
+    assert found.leaves_out.endswith(CLAMP_EDGE_REMARK)
     torsion = Pin("P", (Segment(0.03, 0.03), Segment(0.1, d, connection="B")), fillet=0.0005)
     twist = case((0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     outside = beam_estimate(held(torsion, steel, twist), twist)
@@ -105,7 +105,7 @@ def test_the_error_holds_the_solids_maximum(steel: Material, gap: float, across:
     force = 1000.0 * np.array([[[-0.5, 0, 0], [1.0, 0, 0], [-0.5, 0, 0]]])
     loads = PinLoads("case", ("A", "B", "C"), force)
     found = beam_estimate(beam_stress(pin, steel, acting(loads)), loads)
-    (solid,) = solve_pin(pin, steel, (), (loads,), Asked(0.05, model="solid", meshes=3))
+    (solid,) = solve_pin(pin, steel, (), (loads,), Requirement(0.05, model="solid", meshes=3))
     assert solid.peak.max_von_mises is not None
     assert solid.peak.error_estimate is not None
     assert found.error is not None
@@ -129,4 +129,4 @@ def test_between_two_clamps_the_error_is_of_how_stiff_they_are(steel: Material) 
         relative = 0.05 + 0.15 + 0.5 * d / length
         error = relative * found.maximum + 0.8 * 1000.0 / (d * length)
         assert found.error == pytest.approx(error, rel=1e-9)
-        assert found.leaves_out.endswith(AT_CLAMPS)
+        assert found.leaves_out.endswith(CLAMP_EDGE_REMARK)

@@ -9,7 +9,7 @@ import pytest
 
 from fea.beam.error_model import beam_estimate
 from fea.beam.line_load import acting
-from fea.beam.maximum import harmonics, highest
+from fea.beam.maximum import harmonics, von_mises_maxima
 from fea.beam.round_section import Circle
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
@@ -128,7 +128,7 @@ def test_loads_add_up_and_turn(steel: Material) -> None:
 def test_the_maximum_round_the_axis() -> None:
     """Polished values against a brute search over 20,000 angles, for random stresses."""
     stress = np.random.default_rng(3).normal(size=(3, 20, 6, 4))
-    found = highest(stress)
+    found = von_mises_maxima(stress)
     t = np.linspace(0.0, 2 * math.pi, 20_001)
     trig = np.stack([np.ones_like(t), np.cos(t), np.sin(t)])
     every = np.einsum("asit,an->stni", stress, trig)

@@ -10,7 +10,7 @@ import pytest
 from fea.beam.line_load import shares
 from fea.beam.timoshenko import MOMENT, SHEAR, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import BODY, PinLoads, UnitLoad
+from fea.core.pin_loads import BODY_SURFACE, PinLoads, UnitLoad
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
 from tests.support.pins.plain_pins import COUPLE, PLAIN, PULL, SPIN, A, B, L, d, double_shear
@@ -40,7 +40,14 @@ def test_what_is_out_of_balance_is_closed_by_all_bands(steel: Material) -> None:
     """One band over the whole pin: its own unit load is taken back where it acts, and a couple
     too; weight, spread as the closing traction is, leaves nothing either.
     """
-    units = (B, COUPLE, PULL, SPIN, UnitLoad(BODY, "body", 1), UnitLoad(BODY, "body", 0))
+    units = (
+        B,
+        COUPLE,
+        PULL,
+        SPIN,
+        UnitLoad(BODY_SURFACE, "body", 1),
+        UnitLoad(BODY_SURFACE, "body", 0),
+    )
     forces = stepped_beam(PLAIN, steel, units)
     assert np.abs(forces.coefficients[:, 0]).max() < 1e-12
     z = np.linspace(0.0, L, 7)
@@ -49,7 +56,9 @@ def test_what_is_out_of_balance_is_closed_by_all_bands(steel: Material) -> None:
         "P",
         (Segment(L / 3, d, connection="B"), Segment(L / 3, d), Segment(L / 3, d, connection="C")),
     )
-    weight = stepped_beam(two, steel, (UnitLoad(BODY, "body", 1),)).at(np.array([L / 3, L / 2, L]))
+    weight = stepped_beam(two, steel, (UnitLoad(BODY_SURFACE, "body", 1),)).at(
+        np.array([L / 3, L / 2, L])
+    )
     w = 7850.0 * A
     # w L is carried by the bands, 3 w / 2 per length; half of the middle third hangs on each
     assert weight[:, SHEAR, 0] == pytest.approx([w * L / 6, 0.0, 0.0], abs=1e-9 * w)
@@ -58,7 +67,9 @@ def test_what_is_out_of_balance_is_closed_by_all_bands(steel: Material) -> None:
 
 def test_weight_needs_density(steel: Material) -> None:
     with raises(ArgumentError, "no-density"):
-        stepped_beam(PLAIN, replace(steel, density=None), (UnitLoad(BODY, "body", 0),), ("start",))
+        stepped_beam(
+            PLAIN, replace(steel, density=None), (UnitLoad(BODY_SURFACE, "body", 0),), ("start",)
+        )
 
 
 def test_harmonics_that_no_section_feels(steel: Material) -> None:
@@ -75,4 +86,4 @@ def test_harmonics_that_no_section_feels(steel: Material) -> None:
 def test_a_balance_needs_a_band(steel: Material) -> None:
     """Of a pin that no link touches and nothing holds, under its own weight."""
     with raises(ArgumentError, "unconstrained", "pin P"):
-        stepped_beam(Pin("P", (Segment(L, d),)), steel, (UnitLoad(BODY, "body", 1),))
+        stepped_beam(Pin("P", (Segment(L, d),)), steel, (UnitLoad(BODY_SURFACE, "body", 1),))

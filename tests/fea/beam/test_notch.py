@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import pytest
 
-from fea.beam.stress_concentration import BENDING, TENSION, TORSION, Fit, notches, shoulder_factor
+from fea.beam.stress_concentration import (
+    BENDING_FIT,
+    TENSION_FIT,
+    TORSION_FIT,
+    Fit,
+    notches,
+    shoulder_factor,
+)
 from geometry import Pin, Segment
 
 D_SMALL = 0.02
 
 # A (r/d)^b: R. L. Norton, Machine Design, appendix C, fitted to Peterson's charts by themselves.
 NORTON = [
-    (BENDING, 3.0, 0.89334, -0.30860),
-    (BENDING, 2.0, 0.90879, -0.28598),
-    (BENDING, 1.5, 0.93836, -0.25759),
-    (BENDING, 1.2, 0.97098, -0.21796),
-    (TENSION, 2.0, 1.01470, -0.30035),
-    (TENSION, 1.5, 0.99957, -0.28221),
-    (TENSION, 1.2, 0.96272, -0.25527),
-    (TORSION, 2.0, 0.86331, -0.23865),
-    (TORSION, 1.33, 0.84897, -0.23161),
-    (TORSION, 1.2, 0.83425, -0.21649),
+    (BENDING_FIT, 3.0, 0.89334, -0.30860),
+    (BENDING_FIT, 2.0, 0.90879, -0.28598),
+    (BENDING_FIT, 1.5, 0.93836, -0.25759),
+    (BENDING_FIT, 1.2, 0.97098, -0.21796),
+    (TENSION_FIT, 2.0, 1.01470, -0.30035),
+    (TENSION_FIT, 1.5, 0.99957, -0.28221),
+    (TENSION_FIT, 1.2, 0.96272, -0.25527),
+    (TORSION_FIT, 2.0, 0.86331, -0.23865),
+    (TORSION_FIT, 1.33, 0.84897, -0.23161),
+    (TORSION_FIT, 1.2, 0.83425, -0.21649),
 ]
 
 
@@ -57,7 +64,7 @@ ROARK = {
 @pytest.mark.parametrize("ratio", [1.2, 1.5, 2.0])
 def test_factors_are_those_of_roark(kind: str, ratio: float) -> None:
     """Another edition of the fits, as printed elsewhere: 3 % (2.7 in tension at h/r = 19)."""
-    fits = BENDING if kind.startswith("bending") else TENSION
+    fits = BENDING_FIT if kind.startswith("bending") else TENSION_FIT
     for q in (2.5, 5.0, 10.0, 19.0) if kind.endswith("sharp") else (1.0, 1.4, 1.9):
         x = 1.0 - 1.0 / ratio
         expected = sum((a + b * q**0.5 + c * q) * x**k for k, (a, b, c) in enumerate(ROARK[kind]))
@@ -85,11 +92,13 @@ def test_a_value_that_is_read_off_the_chart() -> None:
     """Peterson, bending, D/d = 1.5, r/d = 0.1: about 1.7 (Shigley's table 7-1 for a well-rounded
     shoulder says 1.7, 1.9 in tension and 1.5 in torsion, to two figures; there D/d is not told).
     """
-    values = [shoulder_factor(f, 0.03, 0.02, 0.002) for f in (BENDING, TENSION, TORSION)]
+    values = [
+        shoulder_factor(f, 0.03, 0.02, 0.002) for f in (BENDING_FIT, TENSION_FIT, TORSION_FIT)
+    ]
     assert values == pytest.approx([1.68, 1.9, 1.4], rel=0.05)
 
 
-@pytest.mark.parametrize("fits", [BENDING, TENSION, TORSION])
+@pytest.mark.parametrize("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
 def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...]) -> None:
     """2h/D = 1: no shaft is left and Peterson's factors end at 1; the fits do within 4 %."""
     for (low, high), *fit in fits:
@@ -98,7 +107,7 @@ def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...]) -> Non
             assert total == pytest.approx(1.0, abs=0.04)
 
 
-@pytest.mark.parametrize("fits", [BENDING, TENSION])
+@pytest.mark.parametrize("fits", [BENDING_FIT, TENSION_FIT])
 @pytest.mark.parametrize("ratio", [1.1, 1.5, 2.0, 3.0])
 def test_fits_meet_where_they_change(fits: tuple[Fit, ...], ratio: float) -> None:
     """At h/r = 2, within the 2 % of the fits."""
@@ -107,7 +116,7 @@ def test_fits_meet_where_they_change(fits: tuple[Fit, ...], ratio: float) -> Non
     assert below == pytest.approx(above, rel=0.02)
 
 
-@pytest.mark.parametrize("fits", [BENDING, TENSION, TORSION])
+@pytest.mark.parametrize("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
 def test_a_sharper_fillet_is_worse(fits: tuple[Fit, ...]) -> None:
     values = [shoulder_factor(fits, 1.5, 1.0, r) for r in (0.25, 0.2, 0.15, 0.1, 0.07)]
     assert None not in values
@@ -115,19 +124,19 @@ def test_a_sharper_fillet_is_worse(fits: tuple[Fit, ...]) -> None:
 
 
 def test_outside_their_range_there_is_no_factor() -> None:
-    assert shoulder_factor(BENDING, 1.5, 1.0, 0.25 / 20.1) is None
-    assert shoulder_factor(BENDING, 1.5, 1.0, 0.25 / 19.9) is not None
-    assert shoulder_factor(TORSION, 1.5, 1.0, 0.25 / 4.1) is None
-    assert shoulder_factor(BENDING, 1.5, 1.0, 0.0) is None
-    assert shoulder_factor(BENDING, 1.0, 1.0, 0.1) is None
+    assert shoulder_factor(BENDING_FIT, 1.5, 1.0, 0.25 / 20.1) is None
+    assert shoulder_factor(BENDING_FIT, 1.5, 1.0, 0.25 / 19.9) is not None
+    assert shoulder_factor(TORSION_FIT, 1.5, 1.0, 0.25 / 4.1) is None
+    assert shoulder_factor(BENDING_FIT, 1.5, 1.0, 0.0) is None
+    assert shoulder_factor(BENDING_FIT, 1.0, 1.0, 0.1) is None
 
 
 def test_a_range_has_its_ends() -> None:
     """h / r of 0.1 and of 20 to round-off: 0.1 comes out as 0.09999999999999998."""
-    assert shoulder_factor(BENDING, 1.2, 1.0, 1.0) is not None
-    assert shoulder_factor(BENDING, 3.0, 1.0, 0.05) is not None
-    assert shoulder_factor(BENDING, 1.2 - 1e-6, 1.0, 1.0) is None
-    assert shoulder_factor(BENDING, 3.0 + 1e-6, 1.0, 0.05) is None
+    assert shoulder_factor(BENDING_FIT, 1.2, 1.0, 1.0) is not None
+    assert shoulder_factor(BENDING_FIT, 3.0, 1.0, 0.05) is not None
+    assert shoulder_factor(BENDING_FIT, 1.2 - 1e-6, 1.0, 1.0) is None
+    assert shoulder_factor(BENDING_FIT, 3.0 + 1e-6, 1.0, 0.05) is None
 
 
 def test_notches_of_a_pin() -> None:
@@ -144,7 +153,7 @@ def test_notches_of_a_pin() -> None:
     )
     left, right, bore, sharp, tube = notches(pin)
     assert (left.on, right.on) == (0, 2)
-    assert left.bending == right.bending == shoulder_factor(BENDING, 0.03, 0.02, 0.002)
+    assert left.bending == right.bending == shoulder_factor(BENDING_FIT, 0.03, 0.02, 0.002)
     assert 0.038 < left.z < 0.04  # in the fillet, by symmetry on both sides
     assert left.z - 0.04 == pytest.approx(0.06 - right.z)
     for notch, why in ((bore, "bore"), (sharp, "sharp inner corner"), (tube, "tube")):

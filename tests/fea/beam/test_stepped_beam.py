@@ -10,7 +10,7 @@ import pytest
 from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import BODY, UnitLoad
+from fea.core.pin_loads import BODY_SURFACE, UnitLoad
 from geometry import GeometryError, Pin, Segment
 from tests.support.errors import raises
 from tests.support.exact.beam_deflection import deflections
@@ -116,7 +116,7 @@ def test_a_stepped_beam_by_castigliano(steel: Material) -> None:
 
 def test_redundant_holding_of_a_stepped_beam_leaves_no_gap(steel: Material) -> None:
     """Integrated from the start, all four motions come back to zero at the end."""
-    units = (B, COUPLE, PULL, SPIN, UnitLoad(BODY, "body", 1))
+    units = (B, COUPLE, PULL, SPIN, UnitLoad(BODY_SURFACE, "body", 1))
     forces = stepped_beam(STEPPED, steel, units, ("start", "end"))
     free = deflections(stepped_beam(STEPPED, steel, units, ("start",)), steel, np.array([0.3]))[0]
     held = deflections(forces, steel, np.array([0.3]))[0]

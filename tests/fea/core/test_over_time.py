@@ -10,8 +10,8 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.over_time import knots, rise_between
-from fea.core.pin_loads import Distribution, Floats, PinLoads, off_chord
-from fea.solve.solve_pin import Asked, Model, solve_pin
+from fea.core.pin_loads import Distribution, Floats, PinLoads, chord_deviation
+from fea.solve.solve_pin import Model, Requirement, solve_pin
 from geometry import Pin, Segment
 
 # Double shear of a plain bar of 20 mm.
@@ -46,7 +46,7 @@ def test_samples_do_not_matter(model: Model, samples: int, steel: Material) -> N
     """The largest load is at CREST, whatever the samples: maximum to 1e-9 of that of this instant
     alone, its time to 1e-5 s (a crest is flat), its error with next to nothing of the time.
     """
-    asked = Asked(model=model)
+    asked = Requirement(model=model)
     times = np.linspace(0.0, 1.0, samples)
     (found,) = solve_pin(BAR, steel, (), (loads_at(times),), asked, between={"turn": loads_at})
     (alone,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), asked)
@@ -67,7 +67,9 @@ def test_pressures_turn_with_their_forces(steel: Material) -> None:
     the largest of 2,001 instants.
     """
     times = np.linspace(0.0, 1.0, 4)
-    (found,) = solve_pin(BAR, steel, (), (of_cosine(times),), Asked(), between={"turn": of_cosine})
+    (found,) = solve_pin(
+        BAR, steel, (), (of_cosine(times),), Requirement(), between={"turn": of_cosine}
+    )
     assert found.answer is not None
     dense = found.answer.largest(of_cosine(np.linspace(0.0, 1.0, 2001)))[0]
     assert found.peak.max_von_mises == pytest.approx(dense, rel=1e-6)
@@ -78,7 +80,7 @@ def test_what_is_told_of_the_time_is_a_bound(steel: Material) -> None:
     """On few instants, without more of them: what lies between is less than the bound, and the
     bound no more than six times as much.
     """
-    (found,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), Asked())
+    (found,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), Requirement())
     assert found.answer is not None
     for count in (7, 12, 25):
         few = loads_at(np.linspace(0.0, 1.0, count))
@@ -94,7 +96,7 @@ def test_what_is_told_of_the_time_is_a_bound(steel: Material) -> None:
 def test_a_table_of_instants_is_taken_as_it_is(steel: Material) -> None:
     """Nothing is known between its rows."""
     times = np.linspace(0.0, 1.0, 5)
-    (found,) = solve_pin(BAR, steel, (), (loads_at(times),), Asked())
+    (found,) = solve_pin(BAR, steel, (), (loads_at(times),), Requirement())
     assert found.peak.time == 0.5
     assert len(found.loads) == 5
     assert found.peak.parts is not None
@@ -121,11 +123,11 @@ def test_forces_along_a_chord_differ_by_nothing() -> None:
     middle.forces[:] *= 2.0
     for distribution in ("uniform", "cosine"):
         kinds = (replace(x, distribution=distribution) for x in (ends, middle))
-        off = off_chord(*kinds)
+        off = chord_deviation(*kinds)
         assert max(np.abs(c).max() for c in off.coefficients().values()) < 1e-9
     turned = PinLoads("t", ("a",), np.array([[[1.0, 0.0, 0.0]], [[np.cos(0.2), np.sin(0.2), 0.0]]]))
     middle = PinLoads("t", ("a",), np.array([[[np.cos(0.1), np.sin(0.1), 0.0]]]))
-    (apart,) = off_chord(turned, middle).coefficients().values()
+    (apart,) = chord_deviation(turned, middle).coefficients().values()
     assert np.hypot(*apart[0]) == pytest.approx(1.0 - np.cos(0.1), rel=1e-12)
 
 
@@ -133,7 +135,7 @@ def test_amounts_turn_as_forces_do() -> None:
     """Of every harmonic of a pressure, with the forces that make it."""
     loads = of_cosine(np.linspace(0.0, 1.0, 3))
     none = replace(loads.at(np.array([0, 1])), forces=np.zeros((2, 3, 3)))
-    amounts = off_chord(replace(loads, forces=0.0 * loads.forces), loads.at(np.array([0, 1])))
+    amounts = chord_deviation(replace(loads, forces=0.0 * loads.forces), loads.at(np.array([0, 1])))
     assert none.coefficients() == {}
     turned = amounts.turned(0.7).coefficients()
     expected = loads.at(np.array([0, 1])).turned(0.7).coefficients()
@@ -151,7 +153,7 @@ def test_a_jump_needs_no_instants(steel: Material) -> None:
         return replace(loads, forces=loads.forces * np.where(times < jump, 1.0, 0.7)[:, None, None])
 
     times = np.array([0.0, 0.3, jump - 1e-7, jump + 1e-7, 1.0])
-    (found,) = solve_pin(BAR, steel, (), (at(times),), Asked(), between={"turn": at})
+    (found,) = solve_pin(BAR, steel, (), (at(times),), Requirement(), between={"turn": at})
     assert found.peak.time == pytest.approx(CREST, abs=1e-5)
     assert len(found.loads) < 200
     assert found.peak.parts is not None

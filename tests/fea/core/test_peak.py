@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fea.core.peak import Peak, Refinement, discretisation_error
-from fea.solve.verdict import FEWEST
+from fea.core.peak import Maximum, Refinement, discretisation_error
+from fea.solve.verdict import MIN_MESHES
 
 
 def sequence(*values: float) -> tuple[Refinement, ...]:
@@ -38,11 +38,11 @@ def test_a_singular_sequence_is_not_taken_for_a_converging_one(p: float, r: floa
 
 def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
     """Values of a real fillet (MPa): the first two agree to 0.03 % and are 4 % below the last. Two
-    meshes are therefore never enough (fea.solve.verdict.FEWEST); from three on the estimate must
-    hold.
+    meshes are therefore never enough (fea.solve.verdict.MIN_MESHES); from three on the estimate
+    must hold.
     """
     seen = (34.10, 34.09, 34.8, 35.5, 35.49)
-    assert FEWEST == 3
+    assert MIN_MESHES == 3
     for n in (3, 4, 5):
         assert discretisation_error(sequence(*seen[:n]), 2.0**0.5) >= abs(seen[n - 1] - seen[-1])
     assert discretisation_error(sequence(*seen), 2.0**0.5) > 0.1
@@ -67,15 +67,15 @@ def test_nothing_changes() -> None:
 
 
 def test_factor_of_safety() -> None:
-    peak = Peak("B", "case", "solid", "converged", "", max_von_mises=50.0)
+    peak = Maximum("B", "case", "solid", "converged", "", max_von_mises=50.0)
     assert peak.safety_factor(100.0) == 2.0
     assert peak.safety_factor(None) is None
-    assert Peak("B", "case", "solid", "rigid", "").safety_factor(100.0) is None
+    assert Maximum("B", "case", "solid", "rigid", "").safety_factor(100.0) is None
 
 
 def test_unknowns_are_those_of_the_finest_mesh_and_times_add_up() -> None:
-    peak = Peak("B", "case", "solid", "converged", "", history=sequence(1.0, 2.0, 3.0))
+    peak = Maximum("B", "case", "solid", "converged", "", history=sequence(1.0, 2.0, 3.0))
     assert peak.dofs == 9000
     assert peak.seconds == pytest.approx(0.3)
-    none = Peak("B", "case", "solid", "rigid", "")
+    none = Maximum("B", "case", "solid", "rigid", "")
     assert (none.dofs, none.seconds) == (0, 0)

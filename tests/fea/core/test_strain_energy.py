@@ -11,7 +11,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.model import HarmonicModel
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.solve.single_mesh import Problem, Rung, result_on
 from fea.solve.solve_pin import solve_pin
 from geometry import Pin, Segment
@@ -79,7 +79,7 @@ def test_a_beam_has_nearly_the_same(clamps: tuple[str, ...], steel: Material) ->
     forces = np.array([[[F, 0.0, 0.0], [-2.0 * F, 0.0, 0.0], [F, 0.0, 0.0]]])
     loads = PinLoads("c", ("A", "B", "C"), forces)
     found = [
-        solve_pin(pin, steel, clamps, (loads,), Asked(model=model))[0].peak.history
+        solve_pin(pin, steel, clamps, (loads,), Requirement(model=model))[0].peak.history
         for model in ("beam", "harmonic")
     ]
     (beam,), meshes = found

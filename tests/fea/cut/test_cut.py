@@ -10,11 +10,11 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import VON_MISES
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
-from fea.cut.region import pieces, refused, zone
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.cut.region import pieces, refusal, zone
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import ArgumentError, CutPin, Flat, Hole, Passage, Pin, Segment
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh
@@ -181,9 +181,9 @@ def test_what_is_meshed_of_the_pin() -> None:
 def test_where_no_local_solid_will_do() -> None:
     hole = CutPin(SHAFT, (Hole(MIDDLE, d),))
     bands = SHAFT.connections
-    assert refused(hole, ("start",), bands) is None
-    assert refused(hole, ("start", "end"), bands) is None
-    assert refused(CutPin(SHAFT, (Hole(0.025, d),)), (), bands) is None
+    assert refusal(hole, ("start",), bands) is None
+    assert refusal(hole, ("start", "end"), bands) is None
+    assert refusal(CutPin(SHAFT, (Hole(0.025, d),)), (), bands) is None
     cases = {
         "hole-at-end": (CutPin(SHAFT, (Hole(0.021, d),)), (), bands),
         "hole-in-clamped": (hole, ("middle",), ()),
@@ -199,7 +199,7 @@ def test_where_no_local_solid_will_do() -> None:
         "passage-in-clamped": (CutPin(SHAFT, passages=(Passage(0, 0.05, d, d),)), ("start",), ()),
     }
     for code, (pin, clamps, loaded) in cases.items():
-        note = refused(pin, clamps, loaded)
+        note = refusal(pin, clamps, loaded)
         assert note is not None
         assert note.codes == ("not-axisymmetric", code)
 
@@ -216,7 +216,7 @@ def test_four_point_bending_with_the_hole_at_the_extreme_fibre() -> None:
     another angle answers the same to loads that are turned as well.
     """
     (first,) = solve_pin(
-        CutPin(SHAFT, (Hole(MIDDLE, d),)), STEEL, (), (bending(1500.0, 0.0),), Asked(0.01)
+        CutPin(SHAFT, (Hole(MIDDLE, d),)), STEEL, (), (bending(1500.0, 0.0),), Requirement(0.01)
     )
     peak = first.peak
     assert (peak.model, peak.verdict) == ("harmonic+local", "converged")
@@ -225,12 +225,12 @@ def test_four_point_bending_with_the_hole_at_the_extreme_fibre() -> None:
     assert abs(peak.max_von_mises - 3.10 * NOMINAL) < peak.error_estimate + 0.01 * NOMINAL
     assert peak.location is not None
     assert abs(peak.location[0]) > 0.9 * D / 2
-    assert isinstance(first.answer, CutAnswer)
+    assert isinstance(first.answer, CutField)
     assert first.answer.maxima(bending(-3000.0, 0.0))[0] == pytest.approx(2 * peak.max_von_mises)
     with raises(ArgumentError, "missing-fields"):
         first.answer.maxima(bending(1500.0, 0.5))
     turned = CutPin(SHAFT, (Hole(MIDDLE, d, 0.5),))
-    (second,) = solve_pin(turned, STEEL, (), (bending(1500.0, 0.5),), Asked(0.01))
+    (second,) = solve_pin(turned, STEEL, (), (bending(1500.0, 0.5),), Requirement(0.01))
     assert second.peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=1e-6)
 
 
@@ -277,7 +277,7 @@ def test_a_hole_in_a_cone_beside_the_whole_solid() -> None:
     pin = CutPin(CONE, (Hole(0.04, d),))
     local, solid = (
         solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
-        for asked in (Asked(), Asked(tolerance=0.05, model="solid"))
+        for asked in (Requirement(), Requirement(tolerance=0.05, model="solid"))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises is not None

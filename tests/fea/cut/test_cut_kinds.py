@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.peak import Peak
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import VON_MISES
 from fea.cut.inner_corners import inner_corners
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.region import pieces, zone
 from fea.solid.assembly import Discretisation
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from pinbase.arrays import Floats
@@ -272,12 +272,12 @@ def bending(force: float = 1500.0, axial: float = 0.0) -> PinLoads:
     return PinLoads("bending", SHAFT.connections, forces[None])
 
 
-def peak(pin: CutPin, asked: Asked) -> Peak:
+def peak(pin: CutPin, asked: Requirement) -> Maximum:
     return solve_pin(pin, STEEL, (), (bending(),), asked)[0].peak
 
 
 def test_a_sharp_flat_is_singular_and_says_what_would_help() -> None:
-    found = peak(cut(replace(FLATS[0], radius=0.0, angle=0.0)), Asked(0.05))
+    found = peak(cut(replace(FLATS[0], radius=0.0, angle=0.0)), Requirement(0.05))
     assert (found.model, found.verdict) == ("harmonic+local", "singular")
     (zone_,) = (z for z in found.singular_at if z.governs)
     assert zone_.between == ("flat 1 end", "flat 1 floor")
@@ -303,8 +303,8 @@ def test_a_sharp_flat_is_singular_and_says_what_would_help() -> None:
 )
 def test_beside_the_whole_solid(one: Cut) -> None:
     """On its finest mesh, within both errors."""
-    local = peak(cut(one), Asked(0.02))
-    whole = peak(cut(one), Asked(0.02, "solid"))
+    local = peak(cut(one), Requirement(0.02))
+    whole = peak(cut(one), Requirement(0.02, "solid"))
     assert (local.model, local.verdict) == ("harmonic+local", "converged")
     assert whole.model == "solid"
     assert local.max_von_mises is not None

@@ -8,10 +8,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.cut import region
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.cut.local_fields import LocalFields
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Asked, Solution, solve_pin
+from fea.solve.solve_pin import Requirement, Solution, solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
 STEEL = Material("steel", 210e9, 0.3, 500e6, 0.0)
@@ -34,7 +34,7 @@ def pulled(first: list[float], second: list[float]) -> PinLoads:
 
 
 def parts(found: Solution) -> tuple[LocalFields, ...]:
-    assert isinstance(found.answer, CutAnswer)
+    assert isinstance(found.answer, CutField)
     return found.answer.solution.pieces
 
 
@@ -44,7 +44,7 @@ def test_two_pieces_answer_as_one(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, rung = Problem(pin, STEEL, (), pulled([3e4], [0.0])), Rung("harmonic+local")
     assert len(region.pieces(pin, ())) == 2
     two = result_on(problem, rung)
-    monkeypatch.setattr(region, "NEXT", 1.0)
+    monkeypatch.setattr(region, "MERGE_DISTANCE", 1.0)
     assert len(region.pieces(pin, ())) == 1
     one = result_on(problem, rung)
     assert two.at_once < 0.5 * one.at_once
@@ -57,11 +57,13 @@ def test_a_piece_that_cannot_govern_stays_coarse() -> None:
     """The same holes in shafts of one and one and a half diameters: 2.25 times the stress."""
     loads = pulled([3e4], [3e4])
     both = shaft(Hole(0.09, 0.004), Hole(0.24, 0.004), second=1.5 * D)
-    found = solve_pin(both, STEEL, (), (loads,), Asked(0.02))[0]
+    found = solve_pin(both, STEEL, (), (loads,), Requirement(0.02))[0]
     fine, coarse = parts(found)
     assert fine.finer > 2.0
     assert coarse.finer == 1.0
-    one = solve_pin(shaft(Hole(0.09, 0.004), second=1.5 * D), STEEL, (), (loads,), Asked(0.02))[0]
+    one = solve_pin(
+        shaft(Hole(0.09, 0.004), second=1.5 * D), STEEL, (), (loads,), Requirement(0.02)
+    )[0]
     assert found.peak.verdict == "converged"
     assert found.peak.max_von_mises == pytest.approx(one.peak.max_von_mises, rel=1e-3)
 
@@ -69,15 +71,17 @@ def test_a_piece_that_cannot_govern_stays_coarse() -> None:
 def test_a_piece_whose_stress_swings_does_not() -> None:
     """For fatigue: a constant load on one hole, half of it to and fro on the other."""
     pin = shaft(Hole(0.09, 0.004), Hole(0.24, 0.004))
-    swinging = solve_pin(pin, STEEL, (), (pulled([3e4, 3e4], [1.5e4, -1.5e4]),), Asked(0.02))[0]
+    swinging = solve_pin(pin, STEEL, (), (pulled([3e4, 3e4], [1.5e4, -1.5e4]),), Requirement(0.02))[
+        0
+    ]
     assert all(part.finer > 2.0 for part in parts(swinging))
-    constant = solve_pin(pin, STEEL, (), (pulled([3e4], [1.5e4]),), Asked(0.02))[0]
+    constant = solve_pin(pin, STEEL, (), (pulled([3e4], [1.5e4]),), Requirement(0.02))[0]
     assert [part.finer > 2.0 for part in parts(constant)] == [True, False]
 
 
 @pytest.mark.slow
 def test_a_run_joins_holes_that_disturb_each_other() -> None:
     pin = shaft(Hole(0.08, 0.004), Hole(0.096, 0.003, 0.5 * np.pi))
-    found = solve_pin(pin, STEEL, (), (pulled([3e4], [0.0]),), Asked(0.02))[0]
+    found = solve_pin(pin, STEEL, (), (pulled([3e4], [0.0]),), Requirement(0.02))[0]
     assert len(parts(found)) == 1
     assert found.peak.verdict == "converged"

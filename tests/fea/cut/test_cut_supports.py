@@ -8,13 +8,13 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.cut.evaluate import CutAnswer
+from fea.cut.evaluate import CutField
 from fea.cut.local_model import LocalModel
 from fea.cut.lost_loads import bearings, trial_forces
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.model import HarmonicModel
 from fea.solid.boundary import resultants
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.support.errors import raises
@@ -108,14 +108,14 @@ def test_a_cut_between_clamps_beside_the_whole_solid() -> None:
     loads = PinLoads("pull", ("B",), np.array([[[0.0, 0.0, 40e3]]]))
     local, solid = (
         solve_pin(pin, STEEL, ("start", "end"), (loads,), asked)[0]
-        for asked in (Asked(0.01), Asked(0.1, "solid"))
+        for asked in (Requirement(0.01), Requirement(0.1, "solid"))
     )
     assert (local.peak.model, solid.peak.model) == ("harmonic+local", "solid")
     assert local.peak.max_von_mises is not None
     assert solid.peak.max_von_mises is not None
     assert local.peak.max_von_mises == pytest.approx(solid.peak.max_von_mises, rel=0.04)
     answer = local.answer
-    assert isinstance(answer, CutAnswer)
+    assert isinstance(answer, CutField)
     rigid = max(float(p.largest(loads)[0][0]) for p in answer.solution.pieces)
     assert rigid > 1.1 * local.peak.max_von_mises  # without what the hole's softness changes
 
@@ -174,7 +174,7 @@ def test_a_flat_or_keyway_in_a_loaded_band_beside_the_whole_solid(name: str) -> 
     pin = CutPin.of(three(0.03), [IN_BAND[name]])
     local, solid = (
         solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
-        for asked in (Asked(0.02), Asked(0.1, "solid", meshes=2))
+        for asked in (Requirement(0.02), Requirement(0.1, "solid", meshes=2))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises == pytest.approx(solid.max_von_mises, rel=0.04)
@@ -187,7 +187,7 @@ def test_a_hole_in_a_loaded_band_beside_the_whole_solid() -> None:
     pin = CutPin(three(0.02), (Hole(0.04, d),))
     local, solid = (
         solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
-        for asked in (Asked(0.01), Asked(0.1, "solid", meshes=2))
+        for asked in (Requirement(0.01), Requirement(0.1, "solid", meshes=2))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises == pytest.approx(solid.max_von_mises, rel=0.04)

@@ -21,10 +21,10 @@ from fea.core.voigt import von_mises
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, area_vectors, slopes_at, surface
 from fea.solid.stress_recovery import nodal_stress
-from fea.solve.requirement import Asked
-from fea.support.contact.contact import ContactProblem, Pressed
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
-from fea.support.contact.solve_joint import JointModel
+from fea.solve.requirement import Requirement
+from fea.support.contact.contact import ContactProblem, ContactState
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment
 from geometry.mesh import cut_piece
@@ -121,7 +121,7 @@ def on_cells(
     return forces.reshape(-1, len(there)) / np.maximum(there, 1e-12), there / whole
 
 
-def real_contact(problem: ContactProblem, plain: Half, cut: Half) -> tuple[Pressed, Floats]:
+def real_contact(problem: ContactProblem, plain: Half, cut: Half) -> tuple[ContactState, Floats]:
     """Pressures, and the stress (N,) Pa that they make in the solid with the cut."""
     M, rings = problem.sectors, len(problem.bands.z)
     count, around = M // 2 + 1, np.arange(M)
@@ -143,7 +143,7 @@ def real_contact(problem: ContactProblem, plain: Half, cut: Half) -> tuple[Press
     return found, von_mises(nodal_stress(cut.space, STEEL, moved)[..., 0])
 
 
-def bending(problem: ContactProblem, found: Pressed) -> float:
+def bending(problem: ContactProblem, found: ContactState) -> float:
     """In the middle, N m."""
     force = -(found.pressure.ravel() * problem.area).reshape(found.pressure.shape)
     along = (force * np.cos(problem.angles)).sum(axis=1)
@@ -166,15 +166,17 @@ def test_real_contact_is_within_the_error(
     the middle of the pin: it is soft under pressure. CalculiX has 0.92 of the moment with such a
     flat (its ends slant), and without it agrees to 0.4 %.
     """
-    monkeypatch.setattr(cut_piece, "ELSEWHERE", replace(cut_piece.ELSEWHERE, across=8.0))
-    problem = JointModel(CLEVIS, STEEL, LUGS).contact
+    monkeypatch.setattr(
+        cut_piece, "REMOTE_MESH_SIZE", replace(cut_piece.REMOTE_MESH_SIZE, across=8.0)
+    )
+    problem = ContactModel(CLEVIS, STEEL, LUGS).contact
     plain, half = half_of(NOTHING, problem), half_of(cut, problem)
     found, stress = real_contact(problem, plain, half)
     uncut = bending(problem, problem.solve(LOADS.forces[0, :, :2]))
     assert bending(problem, found) / uncut == pytest.approx(moment, abs=0.02)
-    asked = Asked(0.05, distance=EDGE / D)
+    asked = Requirement(0.05, distance=EDGE / D)
     (ours,) = solve_in_lugs(
-        InLugs(CLEVIS, STEEL, LUGS, (LOADS,), cut=CutPin.of(CLEVIS, (cut,))), asked
+        PinProblem(CLEVIS, STEEL, LUGS, (LOADS,), cut=CutPin.of(CLEVIS, (cut,))), asked
     )
     peak = ours.solution.peak
     assert peak.max_von_mises is not None

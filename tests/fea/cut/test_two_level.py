@@ -47,9 +47,9 @@ def test_stress_about_a_hole_as_by_a_factorisation(
         stress[..., 3, 0], stress[..., 4, 0] = x, -y
     else:
         stress[..., 2, 0] = 1.0 + y
-    monkeypatch.setattr(local_model, "FACTORED", model.unknowns)
+    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", model.unknowns)
     known = model.solve(stress)
-    monkeypatch.setattr(local_model, "FACTORED", 0)
+    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", 0)
     found = model.solve(stress)
     assert not np.array_equal(found.stress, known.stress)
     assert found.stress == pytest.approx(known.stress, abs=1e-5 * np.abs(known.stress).max())
@@ -64,9 +64,9 @@ def test_what_brings_little_is_solved_less_accurately(monkeypatch: pytest.Monkey
     model = LocalModel(PIECE, MESH, STEEL)
     stress = np.zeros((*model.images.shape[:2], 6, 2))
     stress[..., 2, 0], stress[..., 2, 1] = 1.0, model.images[..., 1] / D
-    monkeypatch.setattr(local_model, "FACTORED", model.unknowns)
+    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", model.unknowns)
     known = model.solve(stress).stress
-    monkeypatch.setattr(local_model, "FACTORED", 0)
+    monkeypatch.setattr(local_model, "MAX_FACTORED_UNKNOWNS", 0)
     weight = np.array([1.0, 1e-3])
     found = model.solve(stress, weight=weight).stress
     off, most = (np.abs(x).max(axis=(0, 1)) for x in (found - known, known))

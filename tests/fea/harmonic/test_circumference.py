@@ -149,7 +149,7 @@ def test_chunks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     fields = unit_fields(loads, 50, seed=3)
     pairs = np.arange(50), np.zeros(50, dtype=np.int64)
     whole = Circumference(fields, loads).round(*pairs)
-    monkeypatch.setattr(circumference, "CHUNK", 7)
+    monkeypatch.setattr(circumference, "PAIR_BATCH", 7)
     parts = Circumference(fields, loads).round(*pairs)
     assert parts[0] == pytest.approx(whole[0], rel=1e-13)
     # angles may differ: those of two crests, one the other's mirror image, tie

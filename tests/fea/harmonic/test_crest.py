@@ -18,7 +18,7 @@ def even(degree: int) -> Floats:
 def angles(patch: pytest.MonkeyPatch, finer: int, samples: Floats, degree: int) -> Floats:
     """Of the highest crests, sought between so many times as many angles as samples."""
     with patch.context() as patched:
-        patched.setattr(crest, "FINER", finer)
+        patched.setattr(crest, "ANGLES_PER_SAMPLE", finer)
         return crest.highest_crest(samples, degree)
 
 
@@ -33,14 +33,14 @@ def test_squares_by_chance(waves: tuple[int, ...], monkeypatch: pytest.MonkeyPat
         psi = np.array(waves)[:, None] * even(degree)
         samples = np.square(a @ np.cos(psi) + b @ np.sin(psi)).sum(axis=1)
         top = []
-        for finer in (crest.FINER, 8 * crest.FINER):
+        for finer in (crest.ANGLES_PER_SAMPLE, 8 * crest.ANGLES_PER_SAMPLE):
             psi = np.array(waves) * angles(monkeypatch, finer, samples, degree)[:, None]
             at = np.einsum("jiw,jw->ji", a, np.cos(psi)) + np.einsum("jiw,jw->ji", b, np.sin(psi))
             top.append(np.square(at).sum(axis=1))
         assert top[0] == pytest.approx(top[1], rel=1e-12)
 
 
-@pytest.mark.parametrize("finer", [1, crest.FINER])
+@pytest.mark.parametrize("finer", [1, crest.ANGLES_PER_SAMPLE])
 def test_two_crests_between_two_angles(finer: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """As close as can be, one a little higher: the lower one may be found, too low by no more than
     is said, and by more than a hundredth of that.

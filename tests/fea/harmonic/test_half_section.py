@@ -8,10 +8,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.half_section import MeridianPlane
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 
 ANGLE = 0.7
@@ -27,9 +27,9 @@ def plane() -> MeridianPlane:
         Segment(0.02, 0.02, 0.0, "P1", "P1"),
     )
     steel = Material("steel", 200e9, 0.3)
-    asked = Asked(model="harmonic", meshes=1)
+    asked = Requirement(model="harmonic", meshes=1)
     (found,) = solve_pin(Pin("p", segments), steel, ("start",), (LOADS,), asked)
-    assert isinstance(found.answer, HarmonicAnswer)
+    assert isinstance(found.answer, HarmonicField)
     return MeridianPlane(found.answer.fields, found.answer.singularities)
 
 

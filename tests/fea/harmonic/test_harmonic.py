@@ -7,7 +7,7 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import BODY, Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import BODY_SURFACE, Floats, PinLoads, UnitLoad
 from fea.core.tractions import closing_tractions
 from fea.harmonic.assembly import Section
 from fea.harmonic.model import HarmonicModel, body_force, rigid_motions
@@ -171,7 +171,7 @@ def test_stress_carries_the_load(section: MeridianMesh, steel: Material) -> None
 def test_weight_needs_a_density(section: MeridianMesh) -> None:
     light = Material("?", 1e9, 0.3)
     with raises(SolveError, "no-density"):
-        HarmonicModel(PIN, section, light, ("start",)).solve((UnitLoad(BODY, "body", 0),))
+        HarmonicModel(PIN, section, light, ("start",)).solve((UnitLoad(BODY_SURFACE, "body", 0),))
 
 
 def test_inertia_sums_to_the_mass(section: MeridianMesh, steel: Material) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.pin_loads import BODY, Floats, PinLoads, UnitLoad
+from fea.core.pin_loads import BODY_SURFACE, Floats, PinLoads, UnitLoad
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.superposition import Circumference
@@ -21,7 +21,7 @@ from tests.support.pins.section_grid import rectangle
 
 A, L = 0.01, 0.2
 BAR = Pin("bar", (Segment(L, 2.0 * A, connection="B"),))
-ALONG, ACROSS = UnitLoad(BODY, "body", 0), UnitLoad(BODY, "body", 1)
+ALONG, ACROSS = UnitLoad(BODY_SURFACE, "body", 0), UnitLoad(BODY_SURFACE, "body", 1)
 
 
 def amplitude(fields: MeridianFields, unit: UnitLoad) -> Floats:

@@ -12,10 +12,10 @@ from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.model import HarmonicModel
-from fea.harmonic.pressure_edge import DIRECTIONS, jumps
+from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, jumps
 from fea.harmonic.superposition import Circumference
-from fea.solve.refine import STEP
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.refine import MESH_RATIO
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
@@ -62,7 +62,7 @@ def test_a_half_planes_stress_comes_back_exactly_beside_what_is_smooth(steel: Ma
     pressure = np.zeros((*outline.nodes.shape, 3, 1))
     pressure[jump.before, :, 0] = -1.0
     found = jump.stress((5.0 * used + smooth)[..., None], 5.0 * pressure)[..., 0]
-    angle = np.linspace(0.0, np.pi, DIRECTIONS)[2:-2]  # where the integral is exact enough
+    angle = np.linspace(0.0, np.pi, EDGE_DIRECTIONS)[2:-2]  # where the integral is exact enough
     true = 5.0 * half_plane(R * np.cos(angle), R * np.sin(angle), steel.poisson_ratio) + 1.0
     assert found[2:-2] == pytest.approx(true, abs=2e-3)
 
@@ -74,7 +74,7 @@ def test_the_maximum_at_a_jump_is_that_of_far_finer_elements_near_it(steel: Mate
     """
     results = [
         harmonic_result(
-            harmonic_solution(SectionProblem(PIN, steel, (), (SHEARED,), ()), level, STEP),
+            harmonic_solution(SectionProblem(PIN, steel, (), (SHEARED,), ()), level, MESH_RATIO),
             (),
             SHEARED,
         )
@@ -102,7 +102,7 @@ def test_a_pin_sheared_by_pressures_converges_on_few_meshes(steel: Material) -> 
     pin = Pin("three", tuple(Segment(x, 2.0 * R, connection=name) for name, x in bands))
     forces = np.array([[[500.0, 0.0, 0.0], [-1000.0, 0.0, 0.0], [500.0, 0.0, 0.0]]])
     sheared = PinLoads("shear", pin.connections, forces, distribution="cosine")
-    (found,) = solve_pin(pin, steel, (), (sheared,), Asked(tolerance=0.02, model="harmonic"))
+    (found,) = solve_pin(pin, steel, (), (sheared,), Requirement(tolerance=0.02, model="harmonic"))
     assert found.peak.verdict == "converged"
     assert len(found.peak.history) <= 4
 
@@ -116,7 +116,9 @@ def test_a_fillets_peak_beside_the_edge_of_a_pressure_is_read(steel: Material) -
     case = PinLoads("push", ("narrow",), np.array([[[500.0, 0.0, 0.0]]]), distribution="cosine")
     coarse, fine = (
         harmonic_result(
-            harmonic_solution(SectionProblem(pin, steel, ("start",), (case,), ()), level, STEP),
+            harmonic_solution(
+                SectionProblem(pin, steel, ("start",), (case,), ()), level, MESH_RATIO
+            ),
             (),
             case,
         )

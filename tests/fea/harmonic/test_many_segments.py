@@ -10,12 +10,12 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.memory import section_memory
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.harmonic.quiet_corners import CROWD, crowd
-from fea.solve.refine import STEP
-from fea.solve.solve_pin import Asked, count_loads, singularities_of, solve_pin
+from fea.harmonic.quiet_corners import NUMEROUS_FILLETS_ABOVE, numerous_fillets
+from fea.solve.refine import MESH_RATIO
+from fea.solve.solve_pin import Requirement, count_loads, singularities_of, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles
@@ -41,7 +41,7 @@ def ends(pin: Pin) -> PinLoads:
 
 def known(pin: Pin, steel: Material) -> float:
     """The maximum, which three meshes or more know to 2 %."""
-    (found,) = solve_pin(pin, steel, ("start",), (ends(pin),), Asked(model="harmonic"))
+    (found,) = solve_pin(pin, steel, ("start",), (ends(pin),), Requirement(model="harmonic"))
     peak = found.peak
     assert peak.max_von_mises is not None
     assert peak.parts is not None
@@ -85,7 +85,7 @@ def test_a_crowd_of_fillets(count: int, steel: Material) -> None:
         moments=np.array([-(moment - 50.0 * 3.5) * D, 0.0, 0.0]),
         distribution="cosine",
     )
-    (beside,) = solve_pin(short, steel, ("start",), (load,), Asked(model="harmonic"))
+    (beside,) = solve_pin(short, steel, ("start",), (load,), Requirement(model="harmonic"))
     assert found == pytest.approx(beside.peak.max_von_mises, rel=0.03)
 
 
@@ -99,21 +99,21 @@ def test_a_thin_tube(wall: float, steel: Material) -> None:
 
 def test_quiet_fillets_stay_coarse_and_the_others_do_not(steel: Material) -> None:
     """Of a cantilever those near the clamp count; each mesh is known from the first."""
-    pin = shaft(CROWD + 4, 1.2, 0.05 * D)
+    pin = shaft(NUMEROUS_FILLETS_ABOVE + 4, 1.2, 0.05 * D)
     loads = ends(pin)
     singularities = singularities_of(pin, steel, ("start",), (loads,))
-    results: tuple[MeshResult, ...] = ()
+    results: tuple[MeshMaximum, ...] = ()
     for level in range(2):
         solution = harmonic_solution(
             SectionProblem(pin, steel, ("start",), (loads,), singularities),
             level,
-            STEP,
+            MESH_RATIO,
             results[-1:],
         )
         results += (harmonic_result(solution, singularities, loads),)
     first, second = results
     assert first.quiet == second.quiet
-    assert set(first.quiet) == set(crowd(pin)) - set(range(min(first.quiet)))
+    assert set(first.quiet) == set(numerous_fillets(pin)) - set(range(min(first.quiet)))
     assert 0 < min(first.quiet) < 0.5 * len(pin.segments)
     assert first.location[2] < pin.stations[2]
 
@@ -121,7 +121,7 @@ def test_quiet_fillets_stay_coarse_and_the_others_do_not(steel: Material) -> Non
 def test_memory_ends_a_section_too(steel: Material) -> None:
     """What the first mesh takes is enough for no second one, and that is reported."""
     pin = shaft(4, 1.0)
-    asked = Asked(model="harmonic", tolerance=1e-6, meshes=2)
+    asked = Requirement(model="harmonic", tolerance=1e-6, meshes=2)
     loads = ends(pin)
     (free,) = solve_pin(pin, steel, ("start",), (loads,), asked)
     first = free.peak.history[0].dofs
@@ -133,9 +133,11 @@ def test_memory_ends_a_section_too(steel: Material) -> None:
 
 
 def test_few_fillets_are_no_crowd() -> None:
-    assert crowd(shaft(CROWD + 1, 1.2, 0.05 * D)) == ()
-    assert crowd(shaft(CROWD + 2, 1.2, 0.05 * D)) == tuple(range(CROWD + 1))
-    assert crowd(shaft(200, 1.0, 0.05 * D)) == ()
+    assert numerous_fillets(shaft(NUMEROUS_FILLETS_ABOVE + 1, 1.2, 0.05 * D)) == ()
+    assert numerous_fillets(shaft(NUMEROUS_FILLETS_ABOVE + 2, 1.2, 0.05 * D)) == tuple(
+        range(NUMEROUS_FILLETS_ABOVE + 1)
+    )
+    assert numerous_fillets(shaft(200, 1.0, 0.05 * D)) == ()
 
 
 def test_parts_have_elements_of_their_own_thickness() -> None:

@@ -7,10 +7,10 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.evaluate import HarmonicAnswer
+from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.revolve import revolve_solid
-from fea.harmonic.shown_surface import SECTORS
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.harmonic.shown_surface import VIEW_SECTORS
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 
 NU = 0.3  # does not matter without lugs
@@ -19,10 +19,10 @@ LOADS = PinLoads("c", ("B",), np.array([[[0.0, 0.0, 0.0]], [[300.0, -400.0, 200.
 
 
 @pytest.fixture(scope="module")
-def answer(steel: Material) -> HarmonicAnswer:
-    asked = Asked(model="harmonic", meshes=1)
+def answer(steel: Material) -> HarmonicField:
+    asked = Requirement(model="harmonic", meshes=1)
     (found,) = solve_pin(PIN, steel, ("start",), (LOADS,), asked)
-    assert isinstance(found.answer, HarmonicAnswer)
+    assert isinstance(found.answer, HarmonicField)
     return found.answer
 
 
@@ -34,17 +34,17 @@ def volumes(wedges: Floats) -> Floats:
     return np.asarray(np.sum(sixfold, axis=0) / 6.0)
 
 
-def test_wedges_fill_the_body(answer: HarmonicAnswer) -> None:
+def test_wedges_fill_the_body(answer: HarmonicField) -> None:
     """60 sectors lose sin x / x of a circle, x = 6 deg: 0.18 %."""
     picture = revolve_solid(answer.fields, LOADS, 1, NU)
     assert picture.cell_type == "wedge"
     size = np.abs(volumes(picture.points[picture.cells]))
-    x = 2.0 * np.pi / SECTORS
+    x = 2.0 * np.pi / VIEW_SECTORS
     assert size.sum() == pytest.approx(PIN.volume * np.sin(x) / x, rel=1e-9)
     assert np.isnan(picture.envelope).all()
 
 
-def test_the_body_shows_what_its_surface_does(answer: HarmonicAnswer) -> None:
+def test_the_body_shows_what_its_surface_does(answer: HarmonicField) -> None:
     """At points of the surface that are corners of triangles; without load, nothing."""
     skin, body = answer.picture(LOADS, 1), revolve_solid(answer.fields, LOADS, 1, NU)
     where = {tuple(p): k for k, p in enumerate(np.round(skin.points, 12).tolist())}
@@ -54,7 +54,7 @@ def test_the_body_shows_what_its_surface_does(answer: HarmonicAnswer) -> None:
         if tuple(p) in where
     ]
     mine, theirs = np.array(pairs).T
-    assert len(mine) > 20 * SECTORS
+    assert len(mine) > 20 * VIEW_SECTORS
     largest = np.linalg.norm(skin.displacement, axis=1).max()
     gap = body.displacement[mine] - skin.displacement[theirs]
     assert np.abs(gap).max() < 1e-9 * largest

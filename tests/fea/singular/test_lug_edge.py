@@ -21,7 +21,7 @@ from fea.harmonic.model import HarmonicModel
 from fea.singular.lug_edge import edge_exponent, lug_edge_exponent
 from fea.singular.williams import plane_exponent
 from fea.support.contact.contact import Bands, ContactProblem
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
@@ -233,7 +233,7 @@ def test_a_joint_has_the_exponent(lug_over_pin: float) -> None:
     over = Segment(D, D)
     pin = Pin("P", (over, Segment(2.0 * D, D, connection="L"), over))
     lug = Lug("L", 3.0 * D, lug_material, clearance=-2e-5)
-    model = JointModel(pin, pin_material, [lug], Cells(60, 4, 0, 60.0))
+    model = ContactModel(pin, pin_material, [lug], Resolution(60, 4, 0, 60.0))
     found = model.solve(PinLoads("pressed on", ("L",), np.zeros((1, 1, 3))))
     near = slice(1, 4)
     distance = found.bands.z[near] - D

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.peak import ErrorParts, Peak, decides
+from fea.core.peak import ErrorParts, Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.singular.fit_exponent import strength
 from fea.singular.singularities import find_singularities
 from fea.singular.williams import notch_factor, plane_exponent
-from fea.solve.solve_pin import Asked, Model, solve_pin
+from fea.solve.solve_pin import Model, Requirement, solve_pin
 from geometry import Pin, Segment
 
 ROOT = Pin("R", (Segment(0.04, 0.02, connection="R1"), Segment(0.01, 0.02, name="head")))
@@ -56,7 +56,11 @@ def test_the_interval_is_that_of_half_and_twice_the_distance(model: Model, steel
     """
     found = {
         times: solve_pin(
-            HELD, steel, ("held",), (PULLED,), Asked(model=model, distance=0.1 * times, meshes=3)
+            HELD,
+            steel,
+            ("held",),
+            (PULLED,),
+            Requirement(model=model, distance=0.1 * times, meshes=3),
         )[0].peak
         for times in HALF_TO_TWICE
     }
@@ -91,7 +95,7 @@ def test_a_governing_section_keeps_a_row_singular(steel: Material) -> None:
     assert peak.verdict == peak.places.surface.verdict == "singular"
     assert peak.interval is not None
     assert peak.interval[0] == pytest.approx(bending)
-    assert decides(peak, 1.01 * peak.interval[1]) is None
+    assert meets_limit(peak, 1.01 * peak.interval[1]) is None
 
 
 def test_meshes_decide_by_the_interval(steel: Material) -> None:
@@ -101,10 +105,10 @@ def test_meshes_decide_by_the_interval(steel: Material) -> None:
     assert steel.yield_strength is not None
     low, high = known.peak.interval
     for limit, open_ in ((0.5 * low, False), (0.5 * (low + high), True)):
-        asked = Asked(1e-4, goal="decide", required=steel.yield_strength / limit, meshes=4)
+        asked = Requirement(1e-4, goal="decide", required=steel.yield_strength / limit, meshes=4)
         (found,) = solve_pin(HELD, steel, ("held",), (PULLED,), asked)
         assert ("mesh-decides" in found.peak.reasons) is not open_
-        assert decides(found.peak, limit) is (None if open_ else False)
+        assert meets_limit(found.peak, limit) is (None if open_ else False)
 
 
 def test_a_converged_row_has_no_interval(steel: Material) -> None:
@@ -140,11 +144,11 @@ def test_what_decides(
     verdict: str, interval: tuple[float, float] | None, limit: float, expected: bool | None
 ) -> None:
     value = None if verdict == "rigid" else 100.0
-    peak = Peak(
+    peak = Maximum(
         "P", "c", "harmonic", verdict, "", value, value and 10.0,  # type: ignore[arg-type]
         interval=interval, parts=ErrorParts(10.0),
     )  # fmt: skip
-    assert decides(peak, limit) is expected
+    assert meets_limit(peak, limit) is expected
 
 
 @pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-5, 1e-8])
@@ -164,7 +168,7 @@ def test_a_sharp_corner_is_singular_however_small_its_step(step: float, steel: M
 @pytest.mark.slow
 def test_the_solid_model_sees_a_small_step_too(steel: Material) -> None:
     """Which its elements do not resolve; a step where stress is low does not govern."""
-    (found,) = solve_pin(collar(1e-3), steel, (), (THREE,), Asked(model="solid", meshes=1))
+    (found,) = solve_pin(collar(1e-3), steel, (), (THREE,), Requirement(model="solid", meshes=1))
     assert found.peak.verdict == "singular"
     left, right = found.peak.singular_at
     assert (left.governs, right.governs) == (False, True)  # 0.46 and 0.81 of the largest stress

@@ -13,10 +13,10 @@ from fea.core.material import Material
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.solid.evaluate import SolidAnswer
+from fea.solid.evaluate import SolidField
 from fea.solid.model import SolidModel, acting
 from fea.solid.superposition import envelope
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import CutPin, Flat, Hole, Pin, PinLike, Segment
 from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
@@ -112,7 +112,7 @@ def test_a_pin_may_be_held_by_a_hole(steel: Material) -> None:
     bar = Pin("P", (Segment(0.03, 0.02), Segment(0.02, 0.02, connection="B")))
     pin = CutPin(bar, (Hole(0.01, 0.006),))
     case = PinLoads("case", ("B",), np.array([[[0.0, 0.0, 1000.0]]]))
-    (found,) = solve_pin(pin, steel, ("hole 1",), (case,), Asked(0.5, meshes=1))
+    (found,) = solve_pin(pin, steel, ("hole 1",), (case,), Requirement(0.5, meshes=1))
     peak = found.peak
     assert (peak.model, peak.verdict) == ("solid", "singular")
     (zone,) = peak.singular_at
@@ -124,7 +124,7 @@ def test_a_pin_may_be_held_by_a_hole(steel: Material) -> None:
     assert on_rim(zone.location) < zone.excluded
     assert peak.location is not None
     assert on_rim(peak.location) > zone.excluded
-    assert isinstance(found.answer, SolidAnswer)
+    assert isinstance(found.answer, SolidField)
     fields = found.answer.solution.fields
     force = fields.support @ fields.coefficients(case)[0]
     assert force[:3] == pytest.approx([0.0, 0.0, -1000.0], abs=1e-6)
@@ -143,7 +143,7 @@ def test_a_body_that_nothing_holds_closes_its_balance(steel: Material, tmp_path:
     body = SolidBody(BodyFile("P", path, MM, places))
     load = PinLoads("case", ("A", "B", "C"), np.array([[[0, -500.0, 0], [0, 1000.0, 0],
                                                         [0, -480.0, 0]]]))  # fmt: skip
-    (found,) = solve_pin(body, steel, (), (load,), Asked(0.05, meshes=1))
+    (found,) = solve_pin(body, steel, (), (load,), Requirement(0.05, meshes=1))
     assert found.peak.verdict == "singular"
     assert found.peak.reasons == ("too-few-meshes", "imbalance-reacted", "not-axisymmetric",
                                   "mesh-limit")  # fmt: skip
@@ -156,5 +156,5 @@ def test_a_body_that_nothing_holds_closes_its_balance(steel: Material, tmp_path:
     step = np.array([-0.075, -0.065])  # where the flat ends
     assert np.abs(zone.location[2] - step).min() <= zone.excluded
     assert zone.excluded == pytest.approx(0.1 * 0.02, rel=1e-3)
-    assert isinstance(found.answer, SolidAnswer)
+    assert isinstance(found.answer, SolidField)
     assert np.abs(found.answer.solution.fields.support).max() < 1e-6

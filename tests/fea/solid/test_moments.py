@@ -15,11 +15,11 @@ from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.voigt import von_mises
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import resultants, surface
-from fea.solid.evaluate import SolidAnswer
+from fea.solid.evaluate import SolidField
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.nodal_loads import Unit, nodal_loads
 from fea.solid.superposition import envelope
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import ArgumentError, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises
@@ -231,7 +231,7 @@ def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     left = [out_of_balance(pin, case) for case in cases]
     assert [b.force for b in left] == pytest.approx([0.0] * 4)
     assert [b.couple for b in left] == pytest.approx([0.0, 6.0, 60.0, 1.0], abs=1e-12)
-    asked = Asked(0.5, model="solid", meshes=1)
+    asked = Requirement(0.5, model="solid", meshes=1)
     ok, less, none, refused = solve_pin(pin, steel, (), cases, asked)
     assert ok.peak.imbalance is None
     assert less.peak.imbalance == pytest.approx((0.0, 6.0 / 500.0 / 0.14))
@@ -240,7 +240,7 @@ def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     assert none.peak.reasons == ("couple-imbalance",)
     assert refused.peak.verdict == "rigid"
     assert refused.peak.reasons == ("torque-imbalance",)
-    assert isinstance(ok.answer, SolidAnswer)
+    assert isinstance(ok.answer, SolidField)
     fields = ok.answer.solution.fields
     assert ok.peak.max_von_mises is not None
     assert (UnitLoad("B", "moment", 1), 1) in fields.loads

@@ -12,9 +12,9 @@ from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.singular.singularities import find_singularities
-from fea.solid.evaluate import SolidAnswer, solid_result, solid_solution
+from fea.solid.evaluate import SolidField, solid_result, solid_solution
 from fea.solid.model import SolidModel
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.pins.solid_line import axial_stress
@@ -62,7 +62,7 @@ def test_a_pin_that_nothing_holds_needs_loads_in_balance(steel: Material) -> Non
     lop = balanced.copy()
     lop[0, 0, 1] = -300.0
     cases = tuple(PinLoads(n, ("A", "B", "C"), f) for n, f in (("ok", balanced), ("lop", lop)))
-    ok, refused = solve_pin(pin, steel, (), cases, Asked(0.5, model="solid", meshes=2))
+    ok, refused = solve_pin(pin, steel, (), cases, Requirement(0.5, model="solid", meshes=2))
     assert refused.peak.verdict == "rigid"
     assert refused.peak.max_von_mises is None
     assert refused.peak.reasons == ("force-imbalance",)
@@ -71,7 +71,7 @@ def test_a_pin_that_nothing_holds_needs_loads_in_balance(steel: Material) -> Non
     # against beam theory: three-point bending by bands of 20 mm, M = F/2 * 20 mm - w * 5 mm^2 / ...
     moment = 500.0 * 0.02 - 1000.0 / 0.02 * 0.01**2 / 2
     assert refused.answer is None
-    assert isinstance(ok.answer, SolidAnswer)
+    assert isinstance(ok.answer, SolidField)
     fields = ok.answer.solution.fields
     (c,) = fields.coefficients(cases[0])
     stress = axial_stress(fields, c, 0.01, math.pi / 2, np.array([0.03]))[0]
@@ -105,10 +105,10 @@ def test_a_sharp_corner_and_a_clamp_edge_are_singular(steel: Material) -> None:
     """
     pin = Pin("P", (Segment(0.02, 0.03), Segment(0.02, 0.02, connection="B")))
     load = PinLoads("case", ("B",), np.array([[[0.0, 1000.0, 0.0]]]))
-    asked = Asked(0.2, model="solid", meshes=3)
+    asked = Requirement(0.2, model="solid", meshes=3)
     peak, exact = (
         solve_pin(pin, steel, ("start",), (load,), a)[0].peak
-        for a in (asked, Asked(0.2, model="harmonic"))
+        for a in (asked, Requirement(0.2, model="harmonic"))
     )
     assert (peak.model, exact.model) == ("solid", "harmonic")
     for found in (peak, exact):
@@ -149,7 +149,9 @@ def test_a_fillet_converges(cantilever_pin: Pin, steel: Material) -> None:
     larger; and the estimate must cover the difference from a finer mesh.
     """
     load = PinLoads("case", ("P1",), np.array([[[0.0, 1000.0, 0.0]]]))
-    (coarse,) = solve_pin(cantilever_pin, steel, ("start",), (load,), Asked(0.05, model="solid"))
+    (coarse,) = solve_pin(
+        cantilever_pin, steel, ("start",), (load,), Requirement(0.05, model="solid")
+    )
     assert coarse.peak.verdict == "converged", coarse.peak.note
     size = MeshSize().finer(2.0)
     singularities = find_singularities(cantilever_pin, ("start",), ("P1",), steel.poisson_ratio)

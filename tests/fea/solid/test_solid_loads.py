@@ -11,7 +11,7 @@ import pytest
 from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
-from fea.core.pin_loads import BODY, PinLoads, UnitLoad
+from fea.core.pin_loads import BODY_SURFACE, PinLoads, UnitLoad
 from fea.core.voigt import von_mises
 from fea.solid import model as solid
 from fea.solid import nodal_loads as solid_loads
@@ -19,7 +19,7 @@ from fea.solid.boundary import Patch, resultants, surface
 from fea.solid.model import SolidModel, acting
 from fea.solid.nodal_loads import closed, nodal_loads
 from fea.solid.superposition import envelope
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises
@@ -36,7 +36,7 @@ FREE = Pin(
         Segment(0.02, 0.02, connection="C"),
     ),
 )
-BODIES = tuple((UnitLoad(BODY, "body", n), p) for n, p in ((1, 0), (1, 1), (0, 0)))
+BODIES = tuple((UnitLoad(BODY_SURFACE, "body", n), p) for n, p in ((1, 0), (1, 1), (0, 0)))
 
 
 @pytest.fixture(scope="module")
@@ -199,7 +199,7 @@ def test_the_own_weight_counts_in_the_balance(steel: Material) -> None:
 def test_one_band_alone_holds_nothing(steel: Material) -> None:
     pin = Pin("P", (Segment(0.02, 0.02, connection="B"),))
     loads = PinLoads("case", ("B",), np.array([[[0.0, 1.0, 0.0]]]))
-    (found,) = solve_pin(pin, steel, (), (loads,), Asked(0.5, model="solid"))
+    (found,) = solve_pin(pin, steel, (), (loads,), Requirement(0.5, model="solid"))
     assert found.peak.verdict == "rigid"
     assert found.answer is None
     assert found.peak.reasons == ("one-band",)
@@ -223,7 +223,7 @@ def test_a_force_on_a_face_that_is_no_band_is_uniform(model: SolidModel, steel: 
 def test_a_mesh_that_cuts_too_much_off_a_band_is_refused(
     model: SolidModel, steel: Material, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(solid_loads, "CURVED_AREA", 1e-7)
+    monkeypatch.setattr(solid_loads, "MAX_CURVED_AREA_LOSS", 1e-7)
     with raises(SolveError, "area-mismatch", "surface A"):
         nodal_loads(FREE, steel, model.space, surface(model.space), forces("A"))
 

@@ -12,7 +12,7 @@ from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.solve import refine as ladder
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from tests.support.errors import raises
 
@@ -38,7 +38,7 @@ YIELD = 1.0e9  # of `steel`
 
 def test_a_beam_decides_where_its_error_leaves_no_doubt(steel: Material) -> None:
     for required, meets in ((2.0, True), (1e4, False)):
-        asked = Asked(goal="decide", required=required)
+        asked = Requirement(goal="decide", required=required)
         (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
         peak = found.peak
         assert (peak.model, peak.verdict) == ("beam", "unconverged")
@@ -48,18 +48,18 @@ def test_a_beam_decides_where_its_error_leaves_no_doubt(steel: Material) -> None
 
 
 def test_what_no_beam_decides_goes_to_the_harmonic_model(steel: Material) -> None:
-    (beam,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="beam"))
+    (beam,) = solve_pin(BAR, steel, (), (BALANCED,), Requirement(model="beam"))
     assert "requested" in beam.peak.reasons
     close = YIELD / (beam.peak.max_von_mises or 0.0)
-    (found,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(goal="decide", required=close))
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), Requirement(goal="decide", required=close))
     assert found.peak.model == "harmonic"
     assert "beam-open" in found.peak.reasons
 
 
 def test_a_wide_tolerance_is_a_beams_and_a_narrow_one_is_not(steel: Material) -> None:
-    (wide,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(tolerance=0.9))
+    (wide,) = solve_pin(BAR, steel, (), (BALANCED,), Requirement(tolerance=0.9))
     assert (wide.peak.model, wide.peak.verdict) == ("beam", "converged")
-    (narrow,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(tolerance=0.06))
+    (narrow,) = solve_pin(BAR, steel, (), (BALANCED,), Requirement(tolerance=0.06))
     assert narrow.peak.model == "harmonic"
     assert "beam-inaccurate" in narrow.peak.reasons
 
@@ -67,13 +67,13 @@ def test_a_wide_tolerance_is_a_beams_and_a_narrow_one_is_not(steel: Material) ->
 def test_a_strength_or_a_requirement_that_is_missing_decides_nothing(steel: Material) -> None:
     weak = replace(steel, yield_strength=None)
     for material, required in ((weak, 2.0), (steel, None)):
-        asked = Asked(goal="decide", required=required, tolerance=0.2)
+        asked = Requirement(goal="decide", required=required, tolerance=0.2)
         (found,) = solve_pin(BAR, material, (), (BALANCED,), asked)
         assert found.peak.model == "harmonic"
 
 
 def test_meshes_that_run_out_are_told(steel: Material) -> None:
-    asked = Asked(model="harmonic", tolerance=1e-6, meshes=3)
+    asked = Requirement(model="harmonic", tolerance=1e-6, meshes=3)
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
     assert (found.peak.verdict, len(found.peak.history)) == ("unconverged", 3)
     assert found.peak.reasons == ("above-tolerance", "requested", "mesh-limit")
@@ -83,7 +83,7 @@ def test_meshes_that_run_out_are_told(steel: Material) -> None:
 
 
 def test_one_mesh_has_no_error_estimate(steel: Material) -> None:
-    asked = Asked(model="harmonic", meshes=1)
+    asked = Requirement(model="harmonic", meshes=1)
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
     assert found.peak.verdict == "unconverged"
     assert found.peak.error_estimate == found.peak.max_von_mises
@@ -91,7 +91,7 @@ def test_one_mesh_has_no_error_estimate(steel: Material) -> None:
 
 
 def test_a_case_out_of_balance_is_rigid_and_the_others_are_solved(steel: Material) -> None:
-    first, second = solve_pin(BAR, steel, (), (ONE_SIDED, BALANCED), Asked(model="beam"))
+    first, second = solve_pin(BAR, steel, (), (ONE_SIDED, BALANCED), Requirement(model="beam"))
     assert (first.peak.case, first.peak.verdict, first.answer) == ("pull", "rigid", None)
     assert first.peak.max_von_mises is None
     assert first.peak.reasons == ("force-imbalance",)
@@ -101,7 +101,7 @@ def test_a_case_out_of_balance_is_rigid_and_the_others_are_solved(steel: Materia
 
 def test_a_load_without_size_says_nothing_of_a_balance(steel: Material) -> None:
     nothing = replace(BALANCED, forces=0.0 * BALANCED.forces)
-    (found,) = solve_pin(BAR, steel, (), (nothing,), Asked(model="beam"))
+    (found,) = solve_pin(BAR, steel, (), (nothing,), Requirement(model="beam"))
     assert found.peak.max_von_mises == 0.0
     assert found.peak.imbalance is None
     assert "imbalance-reacted" not in found.peak.reasons
@@ -112,7 +112,7 @@ def test_what_bands_take_up_is_told(steel: Material) -> None:
     in 40.
     """
     some = replace(BALANCED, forces=BALANCED.forces * np.array([1.0, 1.0, 0.9])[:, None])
-    (found,) = solve_pin(BAR, steel, (), (some,), Asked(model="beam"))
+    (found,) = solve_pin(BAR, steel, (), (some,), Requirement(model="beam"))
     assert "imbalance-reacted" in found.peak.reasons
     assert found.peak.imbalance == pytest.approx((0.05, 0.01875))
     assert "a force of 0.05 of the largest load" in found.peak.note
@@ -120,7 +120,7 @@ def test_what_bands_take_up_is_told(steel: Material) -> None:
 
 def test_no_beam_where_a_corner_has_no_maximum(steel: Material) -> None:
     sharp = Pin("S", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="D1")))
-    asked = Asked(goal="decide", required=1e4, meshes=3)
+    asked = Requirement(goal="decide", required=1e4, meshes=3)
     (found,) = solve_pin(sharp, steel, ("start",), (ONE_SIDED,), asked)
     assert found.peak.model == "harmonic"
 
@@ -129,7 +129,7 @@ def test_no_beam_where_a_corner_has_no_maximum(steel: Material) -> None:
 def test_only_the_solid_takes_what_is_no_body_of_revolution(model: str, steel: Material) -> None:
     cut = CutPin(BAR, (Hole(0.02, 0.004),), ())
     with raises(ArgumentError, "not-axisymmetric", "pin D", model):
-        solve_pin(cut, steel, (), (BALANCED,), Asked(model=model))  # type: ignore[arg-type]
+        solve_pin(cut, steel, (), (BALANCED,), Requirement(model=model))  # type: ignore[arg-type]
 
 
 def test_the_picture_shows_the_answer(steel: Material) -> None:
@@ -137,7 +137,7 @@ def test_the_picture_shows_the_answer(steel: Material) -> None:
     All instants push the same way, so the largest is everywhere that of the envelope.
     """
     one_way = replace(BALANCED, forces=np.sign(SIZES)[:, None, None] * BALANCED.forces)
-    (found,) = solve_pin(BAR, steel, (), (one_way,), Asked(model="harmonic"))
+    (found,) = solve_pin(BAR, steel, (), (one_way,), Requirement(model="harmonic"))
     peak, answer = found.peak, found.answer
     assert answer is not None
     maxima = answer.maxima(one_way)
@@ -165,7 +165,7 @@ def test_the_envelope_of_odd_harmonics_goes_all_round(steel: Material) -> None:
     uniform = replace(
         BALANCED, distribution="uniform", forces=np.sign(SIZES)[:, None, None] * BALANCED.forces
     )
-    (found,) = solve_pin(BAR, steel, (), (uniform,), Asked(model="harmonic"))
+    (found,) = solve_pin(BAR, steel, (), (uniform,), Requirement(model="harmonic"))
     assert found.answer is not None
     picture = found.answer.picture(uniform, 1)
     assert picture is not None
@@ -173,7 +173,7 @@ def test_the_envelope_of_odd_harmonics_goes_all_round(steel: Material) -> None:
 
 
 def test_the_beams_answer_is_its_peak(steel: Material) -> None:
-    (found,) = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="beam"))
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), Requirement(model="beam"))
     assert found.answer is not None
     maxima = found.answer.maxima(BALANCED)
     assert maxima.max() == pytest.approx(found.peak.max_von_mises, rel=1e-9)
@@ -183,13 +183,15 @@ def test_the_beams_answer_is_its_peak(steel: Material) -> None:
 
 def test_a_harmonic_mesh_decides_before_it_is_exact(steel: Material) -> None:
     """A tenth from the limit: more than its error, and less than a beam's."""
-    exact = solve_pin(BAR, steel, (), (BALANCED,), Asked(model="harmonic"))[0].peak.max_von_mises
+    exact = solve_pin(BAR, steel, (), (BALANCED,), Requirement(model="harmonic"))[
+        0
+    ].peak.max_von_mises
     assert exact is not None
-    asked = Asked(goal="decide", required=1.1 * YIELD / exact, tolerance=1e-6)
+    asked = Requirement(goal="decide", required=1.1 * YIELD / exact, tolerance=1e-6)
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
     assert (found.peak.model, found.peak.verdict) == ("harmonic", "unconverged")
     assert "mesh-decides" in found.peak.reasons
-    assert len(found.peak.history) < ladder.MESHES["harmonic"]
+    assert len(found.peak.history) < ladder.MAX_MESHES["harmonic"]
 
 
 def test_no_beam_where_a_fillet_has_no_factor(steel: Material) -> None:
@@ -206,9 +208,9 @@ def test_no_beam_where_a_fillet_has_no_factor(steel: Material) -> None:
     )
     couples = np.array([[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]])
     bent = PinLoads("bent", ("D1", "D2"), 0.0 * couples, couples)
-    (auto,) = solve_pin(tube, steel, (), (bent,), Asked(tolerance=0.9, meshes=3))
+    (auto,) = solve_pin(tube, steel, (), (bent,), Requirement(tolerance=0.9, meshes=3))
     assert auto.peak.model == "harmonic"
-    (beam,) = solve_pin(tube, steel, (), (bent,), Asked(model="beam", tolerance=0.9))
+    (beam,) = solve_pin(tube, steel, (), (bent,), Requirement(model="beam", tolerance=0.9))
     assert beam.peak.verdict == "unconverged"
     assert beam.peak.error_estimate == beam.peak.max_von_mises
     assert "no-notch-factor" in beam.peak.reasons
@@ -216,15 +218,15 @@ def test_no_beam_where_a_fillet_has_no_factor(steel: Material) -> None:
 
 def test_unknowns_and_memory_have_a_limit(steel: Material, monkeypatch: pytest.MonkeyPatch) -> None:
     """The mesh that would pass it is not made, and that is reported."""
-    loose = Asked(model="solid", tolerance=1e-6, meshes=1)
+    loose = Requirement(model="solid", tolerance=1e-6, meshes=1)
     (first,) = solve_pin(BAR, steel, (), (BALANCED,), loose)
     enough = 1.5 * solid_memory(first.peak.dofs)  # the next mesh has 2^1.5 times as many
     tight = replace(loose, meshes=3, memory=enough)
     (stopped,) = solve_pin(BAR, steel, (), (BALANCED,), tight)
     assert [h.dofs for h in stopped.peak.history] == [first.peak.dofs]
     assert {"memory-limit", "mesh-limit"} <= set(stopped.peak.reasons)
-    fine = Asked(model="harmonic", tolerance=1e-6)
-    monkeypatch.setitem(ladder.MOST_UNKNOWNS, "harmonic", 6000)
+    fine = Requirement(model="harmonic", tolerance=1e-6)
+    monkeypatch.setitem(ladder.MAX_UNKNOWNS, "harmonic", 6000)
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), fine)
-    assert 1 < len(found.peak.history) < ladder.MESHES["harmonic"]
+    assert 1 < len(found.peak.history) < ladder.MAX_MESHES["harmonic"]
     assert found.peak.dofs <= 6000 < 2.0 * found.peak.dofs

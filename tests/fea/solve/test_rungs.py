@@ -7,11 +7,11 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.solve.verdict import Seen, judge
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.verdict import MeshHistory, judge
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from geometry.mesh.elements import Element
 from tests.support.errors import raises
@@ -50,7 +50,7 @@ def test_a_harmonic_rung_is_the_mesh_of_a_run(cantilever_pin: Pin, steel: Materi
     problem = Problem(cantilever_pin, steel, ("start",), load)
     first = result_on(problem, Rung("harmonic", level=0))
     second = result_on(problem, Rung("harmonic", level=1), (first,))
-    asked = Asked(model="harmonic", meshes=2)
+    asked = Requirement(model="harmonic", meshes=2)
     (run,) = solve_pin(cantilever_pin, steel, ("start",), (load,), asked)
     assert [s.dofs for s in run.peak.history] == [first.unknowns, second.unknowns]
     assert [s.max_von_mises for s in run.peak.history] == [first.maximum, second.maximum]
@@ -92,6 +92,6 @@ def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
 
 
 def test_stress_that_is_not_finite_has_no_verdict() -> None:
-    result = MeshResult(900, float("nan"), 0, (0.0, 0.0, 0.0))
+    result = MeshMaximum(900, float("nan"), 0, (0.0, 0.0, 0.0))
     with raises(SolveError, "not-finite", "pin P, case up"):
-        judge(Seen("P", "up", "solid", (result,), (0.1,), 2.0), (), 0.02)
+        judge(MeshHistory("P", "up", "solid", (result,), (0.1,), 2.0), (), 0.02)

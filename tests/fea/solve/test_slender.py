@@ -10,7 +10,7 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Asked, solve_pin
+from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.gmsh_session import MeshError
 from tests.support.errors import raises
@@ -45,7 +45,7 @@ def test_sections_agree_with_beam_theory(diameters: int, steel: Material) -> Non
     """
     for made, clamps in ((cantilever, ("start",)), (three_points, ())):
         pin, loads, expected = made(diameters * D)
-        (found,) = solve_pin(pin, steel, clamps, (loads,), Asked(model="harmonic"))
+        (found,) = solve_pin(pin, steel, clamps, (loads,), Requirement(model="harmonic"))
         peak = found.peak
         assert peak.places is not None
         assert peak.places.section is not None
@@ -65,8 +65,8 @@ def test_where_round_off_is_too_much_the_beam_answers(steel: Material) -> None:
     """At 5000 diameters it changes a section's solution by more than a thousandth."""
     pin, loads, expected = cantilever(5000 * D)
     with raises(SolveError, "ill-conditioned"):
-        solve_pin(pin, steel, ("start",), (loads,), Asked(model="harmonic"))
-    (found,) = solve_pin(pin, steel, ("start",), (loads,), Asked(model="auto"))
+        solve_pin(pin, steel, ("start",), (loads,), Requirement(model="harmonic"))
+    (found,) = solve_pin(pin, steel, ("start",), (loads,), Requirement(model="auto"))
     assert found.peak.model == "beam"
     assert found.peak.max_von_mises == pytest.approx(expected, rel=1e-6)
     assert "harmonic-failed" in found.peak.reasons
@@ -82,7 +82,7 @@ def test_no_beam_stands_in_for_a_harmonic_model_that_was_asked_for(
     monkeypatch.setattr("fea.harmonic.evaluate.meridian_mesh", no_mesh)
     pin, loads, _ = cantilever(10 * D)
     with raises(MeshError, "none"):
-        solve_pin(pin, steel, ("start",), (loads,), Asked(model="harmonic"))
-    (found,) = solve_pin(pin, steel, ("start",), (loads,), Asked(model="auto"))
+        solve_pin(pin, steel, ("start",), (loads,), Requirement(model="harmonic"))
+    (found,) = solve_pin(pin, steel, ("start",), (loads,), Requirement(model="auto"))
     assert found.peak.model == "beam"
     assert found.peak.note.endswith("pin P: no mesh")

@@ -7,10 +7,10 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.core.solution import Answer
+from fea.core.solution import StressField
 from fea.core.voigt import von_mises
 from fea.solve import surface_fields as shown_by
-from fea.solve.solve_pin import Asked, Model, solve_pin
+from fea.solve.solve_pin import Model, Requirement, solve_pin
 from fea.solve.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 from pinbase.arrays import Mask
@@ -24,8 +24,8 @@ def loads(distribution: str) -> PinLoads:
     return PinLoads("c", ("P1",), FORCES, MOMENTS, distribution)  # type: ignore[arg-type]
 
 
-def solved(pin: Pin, steel: Material, model: Model, acting: PinLoads) -> Answer:
-    asked = Asked(model=model, meshes=1)
+def solved(pin: Pin, steel: Material, model: Model, acting: PinLoads) -> StressField:
+    asked = Requirement(model=model, meshes=1)
     (solution,) = solve_pin(pin, steel, ("start",), (acting,), asked)
     assert solution.answer is not None
     return solution.answer
@@ -122,7 +122,7 @@ def test_a_fine_mesh_is_shown_by_its_corners(
     """
     answer = solved(cantilever_pin, steel, "solid", loads("uniform"))
     every = unit_surface(answer)
-    monkeypatch.setattr(shown_by, "MOST_NODES", 100)
+    monkeypatch.setattr(shown_by, "MAX_SHOWN_NODES", 100)
     corners = unit_surface(answer)
     assert every is not None
     assert corners is not None

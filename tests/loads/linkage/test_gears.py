@@ -360,7 +360,9 @@ def test_batches_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     linkage, times = five_bar(friction=1e-3), np.linspace(0.0, 1.0, 30)
     course = moved(linkage)
     whole = motion_reactions("x", course.at(times), (LOAD,))
-    monkeypatch.setattr(loop_equations, "AT_ONCE", 7 * course.loops.rows * course.loops.columns)
+    monkeypatch.setattr(
+        loop_equations, "MATRIX_BATCH_ENTRIES", 7 * course.loops.rows * course.loops.columns
+    )
     parts = motion_reactions("x", course.at(times), (LOAD,))
     assert parts.reactions.forces == pytest.approx(whole.reactions.forces, rel=1e-12, abs=1e-9)
 

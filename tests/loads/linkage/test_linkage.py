@@ -15,12 +15,12 @@ from loads import (
     Body,
     Connection,
     CosineDrive,
-    Impasse,
     Joint,
     Lever,
     Linkage,
     LinkageError,
     Motion,
+    MotionBlocked,
     Slider,
     at_rest,
     mobility,
@@ -133,7 +133,7 @@ def test_few_samples_end_where_many_do() -> None:
 @pytest.mark.parametrize("change", [0.6, -0.6])
 def test_a_length_that_cannot_be_reached_is_told(change: float) -> None:
     linkage = lever()
-    with raises(Impasse, "dead-point") as caught:
+    with raises(MotionBlocked, "dead-point") as caught:
         move(linkage, [drive(linkage, change)], np.linspace(0.0, 2.0, 21))
     limit = 1.3 if change > 0 else 0.5  # base + arm, base - arm: the dead points
     assert caught.value.reached[0] == pytest.approx(limit, abs=1e-6)

@@ -19,7 +19,9 @@ def test_batches_join_to_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     course = Course(lift(3), [LAW], 0.0, SPAN)
     times = np.linspace(0.0, SPAN, 50)
     once = motion_reactions("lift", course.at(times))
-    monkeypatch.setattr(loop_equations, "AT_ONCE", 7 * course.loops.rows * course.loops.columns)
+    monkeypatch.setattr(
+        loop_equations, "MATRIX_BATCH_ENTRIES", 7 * course.loops.rows * course.loops.columns
+    )
     parts = motion_reactions("lift", course.at(times))
     assert len(course.loops.parts(50)) == 8
     assert parts.reactions.times is not None

@@ -11,9 +11,9 @@ from loads import (
     Connection,
     ConstantDrive,
     CosineDrive,
-    Impasse,
     Joint,
     Linkage,
+    MotionBlocked,
     TableDrive,
     Turn,
     move,
@@ -57,7 +57,7 @@ def test_an_excursion_between_two_samples_is_followed() -> None:
     """To beyond the dead point and back: the samples alone are both where it was drawn."""
     linkage = four_bar(1.0, 0.9, 0.5, 0.6, angle=0.5)
     there, none = (0.5, 2.0, 0.5), (0.0, 0.0, 0.0)
-    with raises(Impasse, "dead-point", "crank = 114"):
+    with raises(MotionBlocked, "dead-point", "crank = 114"):
         move(linkage, [TableDrive((0.0, 0.5, 1.0), there, none, none)], np.array([0.0, 1.0]))
 
 

@@ -15,9 +15,9 @@ from loads import (
     Connection,
     ConstantDrive,
     CycloidalDrive,
-    Impasse,
     Joint,
     Linkage,
+    MotionBlocked,
     StateDrive,
     Turn,
     ledger,
@@ -45,7 +45,7 @@ def test_random_four_bars_obey_the_laws(
     law = CycloidalDrive(angle, angle + 0.05, 0.3)
     try:
         motion = move(linkage, [law], np.linspace(0.0, 0.3, 13))
-    except Impasse:
+    except MotionBlocked:
         assume(False)
     a, b = (motion.joint(j)[0] @ [1.0, 1.0j] for j in "AB")
     assert np.abs(np.abs(b - a) - coupler).max() < 1e-12
@@ -192,7 +192,7 @@ def toggle() -> float:
 
 def test_a_dead_point_is_told_with_what_has_no_bound() -> None:
     linkage = four_bar(1.0, 0.9, 0.5, 0.6, angle=0.5)
-    with raises(Impasse, "dead-point") as caught:
+    with raises(MotionBlocked, "dead-point") as caught:
         move(linkage, [CycloidalDrive(0.5, 2.0, 1.0)], np.linspace(0.0, 1.0, 11))
     assert caught.value.kind == "dead point"
     assert caught.value.reached[0] == pytest.approx(toggle(), abs=1e-6)
@@ -212,7 +212,7 @@ def test_near_a_dead_point_the_path_still_converges(short: float) -> None:
 
 def test_a_parallelogram_stops_at_its_change_point() -> None:
     linkage = four_bar(1.0, 0.5, 1.0, 0.5, angle=1.0)
-    with raises(Impasse, "change-point") as caught:
+    with raises(MotionBlocked, "change-point") as caught:
         move(linkage, [ConstantDrive(1.0, -1.0, 1.0)], np.linspace(0.0, 1.0, 8))
     assert caught.value.reached[0] == pytest.approx(0.0, abs=1e-6)
 
@@ -259,7 +259,7 @@ def test_redundant_links_that_do_not_fit_are_told() -> None:
             Joint("D", (0.9, 0.7), (Connection("D5", "third"),), "coupler"),
         ),
     )
-    with raises(Impasse, "does-not-close"):
+    with raises(MotionBlocked, "does-not-close"):
         move(crooked, [ConstantDrive(1.0, 1.5, 1.0)], np.linspace(0.0, 1.0, 8))
 
 

@@ -7,7 +7,7 @@ import socket
 from pathlib import Path
 
 from loads import MB, FileError, TableError, read_regular, read_table, require_regular
-from loads.tables.csv_table import LARGEST_TABLE
+from loads.tables.csv_table import MAX_TABLE_BYTES
 from tests.support.errors import raises
 
 
@@ -54,6 +54,6 @@ def test_a_table_has_its_limit(tmp_path: Path) -> None:
     path = tmp_path / "large.csv"
     path.write_text("a\n1\n")
     assert [row.number("a") for row in read_table(path, ("a",))] == [1.0]
-    os.truncate(path, LARGEST_TABLE + 1)  # a hole: it takes no room
+    os.truncate(path, MAX_TABLE_BYTES + 1)  # a hole: it takes no room
     with raises(TableError, "too-large", "large.csv", "64 MB"):
         list(read_table(path, ("a",)))

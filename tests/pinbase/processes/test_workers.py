@@ -13,7 +13,7 @@ from functools import partial
 
 import pytest
 
-from pinbase.processes.pool import Died, Job, Tell, cores, processes, side_by_side
+from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel, processes
 from pinstress.study.reading.errors import InputError
 
 
@@ -41,7 +41,7 @@ def square(x: float, tell: Tell) -> float:
 def test_answers_come_in_the_order_of_the_jobs(most: int) -> None:
     told: list[tuple[str, float]] = []
     work = [Job(f"{x}", partial(square, x)) for x in (0.0, 1.0, 2.0, 3.0)]
-    found = side_by_side(work, most, lambda message, part: told.append((message, part)))
+    found = in_parallel(work, most, lambda message, part: told.append((message, part)))
     assert found == [0.0, 1.0, 4.0, 9.0]
     assert any("squaring 2.0" in message for message, _ in told)
     parts = [part for _, part in told]
@@ -57,8 +57,8 @@ def where(_: Tell) -> int:
 
 def test_there_are_as_many_processes_as_jobs_at_a_time_and_none_beside_this_one_for_one() -> None:
     work = [Job("pid", where)] * 6
-    assert side_by_side(work, 1) == [os.getpid()] * 6
-    apart = side_by_side(work, 2)
+    assert in_parallel(work, 1) == [os.getpid()] * 6
+    apart = in_parallel(work, 2)
     assert len(set(map(str, apart))) == 2
     assert os.getpid() not in apart
 
@@ -77,9 +77,9 @@ def test_a_process_that_dies_costs_the_job_it_was_doing_alone(most: int) -> None
     """Also when all processes have died before the last job."""
     names = "a!b!!!c!"
     work = [Job[object](n, crash if n == "!" else partial(name, n)) for n in names]
-    found = side_by_side(work, most)
-    assert ["!" if isinstance(f, Died) else f for f in found] == list(names)
-    assert all("signal 9" in f.reason for f in found if isinstance(f, Died))
+    found = in_parallel(work, most)
+    assert ["!" if isinstance(f, ProcessDied) else f for f in found] == list(names)
+    assert all("signal 9" in f.reason for f in found if isinstance(f, ProcessDied))
 
 
 def wrong(_: Tell) -> None:
@@ -93,7 +93,7 @@ def sleep(_: Tell) -> None:
 def test_an_exception_is_raised_with_the_jobs_name_and_ends_the_others() -> None:
     before = child_processes()
     with pytest.raises(InputError, match="no such thing") as caught:
-        side_by_side([Job("long", sleep), Job("pin Q", wrong)], 2)
+        in_parallel([Job("long", sleep), Job("pin Q", wrong)], 2)
     (note,) = caught.value.__notes__
     assert note.startswith("pin Q, in its own process:")
     assert "in wrong" in note  # the traceback of that process
@@ -106,7 +106,7 @@ def unsent(_: Tell) -> None:
 
 def test_what_cannot_be_sent_is_told_all_the_same() -> None:
     with pytest.raises(RuntimeError, match=r"pin Q, in its own process"):
-        side_by_side([Job("pin Q", unsent)] * 2, 2)
+        in_parallel([Job("pin Q", unsent)] * 2, 2)
 
 
 def deaf(tell: Tell) -> None:
@@ -124,7 +124,7 @@ def test_an_interrupt_ends_processes_that_do_not_listen() -> None:
 
     before = child_processes()
     with pytest.raises(KeyboardInterrupt):
-        side_by_side([Job("a", deaf), Job("b", deaf)], 2, interrupt)
+        in_parallel([Job("a", deaf), Job("b", deaf)], 2, interrupt)
     assert child_processes() == before
 
 
@@ -135,7 +135,7 @@ def test_a_child_that_is_ended_as_it_starts_does_nothing_of_its_parents() -> Non
 import os
 from functools import partial
 from pinbase.processes import interrupts
-from pinbase.processes.pool import Job, side_by_side
+from pinbase.processes.pool import Job, in_parallel
 from tests.pinbase.processes.test_workers import sleep, wrong
 from pinstress import InputError
 
@@ -143,7 +143,7 @@ own = os.getpid()
 interrupts.listen()
 for _ in range(200):
     try:
-        side_by_side([Job("long", sleep), Job("pin Q", wrong)], 2)
+        in_parallel([Job("long", sleep), Job("pin Q", wrong)], 2)
     except InputError:
         continue
     finally:

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 
 import pinstress
-from pinstress.analysis.results import Found
+from pinstress.analysis.results import RunResults
 from reports.format.ranges import factor_range
 from tests.conftest import ROOT
 
 
 @pytest.fixture(scope="module")
-def found() -> Found:
+def found() -> RunResults:
     return pinstress.run(pinstress.load_study(ROOT / "studies" / "one_pin.toml"), fields=True)
 
 
@@ -54,7 +54,7 @@ def test_importing_pinstress_is_light() -> None:
     assert done.stdout.strip() == "set()", done.stderr
 
 
-def test_a_notebook_shows_the_factor_with_its_verdict(found: Found) -> None:
+def test_a_notebook_shows_the_factor_with_its_verdict(found: RunResults) -> None:
     cells = Cells(found._repr_html_()).found
     assert "max von Mises [psi]" in cells
     factor = cells[len(cells) // 2 :]
@@ -63,7 +63,7 @@ def test_a_notebook_shows_the_factor_with_its_verdict(found: Found) -> None:
     assert f"FoS {shown} ≥ 10 required" in repr(found)
 
 
-def test_names_in_html_are_texts(found: Found) -> None:
+def test_names_in_html_are_texts(found: RunResults) -> None:
     from dataclasses import replace
 
     odd = replace(found, title="<b>", pins=(replace(found.pins[0], pin="<i>"),))
@@ -72,7 +72,7 @@ def test_names_in_html_are_texts(found: Found) -> None:
     assert "<i>" in Cells(text).found
 
 
-def test_frames_get_every_row(found: Found, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_frames_get_every_row(found: RunResults, monkeypatch: pytest.MonkeyPatch) -> None:
     """The library is whatever is installed; what it is given is the table."""
 
     def frame(rows: list[list[Any]], **how: Any) -> tuple[list[list[Any]], dict[str, Any]]:
@@ -93,19 +93,19 @@ def test_frames_get_every_row(found: Found, monkeypatch: pytest.MonkeyPatch) -> 
 
 @pytest.mark.parametrize("name", ["pandas", "polars"])
 def test_without_the_library_it_says_so(
-    found: Found, name: str, monkeypatch: pytest.MonkeyPatch
+    found: RunResults, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, name, None)  # as if not installed
     with pytest.raises(ImportError, match=f"pip install {name}"):
         getattr(found, f"to_{name}")()
 
 
-def test_a_table_that_is_not_there(found: Found) -> None:
+def test_a_table_that_is_not_there(found: RunResults) -> None:
     with pytest.raises(ValueError, match="no table 'motion'; there are safety_factors"):
         found.to_pandas("motion")
 
 
-def test_mesh_and_picture(found: Found) -> None:
+def test_mesh_and_picture(found: RunResults) -> None:
     mesh = found.to_pyvista("B", "landing")
     largest = float(np.max(mesh.point_data["von Mises [psi]"]))
     assert largest == pytest.approx(found.pins[0].max_von_mises, rel=2e-3)  # of 60 meridians
@@ -114,7 +114,7 @@ def test_mesh_and_picture(found: Found) -> None:
         found.to_pyvista("B", "taxi")
 
 
-def test_a_field_that_was_not_kept_is_solved_for(found: Found) -> None:
+def test_a_field_that_was_not_kept_is_solved_for(found: RunResults) -> None:
     from dataclasses import replace
 
     without = replace(found, fields={})

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from assess.strength.model_stress import YIELD
+from assess.strength.model_stress import YIELD_METHOD
 from pinstress import run, study_from
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.errors import InputError
-from reports.data.governing import governing, not_made
+from reports.data.governing import governing, skipped
 
 STUDY: dict[str, Any] = {
     "title": "A pin in double shear",
@@ -75,9 +75,9 @@ def test_fitting_factor_divides_and_is_not_an_assumption_when_given() -> None:
 def test_the_governing_check_and_those_for_want_of_data() -> None:
     results = run(study_from(study({"yield_strength": "235 MPa"})))
     (worst,) = governing(results)
-    made = [m for m in results.margins if not m.margin.needs and m.margin.method != YIELD]
+    made = [m for m in results.margins if not m.margin.needs and m.margin.method != YIELD_METHOD]
     assert worst.used == max(m.used for m in made)
-    assert set(not_made(results)) == {
+    assert set(skipped(results)) == {
         f"material.steel.{which}_strength" for which in ("ultimate", "shear", "bearing")
     }
     nothing = run(study_from(study({})))
@@ -134,7 +134,7 @@ def test_a_pin_in_two_lugs_of_a_structure_is_a_beam_on_two_supports() -> None:
     profile.append({"length": 8, "diameter": 16, "name": "third"})
     three = {**bare, "profile": profile, "lug": {**bare["lug"], "third": {}}}
     solved = run(study_from({**changed, "pin": {"P": three}}))
-    assert not [key for key in not_made(solved) if "left, right, third" in key]
+    assert not [key for key in skipped(solved) if "left, right, third" in key]
     assert "EN 1993 bending" in {m.margin.method for m in solved.margins if m.margin.governs}
 
 

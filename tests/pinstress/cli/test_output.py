@@ -71,7 +71,7 @@ def test_what_a_killed_run_left_is_cleared_by_the_next(earlier: Path) -> None:
     assert (earlier / "results.json").read_text() == "earlier"
     assert names(earlier.parent) == [".out.partial", "out"]
     with replacing(earlier) as staging:
-        assert names(staging) == [manifest.NAME]
+        assert names(staging) == [manifest.MANIFEST_FILE]
         (staging / "results.json").write_text("next")
     assert (earlier / "results.json").read_text() == "next"
     assert names(earlier.parent) == ["out"]
@@ -82,7 +82,7 @@ def test_of_two_runs_into_one_folder_one_is_refused(earlier: Path) -> None:
         with pytest.raises(InputError, match="another run is writing"), replacing(earlier):
             raise AssertionError("must not get here")
         assert names(earlier.parent / ".out.partial") == [
-            manifest.NAME,
+            manifest.MANIFEST_FILE,
             "plots",
             "results.json",
         ]
@@ -202,7 +202,7 @@ def test_a_full_disk_is_told_and_nothing_is_written(earlier: Path, jobs: str) ->
 def test_without_an_exchange_in_one_step_there_are_two(
     earlier: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(exchange, "EXCHANGE", 1 << 20)  # which no file system knows
+    monkeypatch.setattr(exchange, "RENAME_EXCHANGE", 1 << 20)  # which no file system knows
     with replacing(earlier) as staging:
         (staging / "results.json").write_text("next")
     assert (earlier / "results.json").read_text() == "next"
@@ -241,7 +241,7 @@ def test_a_link_is_not_followed_by_what_is_cleared_away(
         assert os.readlink(tmp_path / name) == str(tmp_path / target)
         (tmp_path / name).unlink()
     assert names(tmp_path / "home") == ["results.json"]
-    assert names(tmp_path / "results") == [manifest.NAME, "results.json"]
+    assert names(tmp_path / "results") == [manifest.MANIFEST_FILE, "results.json"]
     assert not (tmp_path / "nowhere").exists()
 
 
@@ -337,7 +337,9 @@ def test_a_list_that_names_files_elsewhere_removes_none_of_them(tmp_path: Path) 
         "../home/thesis.doc",
         str(home / "thesis.doc"),
     ]
-    (out / manifest.NAME).write_text(json.dumps({"schema": manifest.SCHEMA, "files": files}))
+    (out / manifest.MANIFEST_FILE).write_text(
+        json.dumps({"schema": manifest.MANIFEST_SCHEMA, "files": files})
+    )
     refused(out, r"contains thesis\.doc, which pinstress did not write")
     (out / "thesis.doc").unlink()
     with replacing(out) as staging:
@@ -349,6 +351,6 @@ def test_a_list_that_names_files_elsewhere_removes_none_of_them(tmp_path: Path) 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"schema": 1, "files": []}', "\0", '{"schema'])
 def test_a_list_that_is_none_makes_nothing_ours(text: str, tmp_path: Path) -> None:
     (tmp_path / "results.json").write_text("{}")
-    (tmp_path / manifest.NAME).write_text(text)
+    (tmp_path / manifest.MANIFEST_FILE).write_text(text)
     refused(tmp_path, "no list of what pinstress wrote")
-    assert names(tmp_path) == [manifest.NAME, "results.json"]
+    assert names(tmp_path) == [manifest.MANIFEST_FILE, "results.json"]

@@ -53,7 +53,7 @@ def test_another_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture
     manifest.begin(tmp_path)
     assert run_command_line(["plots", str(tmp_path)]) == 2
     assert "no report.html" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == [tmp_path / manifest.NAME]
+    assert list(tmp_path.iterdir()) == [tmp_path / manifest.MANIFEST_FILE]
 
 
 @pytest.mark.slow

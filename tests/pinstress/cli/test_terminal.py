@@ -19,7 +19,7 @@ import pytest
 import pyvista
 
 from pinstress import load_study
-from pinstress.analysis.gather_fields import STILLS, instants
+from pinstress.analysis.gather_fields import MAX_STILLS, instants
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin
 from tests.conftest import INCH
@@ -172,7 +172,7 @@ def test_stills_are_few_and_have_the_governing_one(count: int, governing: int) -
     assert governing in found
     assert found == sorted(set(found))
     assert (found[0], found[-1]) == (0, count - 1)
-    assert len(found) <= STILLS + 1
+    assert len(found) <= MAX_STILLS + 1
 
 
 def test_view_draws_the_run(swept: Path, tmp_path: Path) -> None:

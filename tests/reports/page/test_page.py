@@ -11,7 +11,7 @@ import pytest
 from reports.data.results import PinShape, Results, Units
 from reports.files import write_reports
 from reports.format.file_names import animation_name, plot_name
-from reports.page.page import AT_ONCE, render, write_page
+from reports.page.page import MAX_PINS_AT_ONCE, render, write_page
 from reports.page.pin_drawing import draw_pin
 from reports.page.scripts import plots_of
 from reports.plots.all import all_plots
@@ -211,9 +211,9 @@ def test_drawing_of_nothing_is_empty(results: Results) -> None:
 def test_folded_parts_of_many_pins_are_text_to_scripts(small: Results, tmp_path: Path) -> None:
     """Each in a noscript element, next to that of the message on disabled scripts."""
     first = small.pins[0]
-    pins = tuple(replace(first, pin=f"{EVIL}{k}") for k in range(AT_ONCE + 1))
+    pins = tuple(replace(first, pin=f"{EVIL}{k}") for k in range(MAX_PINS_AT_ONCE + 1))
     many = replace(small, pins=pins, shapes=(), surfaces=())
     page = render(many, tmp_path)
-    assert page.count("<noscript>") == page.count('<details class="fold"') + 1 > AT_ONCE
+    assert page.count("<noscript>") == page.count('<details class="fold"') + 1 > MAX_PINS_AT_ONCE
     assert not re.search(r"<noscript>(?:(?!</noscript>).)*<noscript>", page, re.S)
-    assert render(replace(many, pins=pins[:AT_ONCE]), tmp_path).count("<noscript>") == 1
+    assert render(replace(many, pins=pins[:MAX_PINS_AT_ONCE]), tmp_path).count("<noscript>") == 1

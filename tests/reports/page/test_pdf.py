@@ -8,10 +8,10 @@ from reports.data.decision import outcome, worst_first
 from reports.data.envelope import governing_cases
 from reports.data.results import Results, TitleBlock
 from reports.data.sensitivities import PinSensitivities, Sensitivity
-from reports.page.paper import ABREAST, MOST_DIMENSIONS, document
+from reports.page.paper import MAX_DIMENSIONS, PINS_PER_MATRIX, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
-from reports.tables.strength.safety_factors import shown_rows
+from reports.tables.strength.safety_factors import display_rows
 
 EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
 
@@ -20,7 +20,7 @@ def test_rows_are_those_of_the_decision_worst_first(results: Results) -> None:
     found = document(results, {})["factors"]
     assert found["outcomes"] == [outcome(pin) for pin in worst_first(results)]
     at = found["head"].index("pin")
-    assert [row[at] for row in found["body"]] == [row["pin"] for row in shown_rows(results)]
+    assert [row[at] for row in found["body"]] == [row["pin"] for row in display_rows(results)]
 
 
 def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:
@@ -33,7 +33,9 @@ def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:
 
 
 def test_every_case_and_pin_is_in_the_matrix_with_those_that_govern(results: Results) -> None:
-    pins = tuple(replace(row, pin=f"{row.pin}{k}") for k in range(ABREAST) for row in results.pins)
+    pins = tuple(
+        replace(row, pin=f"{row.pin}{k}") for k in range(PINS_PER_MATRIX) for row in results.pins
+    )
     found = document(replace(results, pins=pins), {})["envelope"]
     shown = {
         (pin, row[0]): cell
@@ -46,7 +48,7 @@ def test_every_case_and_pin_is_in_the_matrix_with_those_that_govern(results: Res
     assert {key[0]: key[1] for key, cell in shown.items() if cell["governs"]} == governing_cases(
         replace(results, pins=pins)
     )
-    assert max(len(block["head"]) for block in found["blocks"]) == ABREAST + 1
+    assert max(len(block["head"]) for block in found["blocks"]) == PINS_PER_MATRIX + 1
 
 
 def test_names_are_not_typesetting(results: Results) -> None:
@@ -85,6 +87,6 @@ def test_sensitivities_are_few_and_of_worst_cases(results: Results) -> None:
     ]
     content = document(replace(results, sensitivities=tuple(found)), {})["sensitivities"]
     body = content["grid"]["body"]
-    assert [cells[1] for cells in body] == [row.case] * MOST_DIMENSIONS
+    assert [cells[1] for cells in body] == [row.case] * MAX_DIMENSIONS
     assert body[0][2] == lengths[0].key
     assert document(replace(results, sensitivities=()), {})["sensitivities"] is None

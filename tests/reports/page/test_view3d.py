@@ -15,7 +15,12 @@ from reports.data.surface import HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.packed import packed
 from reports.format.ranges import error_words
 from reports.page.page import write_page
-from reports.page.viewer import COARSE, FINE, PARTS, pin_views
+from reports.page.viewer import (
+    MAX_DISPLACEMENT_INTEGER,
+    MAX_SECTION_INTEGER,
+    MAX_STRESS_INTEGER,
+    pin_views,
+)
 from tests.support.programs.packed import unpacked
 
 EVIL = "</script><script>alert(1)</script>"
@@ -89,7 +94,7 @@ def test_every_point_is_exact_to_a_part_of_its_own_stress(
         theirs = stress @ amounts[:, :, phase].T
         ours = surface.stress @ surface.cases[0].amounts[:, :, phase].T
         largest = np.abs(surface.stress * np.abs(surface.cases[0].amounts).max(axis=(0, 2)))
-        allowed = 2.0 * largest.max(axis=(1, 2)) / FINE
+        allowed = 2.0 * largest.max(axis=(1, 2)) / MAX_STRESS_INTEGER
         assert (np.abs(theirs - ours).max(axis=(1, 2)) <= allowed).all()
     moved = unpacked(shown["moved"]).reshape(2, 3, 5).T
     moved = moved * unpacked(shown["moved_scale"])
@@ -99,7 +104,7 @@ def test_every_point_is_exact_to_a_part_of_its_own_stress(
     )
     largest = np.abs(surface.displacement).max(axis=(0, 1))
     reach = largest @ np.abs(surface.cases[0].amounts).max(axis=(0, 2))
-    assert theirs == pytest.approx(ours, abs=float(reach) / COARSE)
+    assert theirs == pytest.approx(ours, abs=float(reach) / MAX_DISPLACEMENT_INTEGER)
 
 
 def test_maxima_are_those_of_the_analysis(results: Results, surface: Surface) -> None:
@@ -145,7 +150,9 @@ def test_loads_and_section_come_through(results: Results, surface: Surface) -> N
     assert (load["name"], load["z"], load["held"]) == ("strut B", 1.5, False)
     stress = unpacked(case["section"]["values"]).reshape(2, 3, 2) * case["section"]["scale"]
     largest = float(given.section.von_mises.max())
-    assert stress == pytest.approx(given.section.von_mises, abs=0.51 * largest / PARTS)
+    assert stress == pytest.approx(
+        given.section.von_mises, abs=0.51 * largest / MAX_SECTION_INTEGER
+    )
     assert stress.max() == pytest.approx(largest, rel=1e-12)
     assert unpacked(case["section"]["outer"]).tolist() == [0.5, 0.5, 0.5]
 

@@ -20,7 +20,14 @@ from reports.plots.draw import draw
 from reports.plots.loads.reactions import along, bars, reaction_plot
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, still
 from reports.plots.stress.refinement import pin_refinement_plot
-from reports.plots.theme import COLOURS, DASHES, SERIES, dashes, on_page, on_paper
+from reports.plots.theme import (
+    SERIES_COLOURS,
+    SERIES_DASHES,
+    THEME_COLOURS,
+    dashes,
+    on_page,
+    on_paper,
+)
 from tests.support.results.made_up_run import leg, ranged
 
 DIGITS = 1e-5  # relative: six are written
@@ -168,13 +175,15 @@ def test_reactions_are_drawn_against_what_the_drive_has(results: Results) -> Non
 
 
 def test_no_two_curves_look_alike() -> None:
-    looks = [(SERIES[k % len(SERIES)], str(dash)) for k, dash in enumerate(dashes(49))]
+    looks = [
+        (SERIES_COLOURS[k % len(SERIES_COLOURS)], str(dash)) for k, dash in enumerate(dashes(49))
+    ]
     assert len(set(looks)) == 49
-    assert len(DASHES) == len(SERIES)
+    assert len(SERIES_DASHES) == len(SERIES_COLOURS)
 
 
 def test_paper_and_page_differ_in_colours_alone() -> None:
-    light = {name: colour for name, (colour, _) in COLOURS.items()}
+    light = {name: colour for name, (colour, _) in THEME_COLOURS.items()}
     page = json.dumps(on_page()["style"])
     for name, colour in light.items():
         page = page.replace(f'"var(--{name})"', f'"{colour}"')

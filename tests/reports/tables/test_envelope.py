@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from reports.data.envelope import MOST_DETAILED, governing_cases, in_detail
+from reports.data.envelope import MAX_DETAILED_CASES, detailed_rows, governing_cases
 from reports.data.results import Dependence, Results
 from reports.format.numbers import DASH
 from reports.page.page import render
@@ -89,8 +89,8 @@ def test_many_cases_are_short_on_the_terminal_and_in_files(
         assert "safety_factors.csv" in text
         assert "gust 49" in text
         assert "gust 25" not in text
-    few = safety_factors_html(of_cases(results, MOST_DETAILED))
-    assert f"gust {MOST_DETAILED - 2}" in few
+    few = safety_factors_html(of_cases(results, MAX_DETAILED_CASES))
+    assert f"gust {MAX_DETAILED_CASES - 2}" in few
     assert "safety_factors.csv" not in few
 
 
@@ -110,13 +110,13 @@ def test_many_cases_are_a_matrix_and_the_governing_ones(results: Results, tmp_pa
 
 
 def test_few_cases_are_shown_in_full(results: Results) -> None:
-    few = of_cases(results, MOST_DETAILED)
-    assert in_detail(few) is few
+    few = of_cases(results, MAX_DETAILED_CASES)
+    assert detailed_rows(few) is few
     shown = matrix(few)
     assert shown is not None
     assert not shown.note
     assert matrix(of_cases(results, 1)) is None
-    assert len(in_detail(of_cases(results, MOST_DETAILED + 1)).pins) == 2
+    assert len(detailed_rows(of_cases(results, MAX_DETAILED_CASES + 1)).pins) == 2
 
 
 def test_a_cell_without_a_number_is_a_dash_and_an_endless_one_is_full(results: Results) -> None:

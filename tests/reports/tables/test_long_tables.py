@@ -14,7 +14,7 @@ from reports.format.files import parquet as ours
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
 from reports.tables import table as tables
-from reports.tables.loads.motion import REACTIONS, Instants
+from reports.tables.loads.motion import REACTION_COLUMNS, Instants
 from reports.tables.table import Table
 
 
@@ -45,15 +45,15 @@ def test_rows_are_made_as_they_are_asked_for(reactions: Instants) -> None:
 def test_a_long_table_is_parquet_with_the_cells_of_the_csv(
     reactions: Instants, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    table = Table("reactions", REACTIONS, reactions)
+    table = Table("reactions", REACTION_COLUMNS, reactions)
     assert table.write(tmp_path).name == "reactions.csv"
-    monkeypatch.setattr(tables, "MOST_IN_CSV", 15)
-    monkeypatch.setattr(ours, "AT_ONCE", 5)
+    monkeypatch.setattr(tables, "MAX_CSV_ROWS", 15)
+    monkeypatch.setattr(ours, "ROWS_PER_GROUP", 5)
     path = table.write(tmp_path)
     assert path.name == "reactions.parquet"
     found = parquet.read_table(path)
     assert parquet.ParquetFile(path).num_row_groups == 4
-    assert found.column_names == list(REACTIONS)
+    assert found.column_names == list(REACTION_COLUMNS)
     read = csv.DictReader((tmp_path / "reactions.csv").read_text().splitlines())
     for row, plain in zip(found.to_pylist(), read, strict=True):
         assert (row["case"], row["connection"]) == (plain["case"], plain["connection"])

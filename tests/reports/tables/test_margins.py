@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from assess.strength.margin import RATIO, Margin, PinMargin, not_made
+from assess.strength.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
 from reports.data.results import Results, Units
 from reports.page.paper import document
 from reports.tables.strength.margins import (
@@ -21,8 +21,8 @@ CHECKS = (
     Margin("von Mises", "", "limit", 100e6, 250e6, 1.0),
     Margin("shear", "", "ultimate", 5000.0, 30000.0, 1.5, "force", at="eye", time=2.0),
     Margin("bending", "", "ultimate", 27.0, 120.0, 1.5, "moment"),
-    Margin("interaction", "", "ultimate", 0.2, 1.0, 1.5, RATIO),
-    not_made("rupture", "", "ultimate", 1.5, "material.steel.ultimate_strength"),
+    Margin("interaction", "", "ultimate", 0.2, 1.0, 1.5, RATIO_DIMENSION),
+    skipped("rupture", "", "ultimate", 1.5, "material.steel.ultimate_strength"),
 )
 
 

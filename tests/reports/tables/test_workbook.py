@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from reports.data.results import Results
-from reports.tables.all import LONGEST, load_tables, sheets, stress_tables
+from reports.tables.all import MAX_SHEET_ROWS, load_tables, sheets, stress_tables
 from reports.tables.table import Table
 from reports.tables.workbook import write_workbook
 from tests.conftest import ROOT
@@ -84,7 +84,7 @@ def test_every_table_is_a_sheet_with_its_numbers(
 def test_long_tables_are_csv_alone(tables: list[Table]) -> None:
     first = tables[0]
     row = first.rows[0]
-    full, longer = (replace(first, rows=(row,) * n) for n in (LONGEST, LONGEST + 1))
+    full, longer = (replace(first, rows=(row,) * n) for n in (MAX_SHEET_ROWS, MAX_SHEET_ROWS + 1))
     motion = replace(first, name="motion")
     assert sheets([full, longer, motion]) == [full]
 

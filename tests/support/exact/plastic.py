@@ -6,9 +6,9 @@ import numpy as np
 
 from assess.plastic.body import FlowingBody, untied
 from assess.plastic.flow import FlowRule
-from assess.plastic.limit_load import OnMesh, limit_on_mesh
-from assess.plastic.mechanism import Finer
-from assess.plastic.pin_body import acting_at, finer, hexahedral, nodal_forces, pin_body
+from assess.plastic.limit_load import MeshBracket, limit_on_mesh
+from assess.plastic.mechanism import RefinedElements
+from assess.plastic.pin_body import acting_at, hexahedral, nodal_forces, pin_body, refine
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from geometry import Pin, Segment
@@ -37,9 +37,11 @@ def couples(axis: int) -> PinLoads:
     return PinLoads("couples", ("a", "b"), np.zeros((1, 2, 3)), moments)
 
 
-def limit(pin: Pin, loads: PinLoads, fineness: HexSize, clamps: tuple[str, ...] = ()) -> OnMesh:
+def limit(
+    pin: Pin, loads: PinLoads, fineness: HexSize, clamps: tuple[str, ...] = ()
+) -> MeshBracket:
     made = pin_body(pin, RULE, clamps, acting_at(loads, 0), fineness)
-    return limit_on_mesh(made.body, made.forces, finer(made.body.elements))
+    return limit_on_mesh(made.body, made.forces, refine(made.body.elements))
 
 
 def elastic_moment(bore: float = 0.0) -> float:
@@ -47,7 +49,7 @@ def elastic_moment(bore: float = 0.0) -> float:
     return YIELD * math.pi / 32 * D**3 * (1 - bore**4)
 
 
-def cylinder(around: int) -> tuple[FlowingBody, Floats, Finer]:
+def cylinder(around: int) -> tuple[FlowingBody, Floats, RefinedElements]:
     """A quarter of a thick cylinder, 1 and 1.3 m, in plane strain, the forces of 1 Pa from outside,
     which makes it flow as a pressure inside does, and its elements with more points.
     """
@@ -59,4 +61,4 @@ def cylinder(around: int) -> tuple[FlowingBody, Floats, Finer]:
     ties = untied(len(mesh.nodes)).without(np.flatnonzero(zero))
     pressure = ((UnitLoad("a", "pressure", 0, (("a", 1.0),)), 0, 1.0),)
     forces = ties.matrix.T @ nodal_forces(pin, RULE, mesh, elements, pressure).ravel()
-    return FlowingBody(elements, ties, RULE), forces, finer(elements)
+    return FlowingBody(elements, ties, RULE), forces, refine(elements)

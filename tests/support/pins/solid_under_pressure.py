@@ -17,7 +17,7 @@ from fea.core.material import Material
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import Patch, surface
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
-from geometry.mesh.gmsh_tetrahedra import SMALLEST_JACOBIAN, collect, repair
+from geometry.mesh.gmsh_tetrahedra import MIN_JACOBIAN_RATIO, collect, repair
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,7 +43,7 @@ def meshed(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
     gmsh.model.mesh.generate(3)
     gmsh.model.mesh.setOrder(2)
     jacobian, _ = repair(gmsh)
-    assert jacobian > SMALLEST_JACOBIAN
+    assert jacobian > MIN_JACOBIAN_RATIO
     return collect(gmsh, surfaces)
 
 

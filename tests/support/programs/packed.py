@@ -8,10 +8,10 @@ from base64 import b64decode
 import numpy as np
 
 from reports.data.results import Floats
-from reports.format.template import TEMPLATES
+from reports.format.template import TEMPLATE_FOLDER
 
 # As the script of the page knows them; another one leaves a view empty.
-SCRIPT = (TEMPLATES / "packed.js").read_text(encoding="utf-8")
+SCRIPT = (TEMPLATE_FOLDER / "packed.js").read_text(encoding="utf-8")
 KINDS = SCRIPT.split("const KINDS = {")[1].split("}")[0]
 
 

@@ -23,7 +23,7 @@ from pinstress.study.schema.landing import AtWheel
 from pinstress.study.schema.mechanism import MechanismTable, RotaryDrive, SliderDrive, drive_name
 from pinstress.study.schema.units import to_si
 
-LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
+DRIVE_LAWS: dict[str, type[CosineDrive | CycloidalDrive | ConstantDrive]] = {
     "cosine": CosineDrive,
     "cycloidal": CycloidalDrive,
     "constant": ConstantDrive,
@@ -55,7 +55,7 @@ def _law(study: Study, drive: AnyDriveTable) -> Law:
     assert drive.start is not None
     assert drive.end is not None
     assert drive.duration is not None
-    return LAWS[drive.law](drive.start, drive.end, drive.duration, drive.begin)
+    return DRIVE_LAWS[drive.law](drive.start, drive.end, drive.duration, drive.begin)
 
 
 def span(study: Study) -> float:
@@ -106,7 +106,7 @@ def state(
     ]
 
 
-DIMENSION = {
+DRIVE_DIMENSIONS = {
     "position": ("length", "angle"),
     "velocity": ("velocity", "angular velocity"),
     "acceleration": ("acceleration", "angular acceleration"),
@@ -140,7 +140,7 @@ def _coordinate(
         return default
     slides = isinstance(drive, SliderDrive)
     try:
-        found = to_si(value, DIMENSION[key][0 if slides else 1], study.system)
+        found = to_si(value, DRIVE_DIMENSIONS[key][0 if slides else 1], study.system)
     except ArgumentError as error:
         raise study.error(f"{where}: {error}", code=error.code) from None
     if key == "position" and isinstance(drive, RotaryDrive) and drive.line is not None:

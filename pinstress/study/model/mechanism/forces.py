@@ -35,7 +35,7 @@ from pinstress.study.schema.forces import (
 from pinstress.study.schema.types import JointOrPoint
 from pinstress.study.schema.units import to_si
 
-DEGREE = math.pi / 180.0
+RADIANS_PER_DEGREE = math.pi / 180.0
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def _column(study: Study, name: str, dimension: str) -> _Column:
 
 
 def _angle(name: str) -> _Column:
-    return _Column(name, "angle", DEGREE, "deg")
+    return _Column(name, "angle", RADIANS_PER_DEGREE, "deg")
 
 
 def curve(

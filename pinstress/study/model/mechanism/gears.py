@@ -8,15 +8,17 @@ from loads import Gear, LinkageError, Rack, Slider, Teeth, gear_pair, rack_and_p
 from pinstress.study.model.mechanism.drawing import Drawing
 from pinstress.study.schema.gears import GearTable, RackTable
 
-REACHES = 1e-3  # of the distance of the centres: by so much pitch radii may miss each other
-CENTRE = "name the joint about which it turns"
+CENTRE_DISTANCE_TOLERANCE = (
+    1e-3  # of the distance of the centres: by so much pitch radii may miss each other
+)
+NAME_JOINT_REMEDY = "name the joint about which it turns"
 
 
 def gears(name: str, table: GearTable, drawing: Drawing) -> Teeth:
     """A pair of gears. Raises: LinkageError."""
     key = ("gear", name)
     for body, joint in zip(table.bodies, table.joints, strict=True):
-        drawing.require_on(joint, body, key, CENTRE)
+        drawing.require_on(joint, body, key, NAME_JOINT_REMEDY)
     first, second = (drawing.on(joint) for joint in table.joints)
     carriers = [b for b in first if b in second and b not in table.bodies]
     if not carriers:
@@ -40,7 +42,7 @@ def gears(name: str, table: GearTable, drawing: Drawing) -> Teeth:
 
 
 def _require_reach(name: str, distance: float, needed: float, drawing: Drawing) -> None:
-    if abs(needed - distance) > REACHES * distance:
+    if abs(needed - distance) > CENTRE_DISTANCE_TOLERANCE * distance:
         shown = drawing.shown
         raise LinkageError(
             f"gear {name}: the pitch circles touch when their centres are {shown(needed)} apart, "
@@ -54,7 +56,7 @@ def _require_reach(name: str, distance: float, needed: float, drawing: Drawing) 
 def rack(name: str, table: RackTable, drawing: Drawing, sliders: tuple[Slider, ...]) -> Teeth:
     """A gear and a rack. Raises: LinkageError."""
     key = ("rack", name)
-    drawing.require_on(table.joint, table.pinion, key, CENTRE)
+    drawing.require_on(table.joint, table.pinion, key, NAME_JOINT_REMEDY)
     slider = next(s for s in sliders if s.name == table.slider)
     pair = (slider.base, slider.moving)
     carriers = [b for b in pair if b in drawing.on(table.joint)]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from loads import Coded
+from loads import CodedError
 from pinstress.study.schema.mechanism import Dyad, JointTable, MechanismTable, Place, Polar
 
 Point = tuple[float, float]
 Show = Callable[[float], str]
 
 
-class LayoutError(Coded, ValueError):
+class LayoutError(CodedError, ValueError):
     """A joint cannot be positioned; the message begins with its key."""
 
 

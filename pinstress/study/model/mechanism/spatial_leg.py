@@ -6,11 +6,11 @@ import numpy as np
 
 from loads import ArgumentError, LegDynamics, LegMotion, Reactions, SpatialLeg, leg_dynamics
 from pinbase.arrays import Floats
-from pinstress.study.model.mechanism.drives import LAWS
+from pinstress.study.model.mechanism.drives import DRIVE_LAWS
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import LegCase
 
-AXES = "x = z'' (up), y = x'' (right), z = y'' (ahead, along the hinge)"
+LEG_AXES = "x = z'' (up), y = x'' (right), z = y'' (ahead, along the hinge)"
 
 
 def instants(study: Study, case: LegCase) -> Floats:
@@ -29,7 +29,7 @@ def dynamics(study: Study, times: Floats) -> LegDynamics:
             code="bad-shape",
         )
     xx, yy, zz, xy, xz, yz = (*table.leg_inertia, 0.0, 0.0, 0.0)[:6]
-    fold = LAWS[table.fold.law](table.fold.start, table.fold.end, table.fold.duration)
+    fold = DRIVE_LAWS[table.fold.law](table.fold.start, table.fold.end, table.fold.duration)
     one = np.ones_like(times)
     beta, omega_i, alpha_i = fold(times)
     yaw = table.yaw.start + table.yaw.rate * times

@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.assembly import Section
 from fea.support.contact.flexibility import half_plane, layered, lug_flexibility, wavy_flexibility
-from fea.support.contact.solve_joint import JointModel
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.eye_mesh import eye_mesh
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.lugs.rings import annulus, graded
@@ -138,7 +138,7 @@ def test_a_soft_bushing_softens_the_joint() -> None:
     loads, found = PinLoads("pull", ("A", "B"), force), []
     for bushing in (None, Bushing(0.002, Material("soft", 5e9, 0.4))):
         lugs = [Lug(name, 2.0 * B, STEEL, 2e-5, bushing=bushing) for name in ("A", "B")]
-        found.append(JointModel(pin, STEEL, lugs).solve(loads))
+        found.append(ContactModel(pin, STEEL, lugs).solve(loads))
     bare, soft = found
     assert (soft.largest_pressure < 0.8 * bare.largest_pressure).all()
     assert (soft.contact_angle > bare.contact_angle).all()

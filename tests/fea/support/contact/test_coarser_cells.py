@@ -9,10 +9,10 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Asked
+from fea.solve.requirement import Requirement
 from fea.support.contact.coarser_cells import on_coarser_cells
-from fea.support.contact.solve_joint import Cells, JointModel
-from fea.support.contact.variations import CHANCE, compare
+from fea.support.contact.solve_joint import ContactModel, Resolution
+from fea.support.contact.variations import MIN_CELL_ERROR, compare
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -39,7 +39,7 @@ def shear(force: float) -> PinLoads:
 @pytest.mark.parametrize("radius", [0.0, ROUNDED, 0.004])
 def test_no_coarse_ring_is_both_flat_and_rounded(rings: int, radius: float) -> None:
     lugs = [replace(lug, edge_radius=radius) for lug in LUGS]
-    model = JointModel(PIN, STEEL, lugs, Cells(rings, 12, 4, 6.0))
+    model = ContactModel(PIN, STEEL, lugs, Resolution(rings, 12, 4, 6.0))
     problem, belongs = on_coarser_cells(model)
     assert (belongs.sum(axis=1) == 1.0).all()  # each ring is in one
     assert problem.bands.length == pytest.approx(model.contact.bands.length @ belongs)
@@ -58,9 +58,9 @@ def test_cells_err_alike_under_light_and_heavy_loads() -> None:
     eyes, which touch, the surface has the cusp of an edge, sharper where light loads do not reach
     into its rounding; there the section governs.
     """
-    model = JointModel(PIN, STEEL, LUGS, Cells(12, 48, 16))
+    model = ContactModel(PIN, STEEL, LUGS, Resolution(12, 48, 16))
     light, heavy = (
-        compare(model, [model.solve(shear(force))], Asked())[0] for force in (50.0, 50e3)
+        compare(model, [model.solve(shear(force))], Requirement())[0] for force in (50.0, 50e3)
     )
     for place in ("row", "section", "beneath"):
         low, high = (float(getattr(found.stress, place)) for found in (light, heavy))
@@ -71,6 +71,6 @@ def test_cells_err_alike_under_light_and_heavy_loads() -> None:
 
 def test_rough_cells_that_agree_by_chance_have_an_error() -> None:
     """Of the landing gear's pin D two rough solutions agree to 2 % and are 4 to 5 % off."""
-    model = JointModel(PIN, STEEL, LUGS, Cells(4, 24, 8))
-    (found,) = compare(model, [model.solve(shear(50e3))], Asked())
-    assert min(found.cells.surface, found.cells.section, found.cells.beneath) >= CHANCE
+    model = ContactModel(PIN, STEEL, LUGS, Resolution(4, 24, 8))
+    (found,) = compare(model, [model.solve(shear(50e3))], Requirement())
+    assert min(found.cells.surface, found.cells.section, found.cells.beneath) >= MIN_CELL_ERROR

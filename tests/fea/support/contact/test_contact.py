@@ -9,7 +9,7 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands, ContactProblem, Pressed
+from fea.support.contact.contact import Bands, ContactProblem, ContactState
 
 NU = 0.3
 E_STAR = 1.0 / (1.0 - NU * NU)
@@ -73,7 +73,7 @@ def three(
 FORK = np.array([[-0.5, 0.0], [1.0, 0.0], [-0.5, 0.0]])
 
 
-def resultants(contact: ContactProblem, found: Pressed) -> Floats:
+def resultants(contact: ContactProblem, found: ContactState) -> Floats:
     """Force of the cells on the pin at every ring, (R, 2)."""
     a, mean = contact.angles, np.sinc(1.0 / contact.sectors)
     area = contact.area.reshape(found.pressure.shape)

@@ -10,10 +10,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.cut.region import RingedCutPin
-from fea.solve.requirement import Asked
-from fea.support.contact.cut_in_lugs import Neglected
+from fea.solve.requirement import Requirement
+from fea.support.contact.cut_in_lugs import NeglectedCuts
 from fea.support.contact.records import Variation
-from fea.support.contact.solve_in_lugs import InLugs, solve_in_lugs
+from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
 from fea.support.lugs.lug import Lug
 from geometry import CutPin, Hole, Pin, Segment, Slot
 
@@ -35,7 +35,7 @@ def test_what_is_neglected() -> None:
     half the stiffness, 0.32 % of it; the pressure on a mouth counts at the hole alone. What is lost
     on it and what moves away from it are the same force.
     """
-    left = Neglected(0.01, 5e6, 0.02, 0.015, {"hole 1": "B"})
+    left = NeglectedCuts(0.01, 5e6, 0.02, 0.015, {"hole 1": "B"})
     over = (
         Variation("stiffness of the lugs", "half", 0.8e8),
         Variation("clearance", "none", 0.5e8),
@@ -47,7 +47,7 @@ def test_what_is_neglected() -> None:
     assert moved.error(1e8, False, over) == pytest.approx((share + 0.08) * 1e8)
     assert left.note.codes == ("cut-in-lug",)
     assert "2.0% of the force of a lug" in left.note.text
-    assert not Neglected(0.01, 0.0, 0.0, 0.0, {}).note.text
+    assert not NeglectedCuts(0.01, 0.0, 0.0, 0.0, {}).note.text
 
 
 def test_a_ringed_pin_weighs_what_contact_balances() -> None:
@@ -68,8 +68,8 @@ def test_rounded_mouths_under_weight() -> None:
     forces = np.array([[[-0.5 * F, 0.0, 0.0], [F, weight, 0.0], [-0.5 * F, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces, body=np.array([0.0, -9.81, 0.0]))
     cut = CutPin(CLEVIS, (Hole(0.023, 0.15 * D, np.pi / 2.0, mouth_radius=5e-4),))
-    asked = Asked(0.05, cells="rough", meshes=1)
-    (found,) = solve_in_lugs(InLugs(CLEVIS, STEEL, LUGS, (loads,), cut=cut), asked)
+    asked = Requirement(0.05, cells="rough", meshes=1)
+    (found,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,), cut=cut), asked)
     assert found.solution.peak.model == "harmonic+local"
     assert "imbalance-reacted" not in found.solution.peak.reasons
 
@@ -89,8 +89,8 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
 
     cut = CutPin(CLEVIS, (Hole(0.023, 0.2 * D, np.radians(15.0)),))
     case = at(np.linspace(0.0, 1.0, 5))
-    given = InLugs(CLEVIS, STEEL, LUGS, (case,), between={"turn": at}, cut=cut)
-    (found,) = solve_in_lugs(given, Asked(0.05))
+    given = PinProblem(CLEVIS, STEEL, LUGS, (case,), between={"turn": at}, cut=cut)
+    (found,) = solve_in_lugs(given, Requirement(0.05))
     peak = found.solution.peak
     assert peak.max_von_mises is not None
     assert peak.time is not None
@@ -103,7 +103,7 @@ def test_the_crest_at_a_hole_is_found_between_samples() -> None:
     assert peak.max_von_mises == pytest.approx(each.max(), rel=1e-5)
     assert peak.max_von_mises >= each.max() * (1.0 - 1e-9)
     alone = replace(at(np.array([peak.time])), times=None)
-    (single,) = solve_in_lugs(InLugs(CLEVIS, STEEL, LUGS, (alone,), cut=cut), Asked(0.05))
+    (single,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (alone,), cut=cut), Requirement(0.05))
     assert single.solution.peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=2e-3)
 
 
@@ -115,8 +115,8 @@ def test_a_grease_hole_at_the_extreme_fibre() -> None:
     forces = F * np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces)
     cut = CutPin(CLEVIS, (Hole(0.023, 0.2 * D),))
-    (plain,) = solve_in_lugs(InLugs(CLEVIS, STEEL, LUGS, (loads,)), Asked(0.05))
-    (holed,) = solve_in_lugs(InLugs(CLEVIS, STEEL, LUGS, (loads,), cut=cut), Asked(0.05))
+    (plain,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,)), Requirement(0.05))
+    (holed,) = solve_in_lugs(PinProblem(CLEVIS, STEEL, LUGS, (loads,), cut=cut), Requirement(0.05))
     assert plain.joint is not None
     assert holed.joint is not None
     assert holed.joint.bending_moment == plain.joint.bending_moment
@@ -142,7 +142,9 @@ def test_a_keyway_that_faces_the_load_loses_its_pressure() -> None:
     for angle in (0.0, np.pi):
         key = Slot(0.023 - long / 2, 0.023 + long / 2, wide, 0.0025, angle, 0.0008, False)
         pin = CutPin(CLEVIS, slots=(key,))
-        (found,) = solve_in_lugs(InLugs(CLEVIS, STEEL, LUGS, (loads,), cut=pin), Asked(0.1))
+        (found,) = solve_in_lugs(
+            PinProblem(CLEVIS, STEEL, LUGS, (loads,), cut=pin), Requirement(0.1)
+        )
         peak = found.solution.peak
         assert found.joint is not None
         assert peak.model == "harmonic+local"

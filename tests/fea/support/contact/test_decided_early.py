@@ -8,29 +8,29 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.mesh_result import AtSingularity, MeshResult
+from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Singularity
-from fea.solve.requirement import Asked, enough, reasons
-from fea.solve.verdict import FEWEST, Seen, judge
+from fea.singular.singularities import Zone
+from fea.solve.requirement import Requirement, accurate_enough, reasons
+from fea.solve.verdict import MIN_MESHES, MeshHistory, judge
 from fea.support.contact.pressed_cases import Compared
-from fea.support.contact.variations import AtPlaces, Comparison
+from fea.support.contact.variations import AtPlaces, ResolutionComparison
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=400e6)
-CLAMP = Singularity(0.01, 0.02, "edge of a clamp", ("held", "shaft"), 0.5, 0.5, 0.002, "none")
-DECIDE = Asked(goal="decide", required=2.0)  # a limit of 200 MPa
+CLAMP = Zone(0.01, 0.02, "edge of a clamp", ("held", "shaft"), 0.5, 0.5, 0.002, "none")
+DECIDE = Requirement(goal="decide", required=2.0)  # a limit of 200 MPa
 
 
-def mesh(maximum: float, felt: float, interval: tuple[float, float] | None = None) -> MeshResult:
+def mesh(maximum: float, felt: float, interval: tuple[float, float] | None = None) -> MeshMaximum:
     """Stresses in MPa; felt: next to a clamp's edge."""
-    edge = AtSingularity(felt * 1e6, felt * 1e6, (0.0, 0.0, 0.0))
+    edge = ZoneMaximum(felt * 1e6, felt * 1e6, (0.0, 0.0, 0.0))
     ends = interval and (interval[0] * 1e6, interval[1] * 1e6)
-    return MeshResult(1000, maximum * 1e6, 0, (0.0, 0.0, 0.0), (edge,), interval=ends)
+    return MeshMaximum(1000, maximum * 1e6, 0, (0.0, 0.0, 0.0), (edge,), interval=ends)
 
 
-def seen(*results: MeshResult, fewest: int = FEWEST) -> Seen:
+def seen(*results: MeshMaximum, fewest: int = MIN_MESHES) -> MeshHistory:
     times = (0.1,) * len(results)
-    return Seen("P", "c", "harmonic", results, times, 2.0**0.5, fewest=fewest)
+    return MeshHistory("P", "c", "harmonic", results, times, 2.0**0.5, fewest=fewest)
 
 
 @pytest.mark.parametrize(
@@ -48,10 +48,10 @@ def test_meshes_decide_as_soon_as_there_are_enough(felt: float, maximum: float, 
     ends = None if felt < maximum else (0.9 * maximum, 1.15 * maximum)
     first, second = mesh(maximum, felt, ends), mesh(1.002 * maximum, felt, ends)
     asked = replace(DECIDE, tolerance=1e-3)
-    assert enough(asked, STEEL, seen(first, second, fewest=2)) is done
-    assert not enough(asked, STEEL, seen(first, fewest=2))
-    assert not enough(asked, STEEL, seen(first, second))
-    assert not enough(replace(asked, goal="value"), STEEL, seen(first, second, fewest=2))
+    assert accurate_enough(asked, STEEL, seen(first, second, fewest=2)) is done
+    assert not accurate_enough(asked, STEEL, seen(first, fewest=2))
+    assert not accurate_enough(asked, STEEL, seen(first, second))
+    assert not accurate_enough(replace(asked, goal="value"), STEEL, seen(first, second, fewest=2))
 
 
 def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> None:
@@ -60,10 +60,10 @@ def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> No
     here = seen(first, second, fewest=2)
     high = here.range[1]
     for section, done in ((1.001 * high, True), (0.999 * high, False)):
-        asked = Asked(1e-4, elsewhere={"c": section})
-        assert enough(asked, STEEL, here) is done
+        asked = Requirement(1e-4, elsewhere={"c": section})
+        assert accurate_enough(asked, STEEL, here) is done
         assert ("surface-below-sections" in reasons(asked, STEEL, "harmonic")(here).codes) is done
-    assert not enough(Asked(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
+    assert not accurate_enough(Requirement(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
 
 
 def test_ends_that_change_from_mesh_to_mesh_widen_the_interval() -> None:
@@ -82,7 +82,7 @@ def compared(surface: float, section: float, beneath: float, cells: AtPlaces) ->
     """Stresses in MPa, at one instant."""
     links = PinLoads("c", ("A",), np.zeros((1, 1, 3)))
     at = AtPlaces(1e6 * surface, 1e6 * section, 1e6 * beneath)
-    found = Comparison(at, cells, links, ())
+    found = ResolutionComparison(at, cells, links, ())
     return Compared(found, found)
 
 
@@ -107,7 +107,7 @@ def test_when_cells_are_fine_enough(
     decide: bool,
 ) -> None:
     found = compared(*stress, AtPlaces(*cells))
-    assert found.fine(STEEL, Asked(tolerance=0.02)) is value
+    assert found.fine(STEEL, Requirement(tolerance=0.02)) is value
     assert found.fine(STEEL, DECIDE) is decide
 
 

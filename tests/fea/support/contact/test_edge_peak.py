@@ -13,23 +13,23 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import ContactEdge
 from fea.support.contact.edge_peak import (
-    BELOW,
-    EXPONENTS,
-    POISSON,
-    WITHIN,
-    C,
+    EDGE_EXPONENTS,
+    EDGE_PEAK_ERROR,
+    POISSON_RATIOS,
+    PRESSURE_COEFFICIENTS,
+    SUBSURFACE_STRESS_RATIOS,
     EdgePeak,
     contact_edges,
     edge_peak,
 )
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 D = 0.02
 STEEL = Material("steel", 210e9, 0.3)
 ALUMINIUM = Material("aluminium", 70e9, 0.33)
-COARSE = Cells(4, 24, 8)
+COARSE = Resolution(4, 24, 8)
 FORK = np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]]) * 50e3
 
 
@@ -40,7 +40,7 @@ def pressure(y: float) -> float:
 
 
 def contact(
-    radius: float, cells: Cells = COARSE, lugs: Material = STEEL, times: float = 1.0
+    radius: float, cells: Resolution = COARSE, lugs: Material = STEEL, times: float = 1.0
 ) -> JointContact:
     over, apart = Segment(0.002, D), Segment(0.001, D)
     left, middle, right = (
@@ -49,7 +49,7 @@ def contact(
     pin = Pin("P", (over, left, apart, middle, apart, right, over))
     of_all = [Lug(c, 2.5 * D, lugs, edge_radius=radius) for c in "LMR"]
     loads = PinLoads("pull", ("L", "M", "R"), times * FORK)
-    return JointModel(pin, STEEL, of_all, cells).solve(loads)
+    return ContactModel(pin, STEEL, of_all, cells).solve(loads)
 
 
 def test_the_pressure_of_half_planes_closes_their_gap() -> None:
@@ -81,8 +81,10 @@ def test_its_peak_and_its_tail() -> None:
     tail = pressure(1e6) * 1e3 / (2.0 * np.pi)
     assert tail == pytest.approx(2.0 / (3.0 * np.pi), rel=1e-3)
     # p = 0.3818 E* d / r with K = tail E* d^1.5 / r: of a rigid lug there is no other scale
-    assert largest / (2.0 * np.pi) / tail ** (2.0 / 3.0) == pytest.approx(C[-1], abs=1e-3)
-    assert EXPONENTS[-1] == 0.5
+    assert largest / (2.0 * np.pi) / tail ** (2.0 / 3.0) == pytest.approx(
+        PRESSURE_COEFFICIENTS[-1], abs=1e-3
+    )
+    assert EDGE_EXPONENTS[-1] == 0.5
 
 
 def test_von_mises_below_it_is_that_of_flamant() -> None:
@@ -91,7 +93,7 @@ def test_von_mises_below_it_is_that_of_flamant() -> None:
     x, z = (v.ravel() for v in np.meshgrid(np.linspace(0.2, 0.8, 61), np.linspace(0.25, 0.8, 56)))
     sx, sz, shear = flamant(ends, p, x, z)
     largest = max(pressure(y) for y in np.linspace(0.6, 0.8, 2001))
-    for nu, below in zip(POISSON, BELOW, strict=True):
+    for nu, below in zip(POISSON_RATIOS, SUBSURFACE_STRESS_RATIOS, strict=True):
         sy = nu * (sx + sz)
         square = 0.5 * ((sx - sy) ** 2 + (sy - sz) ** 2 + (sz - sx) ** 2) + 3.0 * shear**2
         assert np.sqrt(square.max()) / largest == pytest.approx(below, rel=0.01), nu
@@ -116,7 +118,7 @@ def peak(found: JointContact, band: str) -> EdgePeak:
     (lug,) = (lug for lug in found.lugs if lug.connection == band)
     peak = edge_peak(edge.K, edge.exponent, lug, STEEL)
     assert (edge.max_pressure, edge.max_von_mises) == (peak.pressure, peak.von_mises)
-    assert edge.error_estimate == WITHIN * peak.pressure
+    assert edge.error_estimate == EDGE_PEAK_ERROR * peak.pressure
     return peak
 
 
@@ -126,7 +128,7 @@ def test_it_grows_with_the_load_to_two_thirds_and_falls_with_the_radius() -> Non
     assert eight.reach == pytest.approx(4.0 * one.reach, rel=0.02)
     assert one.reach < 0.1 * 4e-4
     assert peak(contact(1e-3), "M").pressure < one.pressure
-    assert one.von_mises == pytest.approx(BELOW[2] * one.pressure)
+    assert one.von_mises == pytest.approx(SUBSURFACE_STRESS_RATIOS[2] * one.pressure)
 
 
 def test_sharp_edges_have_a_strength_and_no_peak() -> None:
@@ -151,9 +153,9 @@ def test_edges_that_carry_nothing_have_none() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("radius", "lugs"), [(5e-4, STEEL), (4e-4, ALUMINIUM)])
 def test_resolved_rings_have_it(radius: float, lugs: Material) -> None:
-    resolved = contact(radius, Cells(8, 24, 8, beside=0.006), lugs).largest_pressure[0]
-    for cells in (COARSE, Cells()):
+    resolved = contact(radius, Resolution(8, 24, 8, beside=0.006), lugs).largest_pressure[0]
+    for cells in (COARSE, Resolution()):
         rough = contact(radius, cells, lugs)
         for band, name in enumerate("LMR"):
             assert rough.largest_pressure[0, band] < 0.5 * resolved[band]
-            assert peak(rough, name).pressure == pytest.approx(resolved[band], rel=WITHIN)
+            assert peak(rough, name).pressure == pytest.approx(resolved[band], rel=EDGE_PEAK_ERROR)

@@ -11,8 +11,8 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Asked, Solution, solve_pin
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.solve.solve_pin import Requirement, Solution, solve_pin
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -21,7 +21,7 @@ STEEL = Material("steel", E, NU, density=7850.0)
 FORK = np.array([[[-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], [-0.5, 0.0, 0.0]]]) * FORCE
 
 
-def clevis(inner: float, outer: float, gap: float, clearance: float = 0.0) -> JointModel:
+def clevis(inner: float, outer: float, gap: float, clearance: float = 0.0) -> ContactModel:
     """Of steel, all in m; the fork's sides tilt as their shanks bend."""
     over, apart = Segment(0.002, D), Segment(gap, D)
     left, middle, right = (
@@ -31,22 +31,22 @@ def clevis(inner: float, outer: float, gap: float, clearance: float = 0.0) -> Jo
     tilt = E * EYE * outer**3 / (12.0 * ARM)
     stiffness = {"L": tilt, "M": math.inf, "R": tilt}
     lugs = [Lug(name, EYE, STEEL, clearance, tilt=k) for name, k in stiffness.items()]
-    return JointModel(pin, STEEL, lugs)
+    return ContactModel(pin, STEEL, lugs)
 
 
 @pytest.fixture(scope="module")
-def model() -> JointModel:
+def model() -> ContactModel:
     return clevis(0.02, 0.01, 0.001)
 
 
 @pytest.fixture(scope="module")
-def joint(model: JointModel) -> JointContact:
+def joint(model: ContactModel) -> JointContact:
     return model.solve(PinLoads("pull", ("L", "M", "R"), FORK))
 
 
 @pytest.fixture(scope="module")
 def solution(joint: JointContact) -> Solution:
-    asked = Asked(model="harmonic", meshes=2)
+    asked = Requirement(model="harmonic", meshes=2)
     return solve_pin(joint.pin, STEEL, (), (joint.loads,), asked)[0]
 
 
@@ -102,7 +102,7 @@ def test_angles_and_pressures_by_band(joint: JointContact) -> None:
     assert (joint.largest_pressure[0] > mean).all()
 
 
-def test_instants_are_those_of_each_alone(model: JointModel) -> None:
+def test_instants_are_those_of_each_alone(model: ContactModel) -> None:
     """Warm starts change no answer; without clearance pressures follow a load in proportion."""
     turned = FORK[:, :, [1, 0, 2]]
     together = model.solve(
@@ -119,7 +119,7 @@ def test_instants_are_those_of_each_alone(model: JointModel) -> None:
     assert other == pytest.approx(one[:, [1, 0, 2]], abs=1e-9 * FORCE)
 
 
-def test_axial_forces_and_the_body_force_come_along(model: JointModel) -> None:
+def test_axial_forces_and_the_body_force_come_along(model: ContactModel) -> None:
     """Gravity of the pin is answered by the links; a force along the axis is even over a band."""
     mass = 7850.0 * model.whole.volume
     forces = FORK.copy()
@@ -142,7 +142,7 @@ def test_sharp_edges_of_lugs_leave_the_surface_a_maximum(
     assert peak.location[2] == pytest.approx(0.023, abs=0.0005)
     assert peak.singular_at == ()
     assert peak.verdict == "converged"
-    first = solve_pin(joint.pin, STEEL, (), (joint.loads,), Asked(model="harmonic", meshes=1))
+    first = solve_pin(joint.pin, STEEL, (), (joint.loads,), Requirement(model="harmonic", meshes=1))
     assert first[0].peak.max_von_mises == pytest.approx(peak.max_von_mises, rel=0.03)
 
 
@@ -174,22 +174,22 @@ def test_lugs_that_cannot_be(change: dict[str, float], said: str) -> None:
         Lug(**{"connection": "A", "outer_diameter": 0.1, "material": STEEL, **change})  # type: ignore[arg-type]
 
 
-def test_lugs_that_do_not_fit_the_pin(model: JointModel) -> None:
+def test_lugs_that_do_not_fit_the_pin(model: ContactModel) -> None:
     lugs = list(model.lugs)
     for wrong in (lugs[:2], [*lugs[:2], Lug("Q", EYE, STEEL)], [*lugs[:2], Lug("R", D, STEEL)]):
         with pytest.raises(ValueError, match="lug"):
-            JointModel(model.whole, STEEL, wrong)
+            ContactModel(model.whole, STEEL, wrong)
 
 
-def test_forces_out_of_balance_are_refused(model: JointModel) -> None:
+def test_forces_out_of_balance_are_refused(model: ContactModel) -> None:
     with pytest.raises(SolveError):
         model.solve(PinLoads("x", ("L", "M"), FORK[:, :2]))
 
 
-def test_cells_converge(model: JointModel) -> None:
+def test_cells_converge(model: ContactModel) -> None:
     """The moment at mid-span with coarser and finer cells: within 1 % of each other."""
     loads, moments = PinLoads("pull", ("L", "M", "R"), FORK), []
-    for cells in (Cells(5, 24, 8), Cells(10, 48, 16)):
-        other = JointModel(model.whole, STEEL, model.lugs, cells)
+    for cells in (Resolution(5, 24, 8), Resolution(10, 48, 16)):
+        other = ContactModel(model.whole, STEEL, model.lugs, cells)
         moments.append(other.solve(loads).bending_moment(np.array([0.023]))[0, 0, 0])
     assert moments[0] == pytest.approx(moments[1], rel=0.01)

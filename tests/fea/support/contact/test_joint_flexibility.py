@@ -11,7 +11,7 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands, ContactProblem, Pressed
+from fea.support.contact.contact import Bands, ContactProblem, ContactState
 from fea.support.contact.flexibility import half_plane, lug_flexibility, pin_flexibility
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import annulus, graded, ring, ringed
@@ -115,7 +115,7 @@ def clevis(inner: float, outer: float, gap: float) -> tuple[Pin, Bands, Floats]:
 
 def pressed(
     inner: float, outer: float, gap: float, clearance: float
-) -> tuple[ContactProblem, Pressed]:
+) -> tuple[ContactProblem, ContactState]:
     _, bands, flexible = clevis(inner, outer, gap)
     tilt = E * EYE * outer**3 / (12.0 * ARM)
     open_ = Bands(bands.z, bands.length, bands.radius, bands.band, bands.gap + clearance / 2.0)

@@ -11,7 +11,7 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.contact.solve_joint import Cells, JointContact, JointModel
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import Pin, Segment
 from tests.support.exact.layered_annulus import widening
@@ -25,14 +25,14 @@ MIDDLE = np.array([0.023])
 NOMINAL = FORCE / 2.0 * (0.005 + 0.001 + 0.005)
 
 
-def clevis(change: Lug = ANY) -> JointModel:
+def clevis(change: Lug = ANY) -> ContactModel:
     """Lugs of 10, 20 and 10 mm, 1 mm apart, on a pin of 20 mm, all guided and as `change` is."""
     over, apart = Segment(0.002, D), Segment(0.001, D)
     left, middle, right = (
         Segment(t, D, connection=name) for t, name in zip((0.01, 0.02, 0.01), NAMES, strict=True)
     )
     pin = Pin("P", (over, left, apart, middle, apart, right, over))
-    return JointModel(pin, STEEL, [replace(change, connection=name) for name in NAMES])
+    return ContactModel(pin, STEEL, [replace(change, connection=name) for name in NAMES])
 
 
 def pull(share: Floats = SHARE, angle: float = 0.0) -> PinLoads:
@@ -58,7 +58,7 @@ def test_interference_is_lames(bushing: Bushing | None) -> None:
     """Of a pin as thin as its eye, in plane stress: even to 0.5 %, and Lame's."""
     disc, size = Pin("P", (Segment(0.0004, D, connection="A"),)), 2e-5
     lug = Lug("A", EYE, STEEL, clearance=-size, bushing=bushing)
-    model = JointModel(disc, STEEL, [lug], Cells(8, 12, 2, across=40.0))
+    model = ContactModel(disc, STEEL, [lug], Resolution(8, 12, 2, across=40.0))
     found = model.solve(PinLoads("none", ("A",), np.zeros((1, 1, 3))))
     walls = [(D / 2.0, EYE / 2.0, STEEL)]
     if bushing is not None:
@@ -94,7 +94,7 @@ def test_loads_that_hardly_close_the_clearance_settle(size: float) -> None:
     parts = [x for lug in lugs for x in (lug, Segment(0.001, D))]
     pin = Pin("P", (over, *parts, over))
     loose = [replace(ANY, connection=n, clearance=4e-5) for n in names]
-    model = JointModel(pin, STEEL, loose, Cells(6, 24, 6))
+    model = ContactModel(pin, STEEL, loose, Resolution(6, 24, 6))
     middles = model.contact.bands.middles
     unbalanced = np.stack([np.ones(4), middles - middles.mean()])
     forces = np.random.default_rng(7).normal(size=(4, 3)) * [1.0, 1.0, 0.0]
@@ -164,7 +164,7 @@ def test_two_halves_of_a_lug() -> None:
     names = ("L", "M1", "M2", "R")
     force = np.zeros((1, 4, 3))
     force[0, :, 0] = FORCE * np.array([-0.5, 0.5, 0.5, -0.5])
-    split = JointModel(pin, STEEL, [Lug(name, EYE, STEEL) for name in names])
+    split = ContactModel(pin, STEEL, [Lug(name, EYE, STEEL) for name in names])
     found = split.solve(PinLoads("pull", names, force))
     assert 1.0 < moment(found) / moment(clevis().solve(pull())) < 1.05
     first, second = found.largest_pressure[0, 1:3]

@@ -10,9 +10,9 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.requirement import Asked
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution, solve_in_lugs
-from fea.support.contact.solve_joint import JointModel
+from fea.solve.requirement import Requirement
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
@@ -37,7 +37,7 @@ LUGS = (
     Lug("R", EYE, STEEL, tilt=SHANK),
 )
 SHARE = np.array([-0.5, 1.0, -0.5])
-QUICK = Asked(tolerance=0.1)
+QUICK = Requirement(tolerance=0.1)
 
 
 def pull(along: Floats, times: Floats | None = None) -> PinLoads:
@@ -52,7 +52,7 @@ STEADY = pull(np.array([[FORCE, 0.0]]))
 
 @pytest.fixture(scope="module")
 def sharp() -> LugSolution:
-    return solve_in_lugs(InLugs(PIN, STEEL, LUGS, (STEADY,)), Asked())[0]
+    return solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (STEADY,)), Requirement())[0]
 
 
 def test_a_clevis_beside_contact_in_three_dimensions(sharp: LugSolution) -> None:
@@ -116,8 +116,8 @@ def test_section_forces_along_the_pin_are_those_of_statics(sharp: LugSolution) -
 
 def test_stress_is_in_proportion_without_clearance(sharp: LugSolution) -> None:
     """Also in what is asked for later, of which contact is not solved again."""
-    given = InLugs(PIN, STEEL, LUGS, (STEADY,), besides={"pull": pull(np.array([[1.0, 0.0]]))})
-    (found,) = solve_in_lugs(given, replace(Asked(), meshes=1))
+    given = PinProblem(PIN, STEEL, LUGS, (STEADY,), besides={"pull": pull(np.array([[1.0, 0.0]]))})
+    (found,) = solve_in_lugs(given, replace(Requirement(), meshes=1))
     answer = found.solution.answer
     assert answer is not None
     more = pull(np.array([[FORCE, 0.0], [0.5 * FORCE, 0.0], [0.0, 0.0]]))
@@ -131,7 +131,7 @@ def test_the_edges_of_lugs_are_contacts_and_leave_the_row(sharp: LugSolution) ->
     but the outer ones of the fork have a K, to a quarter the same.
     """
     lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
-    (found,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (STEADY,)), QUICK)
+    (found,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (STEADY,)), QUICK)
     rounded, plain = found.solution.peak, sharp.solution.peak
     assert rounded.verdict == "converged"
     assert rounded.singular_at == ()
@@ -157,7 +157,7 @@ def test_the_crest_of_a_motion_is_found_between_samples() -> None:
         return pull(along, times)
 
     case = at(np.linspace(0.0, 1.0, 5))
-    given = InLugs(PIN, STEEL, LUGS, (case,), between={"pull": at})
+    given = PinProblem(PIN, STEEL, LUGS, (case,), between={"pull": at})
     (found,) = solve_in_lugs(given, QUICK)
     peak = found.solution.peak
     assert peak.time == pytest.approx(crest, abs=0.01)
@@ -184,7 +184,9 @@ def test_lugs_of_a_structure_share_what_the_link_leaves_over() -> None:
     )
     pin = replace(PIN, segments=segments)
     loads = PinLoads("pull", ("M",), np.array([[[FORCE, 0.0, 0.0]]]))
-    (found,) = solve_in_lugs(InLugs(pin, STEEL, LUGS, (loads,)), replace(Asked(), meshes=1))
+    (found,) = solve_in_lugs(
+        PinProblem(pin, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
+    )
     assert found.joint is not None
     forces = {band.name: band.force for band in found.joint.bands}
     assert forces["L"] + forces["R"] == pytest.approx(FORCE, rel=1e-9)
@@ -205,7 +207,9 @@ def test_a_structure_beside_takes_more_than_one_farther_away() -> None:
         ),
     )
     loads = PinLoads("pull", ("M",), np.array([[[FORCE, 0.0, 0.0]]]))
-    (found,) = solve_in_lugs(InLugs(pin, STEEL, LUGS, (loads,)), replace(Asked(), meshes=1))
+    (found,) = solve_in_lugs(
+        PinProblem(pin, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
+    )
     assert found.joint is not None
     forces = {band.name: band.force for band in found.joint.bands}
     assert forces["L"] > 1.5 * forces["R"] > 0.0
@@ -216,7 +220,9 @@ def test_a_rounded_weight_is_shared_and_reported() -> None:
     forces = STEADY.forces.copy()
     forces[0, 0, 0] *= 1.001
     loads = replace(STEADY, forces=forces)
-    (found,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (loads,)), replace(Asked(), meshes=1))
+    (found,) = solve_in_lugs(
+        PinProblem(PIN, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
+    )
     share = found.solution.peak.imbalance
     assert share is not None
     assert share[0] == pytest.approx(0.5e-3, rel=1e-3)
@@ -235,7 +241,7 @@ def test_what_cannot_be_in_equilibrium_has_failed_with_the_reason(
     along = np.zeros((1, 3, 3))
     along[0, :, 0] = FORCE * np.array(forces)
     loads = PinLoads("pull", ("L", "M", "R"), along)
-    (found,) = solve_in_lugs(InLugs(PIN, STEEL, lugs, (loads,)), QUICK)
+    (found,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (loads,)), QUICK)
     peak = found.solution.peak
     assert (peak.verdict, peak.max_von_mises, found.joint) == ("failed", None, None)
     assert said in peak.note
@@ -246,7 +252,7 @@ def test_the_range_says_what_it_leaves_out() -> None:
     along = np.zeros((1, 3, 3))
     along[0, :, 0] = FORCE * np.array([-0.4, 1.0, -0.6])
     (found,) = solve_in_lugs(
-        InLugs(PIN, STEEL, LUGS, (PinLoads("pull", ("L", "M", "R"), along),)), QUICK
+        PinProblem(PIN, STEEL, LUGS, (PinLoads("pull", ("L", "M", "R"), along),)), QUICK
     )
     assert found.joint is not None
     assert found.joint.range is not None
@@ -258,7 +264,7 @@ def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
     """The same joint by four rings and 24 sectors, with edges that are rounded."""
     rounded = tuple(replace(lug, edge_radius=5e-4) for lug in LUGS)
     steel = replace(STEEL, yield_strength=3e9)
-    given = InLugs(PIN, steel, rounded, (STEADY,))
+    given = PinProblem(PIN, steel, rounded, (STEADY,))
     (usual,), (decided,) = (
         solve_in_lugs(given, asked) for asked in (QUICK, replace(QUICK, goal="decide", required=1))
     )
@@ -280,9 +286,9 @@ def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
 
 def test_a_softer_joint_is_that_of_softer_lugs() -> None:
     """What the range varies is what a model of its own would have."""
-    model = JointModel(PIN, STEEL, LUGS)
+    model = ContactModel(PIN, STEEL, LUGS)
     soft = Material("soft", 105e9, 0.3)
-    own = JointModel(PIN, STEEL, tuple(replace(lug, material=soft) for lug in LUGS))
+    own = ContactModel(PIN, STEEL, tuple(replace(lug, material=soft) for lug in LUGS))
     varied = model.varied(model.lugs, (2.0,) * len(model.lugs))
     z = np.array([0.023])
     ours, theirs = (m.solve(STEADY).bending_moment(z)[0, 0, 0] for m in (varied, own))
@@ -292,7 +298,7 @@ def test_a_softer_joint_is_that_of_softer_lugs() -> None:
 
 
 def test_nothing_is_in_contact_without_loads() -> None:
-    (found,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (pull(np.zeros((1, 2))),)), QUICK)
+    (found,) = solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (pull(np.zeros((1, 2))),)), QUICK)
     peak = found.solution.peak
     assert (peak.verdict, peak.max_von_mises, peak.error_estimate) == ("converged", 0.0, 0.0)
     assert found.joint is not None
@@ -302,7 +308,9 @@ def test_nothing_is_in_contact_without_loads() -> None:
 def test_moments_across_the_axis_are_refused() -> None:
     moments = np.zeros((1, 3, 3))
     moments[0, 1, 0] = 1.0
-    (found,) = solve_in_lugs(InLugs(PIN, STEEL, LUGS, (replace(STEADY, moments=moments),)), QUICK)
+    (found,) = solve_in_lugs(
+        PinProblem(PIN, STEEL, LUGS, (replace(STEADY, moments=moments),)), QUICK
+    )
     assert found.solution.peak.verdict == "failed"
     assert "moments of links across the axis" in found.solution.peak.note
 
@@ -312,7 +320,7 @@ def test_surfaces_have_the_names_of_the_whole_pin() -> None:
     tube = replace(
         PIN, segments=tuple(replace(s, bore=0.012) if s.connection else s for s in PIN.segments)
     )
-    (found,) = solve_in_lugs(InLugs(tube, STEEL, LUGS, (STEADY,)), replace(QUICK, meshes=1))
+    (found,) = solve_in_lugs(PinProblem(tube, STEEL, LUGS, (STEADY,)), replace(QUICK, meshes=1))
     names = {name for zone in found.solution.peak.singular_at for name in zone.between}
     steps = {f"bore step {i}" for i in range(1, 7)}
     assert names <= {*"LMR", "its lug", "bore L", "bore M", "bore R", *steps}

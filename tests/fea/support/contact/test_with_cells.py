@@ -6,17 +6,17 @@ from dataclasses import replace
 
 import pytest
 
-from fea.core.peak import ErrorParts, Peak, accuracy
-from fea.solve.requirement import Asked
+from fea.core.peak import ErrorParts, Maximum, accuracy
+from fea.solve.requirement import Requirement
 from fea.support.contact.error_parts import with_cells
 
-ASKED = Asked(tolerance=0.02)
+ASKED = Requirement(tolerance=0.02)
 
 
-def peak(mesh: float) -> Peak:
+def peak(mesh: float) -> Maximum:
     known = mesh <= ASKED.tolerance
     own = accuracy(mesh, ASKED.tolerance, known)
-    return Peak(
+    return Maximum(
         "P", "pull", "harmonic", "converged" if known else "unconverged",
         f"{own.text}; another note", 200.0, 200.0 * mesh, parts=ErrorParts(200.0 * mesh),
         reasons=(*own.codes, "another"),
@@ -52,5 +52,5 @@ def test_a_singular_row_has_a_wider_range() -> None:
 
 
 def test_without_a_maximum_nothing_changes() -> None:
-    failed = Peak("P", "pull", "harmonic", "failed", "why")
+    failed = Maximum("P", "pull", "harmonic", "failed", "why")
     assert with_cells(failed, 0.01, ASKED) is failed

@@ -13,12 +13,12 @@ from benchmarks.joints.random_joints import JointTrial, joint_trials
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.solve_pin import Asked, solve_pin
-from fea.support.contact.solve_joint import JointModel
+from fea.solve.solve_pin import Requirement, solve_pin
+from fea.support.contact.solve_joint import ContactModel
 from fea.support.foundation.foundation_model import (
-    LONG_ERROR,
-    PLAIN_ERROR,
-    SINGLE_SHEAR,
+    LONG_LUG_ERROR,
+    PLAIN_MOMENT_ERROR,
+    SINGLE_SHEAR_ERROR,
     TUBE_ERROR,
     FoundationModel,
     JointFoundation,
@@ -182,7 +182,7 @@ def test_tilts_between_free_and_guided() -> None:
 def test_the_beam_takes_the_loads() -> None:
     """solve_pin sees no imbalance, and its largest bending stress is that of the moment."""
     found = FoundationModel(*_steel(clevis(40, 20, 2))).solve(PULL)
-    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Asked(model="beam"))
+    (solution,) = solve_pin(found.pin, STEEL, (), (found.loads,), Requirement(model="beam"))
     assert solution.peak.imbalance is None
     moment = largest_moment(found.bending_moment, found.pin)
     bending = 32.0 * moment / (math.pi * D**3)
@@ -218,7 +218,7 @@ def test_signs_are_those_of_contact() -> None:
     forces[0, :, 1] = 1e4 * np.array([1.0, -2.0, 1.0])
     forces[0, 1, 0] -= 7850.0 * pin.volume * 5e3
     loads = PinLoads("P", ("L", "M", "R"), forces, body=np.array([5e3, 0.0, 0.0]))
-    truth = JointModel(pin, STEEL, lugs).solve(loads)
+    truth = ContactModel(pin, STEEL, lugs).solve(loads)
     found = FoundationModel(pin, STEEL, lugs).solve(loads)
     z = np.linspace(0.0, pin.length, 41)
     moment = truth.bending_moment(z)
@@ -252,13 +252,13 @@ def test_lugs_that_do_not_fit() -> None:
 
 def test_the_error_by_what_makes_it() -> None:
     pin, lugs = clevis(20, 10, 1)
-    assert moment_error(pin, STEEL, lugs) == PLAIN_ERROR
+    assert moment_error(pin, STEEL, lugs) == PLAIN_MOMENT_ERROR
     tube = Pin("T", tuple(replace(s, bore=0.5 * D) for s in pin.segments))
-    assert moment_error(tube, STEEL, lugs) == PLAIN_ERROR + TUBE_ERROR
+    assert moment_error(tube, STEEL, lugs) == PLAIN_MOMENT_ERROR + TUBE_ERROR
     long, eyes = clevis(40, 20, 2)
-    assert moment_error(long, STEEL, eyes) == PLAIN_ERROR + LONG_ERROR
+    assert moment_error(long, STEEL, eyes) == PLAIN_MOMENT_ERROR + LONG_LUG_ERROR
     two = single(math.inf, math.inf)
-    assert moment_error(two.whole, STEEL, two.lugs) == PLAIN_ERROR + SINGLE_SHEAR
+    assert moment_error(two.whole, STEEL, two.lugs) == PLAIN_MOMENT_ERROR + SINGLE_SHEAR_ERROR
     longest, wide = clevis(80, 20, 2)
     assert moment_error(longest, STEEL, wide) == math.inf
     assert moment_error(pin, STEEL, [*lugs[:2], replace(lugs[2], outer_diameter=5 * D)]) == math.inf
@@ -266,7 +266,7 @@ def test_the_error_by_what_makes_it() -> None:
 
 def _within(trial: JointTrial) -> bool:
     """Whether the largest moment of contact is within the stated error."""
-    truth = JointModel(trial.pin, trial.material, trial.lugs).solve(trial.loads)
+    truth = ContactModel(trial.pin, trial.material, trial.lugs).solve(trial.loads)
     found = FoundationModel(trial.pin, trial.material, trial.lugs).solve(trial.loads)
     ratio = largest_moment(truth.bending_moment, trial.pin) / largest_moment(
         found.bending_moment, trial.pin

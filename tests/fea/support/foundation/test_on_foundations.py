@@ -11,13 +11,13 @@ import pytest
 from benchmarks.joints.foundation import bounds_of, clevis, contact_places, played
 from benchmarks.joints.joint import TRUTH
 from benchmarks.joints.random_joints import joint_trials
-from fea.beam.model import BeamAnswer
+from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.requirement import Asked
-from fea.support.contact.solve_in_lugs import InLugs, LugSolution
-from fea.support.foundation.bounds import Bounded, bounded
+from fea.solve.requirement import Requirement
+from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
+from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.plane_contact import half_angle, largest_pressure
 from fea.support.foundation.solve_on_foundations import solve_joints
@@ -38,13 +38,15 @@ def usual() -> tuple[Pin, tuple[Lug, ...]]:
     return pin, tuple(lugs)
 
 
-def on_foundations(pin: Pin, lugs: tuple[Lug, ...], loads: PinLoads = PULL) -> Bounded:
+def on_foundations(pin: Pin, lugs: tuple[Lug, ...], loads: PinLoads = PULL) -> StressBounds:
     model = FoundationModel(pin, STEEL, lugs)
-    return bounded(FoundationStress.of(model), model.solve(loads))
+    return stress_bounds(FoundationStress.of(model), model.solve(loads))
 
 
-def solved(lugs: tuple[Lug, ...], pin: Pin, asked: Asked, joints: str = "auto") -> LugSolution:
-    given = InLugs(pin, STEEL, lugs, (PULL,))
+def solved(
+    lugs: tuple[Lug, ...], pin: Pin, asked: Requirement, joints: str = "auto"
+) -> LugSolution:
+    given = PinProblem(pin, STEEL, lugs, (PULL,))
     (found,) = solve_joints(given, asked, joints)  # type: ignore[arg-type]
     return found
 
@@ -75,7 +77,7 @@ def test_stress_is_that_of_the_beam_under_the_rings_loads() -> None:
     model = FoundationModel(pin, STEEL, lugs)
     found = model.solve(loads)
     top = FoundationStress.of(model).von_mises(found)
-    beam = BeamAnswer(model.pin, STEEL, (), found.loads)
+    beam = BeamField(model.pin, STEEL, (), found.loads)
     assert top.von_mises.max() == pytest.approx(beam.estimate.maximum, rel=2e-3)
     assert top.theta[top.place] == pytest.approx(beam.estimate.theta % (2 * math.pi), abs=0.02)
 
@@ -184,7 +186,7 @@ def test_sharp_corners_are_left_out_and_fillets_without_a_factor_are_not() -> No
 
 def test_a_row_has_the_error_of_the_model_alone() -> None:
     pin, lugs = usual()
-    found = solved(lugs, pin, Asked(tolerance=0.02), "foundation")
+    found = solved(lugs, pin, Requirement(tolerance=0.02), "foundation")
     peak, joint = found.solution.peak, found.joint
     assert (peak.model, peak.verdict) == ("foundation", "unconverged")
     assert peak.parts is not None
@@ -198,13 +200,13 @@ def test_a_row_has_the_error_of_the_model_alone() -> None:
     assert joint.bands[0].contact_angle == pytest.approx(PERSSON[0.0][0], abs=1e-3)
     assert joint.bands[1].couple == pytest.approx(0.0, abs=1e-6)
     assert joint.bands[0].couple > 1.0
-    rough = solved(lugs, pin, Asked(tolerance=0.9), "foundation")
+    rough = solved(lugs, pin, Requirement(tolerance=0.9), "foundation")
     assert rough.solution.peak.verdict == "converged"
 
 
 def test_a_row_without_a_known_error_has_one_as_large_as_itself() -> None:
     pin, lugs = clevis(10, 5, 0.5)  # thinner lugs than were measured
-    peak = solved(tuple(lugs), pin, Asked(tolerance=0.9), "foundation").solution.peak
+    peak = solved(tuple(lugs), pin, Requirement(tolerance=0.9), "foundation").solution.peak
     assert peak.verdict == "unconverged"
     assert peak.error_estimate == peak.max_von_mises
     assert "no-error-known" in peak.reasons
@@ -220,8 +222,8 @@ def test_a_motion_governs_between_its_samples() -> None:
 
     pin, lugs = usual()
     case = at(np.linspace(0.0, 1.0, 4))
-    given = InLugs(pin, STEEL, lugs, (case,), {"swing": at})
-    (found,) = solve_joints(given, Asked(), "foundation")
+    given = PinProblem(pin, STEEL, lugs, (case,), {"swing": at})
+    (found,) = solve_joints(given, Requirement(), "foundation")
     peak = found.solution.peak
     assert peak.time == pytest.approx(0.41, abs=1e-3)
     assert peak.max_von_mises == pytest.approx(on_foundations(pin, lugs).maximum, rel=1e-4)
@@ -239,7 +241,7 @@ def far_apart() -> tuple[Pin, tuple[Lug, ...]]:
 
 def test_auto_takes_foundations_where_bending_governs() -> None:
     pin, lugs = far_apart()
-    assert solved(lugs, pin, Asked(tolerance=0.3)).solution.peak.model == "foundation"
+    assert solved(lugs, pin, Requirement(tolerance=0.3)).solution.peak.model == "foundation"
 
 
 STRONG = replace(STEEL, yield_strength=1e9)
@@ -249,8 +251,8 @@ def decided(required: float, edges: float = 3e-4) -> LugSolution:
     """The clevis of about 300 MPa, with rounded or sharp edges of its lugs."""
     pin, lugs = usual()
     rounded = tuple(replace(lug, edge_radius=edges) for lug in lugs)
-    asked = Asked(goal="decide", required=required)
-    (found,) = solve_joints(InLugs(pin, STRONG, rounded, (PULL,)), asked)
+    asked = Requirement(goal="decide", required=required)
+    (found,) = solve_joints(PinProblem(pin, STRONG, rounded, (PULL,)), asked)
     return found
 
 
@@ -272,7 +274,7 @@ def test_auto_takes_contact_for_what_is_close_or_fails_or_is_singular(
 def test_auto_takes_contact_for_more_than_foundations_can() -> None:
     """The clevis, though its error is within the tolerance, is pressed too hard."""
     pin, lugs = usual()
-    assert solved(lugs, pin, Asked(tolerance=0.5)).solution.peak.model == "harmonic"
+    assert solved(lugs, pin, Requirement(tolerance=0.5)).solution.peak.model == "harmonic"
 
 
 @pytest.mark.parametrize(("lugs", "clearance", "largest"), [

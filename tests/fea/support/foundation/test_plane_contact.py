@@ -11,7 +11,7 @@ from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel, body_force
 from fea.support.contact.flexibility import half_plane, lug_flexibility, pin_flexibility
 from fea.support.foundation.plane_contact import (
-    HIGHEST,
+    MAX_PLANE_HARMONIC,
     lug_harmonics,
     pin_harmonics,
     plane_stiffness,
@@ -60,7 +60,7 @@ def test_a_section_held_by_a_body_force(pin: Pin, bore: float) -> None:
 
 
 def test_high_harmonics_are_the_half_planes() -> None:
-    n = np.arange(HIGHEST + 1)
+    n = np.arange(MAX_PLANE_HARMONIC + 1)
     for found in (pin_harmonics(0.004, 0.01, STEEL), lug_harmonics(0.01, 0.03, STEEL)):
         assert (n * found)[-1] == pytest.approx(half_plane(STEEL, 0.01), rel=0.05)
 

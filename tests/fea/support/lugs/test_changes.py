@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from fea.core.material import Material
-from fea.support.lugs.changes import JointChange, changes
+from fea.support.lugs.changes import JointChange, joint_variations
 from fea.support.lugs.lug import Lug, LugRange
 from geometry import ArgumentError, Pin, Segment
 
@@ -19,7 +19,7 @@ LOOSE = Lug("M", 0.05, STEEL, clearance=1e-4, tilt=1e5)
 
 
 def by_name(lugs: tuple[Lug, ...]) -> dict[tuple[str, str], JointChange]:
-    return {(change.what, change.value): change for change in changes(PIN, lugs)}
+    return {(change.what, change.value): change for change in joint_variations(PIN, lugs)}
 
 
 def test_the_usual_changes() -> None:

@@ -11,9 +11,9 @@ from scipy.optimize import brentq
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.contact.solve_joint import Cells, JointModel
+from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
-from fea.support.lugs.rings import LONGEST, graded, ring_ends, ringed, rings
+from fea.support.lugs.rings import MAX_RING_LENGTH, graded, ring_ends, ringed, rings
 from geometry import Band, Pin, Segment
 
 BAND = Band("A", 0.0, 0.02, 0.01)
@@ -23,7 +23,7 @@ def test_sharp_edges_have_the_usual_rings() -> None:
     assert ring_ends(BAND, 0.0, 8, 0.3) == pytest.approx(graded(0.02, 8))
     long = ring_ends(Band("A", 0.0, 0.04, 0.01), 0.0, 8, 0.3)
     assert len(long) - 1 == 13
-    assert np.diff(long).max() <= LONGEST * 0.02
+    assert np.diff(long).max() <= MAX_RING_LENGTH * 0.02
 
 
 @pytest.mark.parametrize("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
@@ -41,7 +41,7 @@ def test_rounded_edges_have_rings_where_rounding_begins(radius: float, count: in
     first = radius / 3.0 * 8 / count
     assert parts[at - 1] <= first * 1.0001
     assert parts[at] <= first * 1.0001 or at == len(ends) // 2
-    assert parts.max() <= LONGEST * 0.02 * 8 / count * 1.0001
+    assert parts.max() <= MAX_RING_LENGTH * 0.02 * 8 / count * 1.0001
 
 
 @pytest.mark.parametrize("radius", [2e-4, 5e-4, 1e-3, 4e-3, 0.01])
@@ -62,14 +62,14 @@ def test_rings_of_rounded_edges(radius: float, count: int) -> None:
     straight = ends[(ends > radius * 0.9999) & (ends < 0.02 - radius * 0.9999)] - radius
     if radius < 0.01:
         assert straight == pytest.approx(graded(0.02 - 2.0 * radius, count))
-    assert parts.max() <= LONGEST * 0.02 * 8 / count * 2.0
+    assert parts.max() <= MAX_RING_LENGTH * 0.02 * 8 / count * 2.0
 
 
 def test_lugs_may_differ_in_rings() -> None:
     pin = Pin("P", (Segment(0.02, 0.02, connection="A"), Segment(0.01, 0.02, connection="B")))
     steel = Material("steel", 210e9, 0.3)
     lugs = [Lug("A", 0.05, steel, edge_radius=5e-4), Lug("B", 0.05, steel)]
-    model = JointModel(pin, steel, lugs, Cells(8, 12, 2))
+    model = ContactModel(pin, steel, lugs, Resolution(8, 12, 2))
     counts = [len(model.ends[name]) - 1 for name in ("A", "B")]
     assert counts[0] > counts[1] == 8
     assert model.rings == (*rings("A", model.ends["A"]), *rings("B", model.ends["B"]))
@@ -103,9 +103,9 @@ def punch(
 
 @pytest.mark.parametrize(
     ("interference", "cells"),
-    [(2e-3, Cells(16, 6, 0, beside=0.01)), (2e-4, Cells(8, 6, 0, beside=0.004))],
+    [(2e-3, Resolution(16, 6, 0, beside=0.01)), (2e-4, Resolution(8, 6, 0, beside=0.004))],
 )
-def test_a_rounded_edge_is_a_flat_rounded_punchs(interference: float, cells: Cells) -> None:
+def test_a_rounded_edge_is_a_flat_rounded_punchs(interference: float, cells: Resolution) -> None:
     """A rigid eye pressed on a band that is short beside the pin's radius, round its whole axis, so
     that contact reaches a sixth of the radius into the rounding, and a 28th. Over the flat 1.5 %;
     reach of contact within a ring; at the peak, where rounding begins, 3 %.
@@ -115,7 +115,7 @@ def test_a_rounded_edge_is_a_flat_rounded_punchs(interference: float, cells: Cel
     over = Segment(0.5, 2.0 * radius)
     pin = Pin("P", (over, Segment(length, 2.0 * radius, connection="A"), over))
     lug = Lug("A", 3.0 * radius, rigid, clearance=-interference, edge_radius=edge)
-    model = JointModel(pin, steel, [lug], cells)
+    model = ContactModel(pin, steel, [lug], cells)
     pressure = model.solve(PinLoads("none", ("A",), np.zeros((1, 1, 3)))).contact[0].pressure[:, 0]
     ends = model.ends["A"] - length / 2.0
     flat, force = length / 2.0 - edge, float(pressure @ np.diff(ends))

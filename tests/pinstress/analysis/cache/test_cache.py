@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.core.peak import Peak, Refinement
+from fea.core.peak import Maximum, Refinement
 from pinstress.analysis.cache import serialise as packing
 from pinstress.analysis.cache import store as cache_module
 from pinstress.analysis.cache.store import Cache, user_cache
-from pinstress.analysis.stored import Entry, Solved
+from pinstress.analysis.stored import Entry, PinOutcome
 from reports.data.results import Field
 from tests.support.programs.folder_contents import contents, flipped
 
 
-def large(size: int) -> Solved:
+def large(size: int) -> PinOutcome:
     """An entry of about so many bytes."""
-    return Solved((Peak("P", "c", "beam", "rigid", "w" * size),))
+    return PinOutcome((Maximum("P", "c", "beam", "rigid", "w" * size),))
 
 
 @pytest.mark.parametrize(
@@ -31,13 +31,13 @@ def large(size: int) -> Solved:
 def test_a_damaged_entry_is_none_and_is_replaced(
     tmp_path: Path, damage: Callable[[bytes], bytes]
 ) -> None:
-    cache, value = Cache(tmp_path, ""), Solved((Peak("P", "c", "beam", "rigid", "why"),))
+    cache, value = Cache(tmp_path, ""), PinOutcome((Maximum("P", "c", "beam", "rigid", "why"),))
     key = cache.key("question")
     cache.write(key, value)
-    assert cache.read(key, Solved) == value
+    assert cache.read(key, PinOutcome) == value
     sound = (tmp_path / key).read_bytes()
     (tmp_path / key).write_bytes(damage(sound))
-    assert cache.read(key, Solved) is None
+    assert cache.read(key, PinOutcome) is None
     cache.write(key, value)
     assert contents(tmp_path) == {key: sound}
 
@@ -60,7 +60,7 @@ def test_no_name_leaves_a_folder(tmp_path: Path) -> None:
     cache = Cache(tmp_path / "cache", "")
     for key in ("../" * 22 + "a", "a" * 63 + "/", "A" * 64, "", "a" * 65):
         with pytest.raises(ValueError, match="not the name of an entry"):
-            cache.read(key, Solved)
+            cache.read(key, PinOutcome)
 
 
 def test_the_longest_unused_go_first_and_nothing_else_goes(tmp_path: Path) -> None:
@@ -74,7 +74,7 @@ def test_the_longest_unused_go_first_and_nothing_else_goes(tmp_path: Path) -> No
     for i, key in enumerate(keys):
         cache.write(key, large(700))
         os.utime(tmp_path / key, (10.0 + i, 10.0 + i))
-    assert cache.read(keys[0], Solved) is not None  # used now
+    assert cache.read(keys[0], PinOutcome) is not None  # used now
     size = (tmp_path / keys[0]).stat().st_size
     assert 2 * size <= cache.limit < 3 * size
     cache.trim()
@@ -87,7 +87,7 @@ def test_what_other_programs_name_by_hashes_stays(tmp_path: Path) -> None:
     """A store of theirs that PINSTRESS_CACHE names by mistake; links and folders as well."""
     cache = Cache(tmp_path / "store", "program")
     cache.write("a" * 64, large(700))
-    assert cache.read("a" * 64, Solved) is not None
+    assert cache.read("a" * 64, PinOutcome) is not None
     (tmp_path / "thesis.doc").write_text("years of work")
     (tmp_path / "store" / ("b" * 64)).write_bytes(b"blob" * 1000)
     (tmp_path / "store" / ("c" * 64)).symlink_to(tmp_path / "thesis.doc")
@@ -118,7 +118,7 @@ def test_packing_keeps_every_bit() -> None:
     numbers = np.array([[0.1, -0.0, np.nan], [np.inf, 5e-324, 1 / 3]], order="F")
     field = Field("P ü", "c", numbers, np.arange(8).reshape(2, 4), numbers, numbers, numbers[0],
                   numbers[1], "quad", None, (0.1 + 0.2, (1.0, -0.0, 1e300)))  # fmt: skip
-    entry = Entry(Solved((Peak("P", "c", "beam", "rigid", "why"),)), (field,))
+    entry = Entry(PinOutcome((Maximum("P", "c", "beam", "rigid", "why"),)), (field,))
     data = packing.pack(entry)
     back = packing.unpack(Entry, data)
     assert packing.pack(back) == data
@@ -130,10 +130,10 @@ def test_packing_keeps_every_bit() -> None:
 @pytest.mark.parametrize(
     "wrong",
     [
-        Peak("P", "c", "beam", "perhaps", ""),  # type: ignore[arg-type]
-        Peak("P", "c", "beam", "rigid", "", max_von_mises="1"),  # type: ignore[arg-type]
-        Peak("P", "c", "beam", "rigid", "", location=(1.0, 2.0)),  # type: ignore[arg-type]
-        Peak("P", "c", "beam", "rigid", 1),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "perhaps", ""),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "rigid", "", max_von_mises="1"),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "rigid", "", location=(1.0, 2.0)),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "rigid", 1),  # type: ignore[arg-type]
         Refinement(1, 1.0, 1.0),
         ("P",),
         None,
@@ -141,7 +141,7 @@ def test_packing_keeps_every_bit() -> None:
 )
 def test_unpacking_checks_types(wrong: object) -> None:
     with pytest.raises(ValueError, match=r"expected|argument"):
-        packing.unpack(Peak, packing.pack(wrong))
+        packing.unpack(Maximum, packing.pack(wrong))
 
 
 class Payload:
@@ -166,5 +166,5 @@ def test_nothing_is_pickled(tmp_path: Path) -> None:
     np.savez(file, **{"0": np.array([Payload(str(trap))], dtype=object), "text": text})  # type: ignore[arg-type]
     seal = hashlib.sha256(key.encode() + file.getvalue()).digest()
     (tmp_path / key).write_bytes(seal + file.getvalue())  # as sound as a forger can make it
-    assert cache.read(key, Solved) is None
+    assert cache.read(key, PinOutcome) is None
     assert not trap.exists()

@@ -15,7 +15,7 @@ from typing import Any
 import meshio
 import pytest
 
-from fea.core.peak import Peak, Refinement
+from fea.core.peak import Maximum, Refinement
 from fea.solve.solve_pin import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
@@ -24,7 +24,7 @@ from pinstress.analysis import solve as solving
 from pinstress.analysis.cache import store as cache_module
 from pinstress.analysis.cache.store import Cache, user_cache
 from pinstress.analysis.plan import prepare
-from pinstress.analysis.stored import Entry, lasting, question
+from pinstress.analysis.stored import Entry, cache_key, independent_of_memory
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 from tests.support.pins.pin_files import write_mesh
@@ -164,7 +164,7 @@ def test_sound_entries_of_something_else_are_not_trusted(solve: Solve, folder: P
     plan = prepare(load_study("study.toml"))
     cache = user_cache()
     assert cache is not None
-    a, b = (cache.key(question(plan, task)) for task in plan.tasks)
+    a, b = (cache.key(cache_key(plan, task)) for task in plan.tasks)
     assert {a, b} == set(contents(folder))
     (folder / a).write_bytes((folder / b).read_bytes())  # under another name
     assert solve() == ["A"]
@@ -270,7 +270,7 @@ forces = { B = [0.0, 1000.0] }
 
 def key_of(study: Path) -> str:
     plan = prepare(load_study(study))
-    return Cache(study.parent, "").key(question(plan, plan.tasks[0]))
+    return Cache(study.parent, "").key(cache_key(plan, plan.tasks[0]))
 
 
 @pytest.mark.parametrize(("form", "changes"), [("vtk", "pin.vtk"), ("ele", "pin.node")])
@@ -296,11 +296,17 @@ def test_what_more_memory_would_have_changed_is_not_kept(tmp_path: Path) -> None
     (tmp_path / "study.toml").write_text(STUDY)
     plan = prepare(load_study(tmp_path / "study.toml"), model="solid", memory=300.0)
 
-    def peak(error: float, dofs: int) -> Peak:
+    def peak(error: float, dofs: int) -> Maximum:
         meshes = (Refinement(dofs // 3, 1.0, 1.0), Refinement(dofs, 1.0, 1.0))
-        return Peak("A", "press", "solid", "unconverged", "", 1.0, error, (0.0,) * 3, None, meshes)
+        return Maximum(
+            "A", "press", "solid", "unconverged", "", 1.0, error, (0.0,) * 3, None, meshes
+        )
 
-    assert lasting(plan, plan.tasks[0], (peak(0.1, 20_000),))  # known
-    assert not lasting(plan, plan.tasks[0], (peak(0.3, 20_000),))  # the next takes some 450 MB
-    assert lasting(plan, plan.tasks[0], (peak(0.3, 10_000),))  # something else stopped it
-    assert lasting(plan, plan.tasks[0], (peak(0.3, 200_000),))  # as large as they get
+    assert independent_of_memory(plan, plan.tasks[0], (peak(0.1, 20_000),))  # known
+    assert not independent_of_memory(
+        plan, plan.tasks[0], (peak(0.3, 20_000),)
+    )  # the next takes some 450 MB
+    assert independent_of_memory(
+        plan, plan.tasks[0], (peak(0.3, 10_000),)
+    )  # something else stopped it
+    assert independent_of_memory(plan, plan.tasks[0], (peak(0.3, 200_000),))  # as large as they get

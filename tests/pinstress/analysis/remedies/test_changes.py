@@ -9,7 +9,7 @@ import pytest
 
 import pinstress
 from pinstress.cli.commands import run_command_line
-from reports.data.changes import Change
+from reports.data.changes import Remedy
 from reports.data.decision import factor_ends
 from reports.data.results import Results
 from tests.conftest import ROOT
@@ -32,7 +32,7 @@ def weak() -> pinstress.Study:
     return pinstress.changed_study(study, {"analysis.required_safety_factor": 4.0 * factor})
 
 
-def only(results: Results) -> Change:
+def only(results: Results) -> Remedy:
     (found,) = results.changes
     return found
 

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fea.core.mesh_result import MeshResult
+from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.solve.single_mesh import Rung
-from fea.solve.verdict import NOISE
+from fea.solve.verdict import FIRST_MESH_SCATTER
 from geometry import Pin, Segment
 from pinstress import load_study, study_from
 from pinstress.cli.chart import _report_missed
@@ -65,7 +65,7 @@ class MadeUp:
             "harmonic": (0.02 * 0.5**rung.level, 2.0**rung.level, 0.01 * 2.0**rung.level, 10.0),
             "solid": (0.08 * part * 0.5**rung.level, 4.0**rung.level, 4.0**rung.level, 400.0),
         }[rung.model]
-        result = MeshResult(round(1000 * unknowns), EXACT * (1.0 - error), 0, (0.0, 0.0, 0.0))
+        result = MeshMaximum(round(1000 * unknowns), EXACT * (1.0 - error), 0, (0.0, 0.0, 0.0))
         return Measured(result, spent, memory, 100.0)
 
 
@@ -97,7 +97,9 @@ def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart)
     charted = max(p.dofs or 0 for p in made_up.points if p.model == "harmonic")
     assert made_up.reference.dofs >= 10 * charted
     true = 0.02 * 1000 / made_up.reference.dofs
-    assert made_up.reference.error == pytest.approx(NOISE["harmonic"] / 0.02 * true, rel=1e-2)
+    assert made_up.reference.error == pytest.approx(
+        FIRST_MESH_SCATTER["harmonic"] / 0.02 * true, rel=1e-2
+    )
     beam = made_up.points[0]
     assert beam.error == pytest.approx(0.3, abs=2 * true)
     assert "Reference: harmonic model" in reference_line(made_up)

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 from assess.opinion import calculix
-from fea.core.mesh_result import MeshResult
-from fea.support.contact.solve_joint import Cells
+from fea.core.mesh_result import MeshMaximum
+from fea.support.contact.solve_joint import Resolution
 from geometry import ArgumentError
 from pinstress import load_study
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.chart.chart import ChartPlan, chart, plan_chart
-from pinstress.explore.chart.in_lugs import CELLS, LEVELS, contact_rung, sets_of
+from pinstress.explore.chart.in_lugs import CHART_RESOLUTIONS, CONTACT_LEVELS, contact_rung, sets_of
 from pinstress.explore.chart.measured_process import Measured, MeasureJob
 from pinstress.explore.chart.single_joint import JointProblem, JointRung, joint_result_on
 from pinstress.study.reading.errors import InputError
@@ -51,7 +51,9 @@ class MadeUp:
             "contact": (mesh + cells, 1.0 * rung.cells.rings * 2.0**rung.level),
             "calculix": (0.03, 100.0),
         }.get(rung.model, (FORMS.get(rung.model, 0.0), 1e-2))
-        result = MeshResult(round(1e4 * 2.0**rung.level), EXACT * (1.0 + error), 0, (0.0, 0.0, 0.0))
+        result = MeshMaximum(
+            round(1e4 * 2.0**rung.level), EXACT * (1.0 + error), 0, (0.0, 0.0, 0.0)
+        )
         return Measured(result, seconds, 10.0, 100.0)
 
 
@@ -77,14 +79,14 @@ def test_all_models_of_a_joint_are_charted(plan: ChartPlan, made_up: Chart) -> N
         "calculix",
     ]
     for (model, _), curve in curves.items():
-        least = {"foundation": 1, "prescribed": 2, "calculix": 3}.get(model, len(LEVELS))
+        least = {"foundation": 1, "prescribed": 2, "calculix": 3}.get(model, len(CONTACT_LEVELS))
         assert len(curve) >= least
     without = chart(plan, MadeUp())
     assert "calculix" not in {p.model for p in without.points}
 
 
 def test_the_mesh_on_which_a_run_ends_is_marked(plan: ChartPlan, made_up: Chart) -> None:
-    assert plan.chosen == contact_rung(Cells(), len(plan.peak.history) - 1)
+    assert plan.chosen == contact_rung(Resolution(), len(plan.peak.history) - 1)
     (marked,) = [p for p in made_up.points if p.chosen]
     assert (marked.model, marked.element) == ("contact", plan.chosen.element)
 
@@ -94,7 +96,7 @@ def test_errors_are_those_against_the_finest_contact(plan: ChartPlan, made_up: C
     1) of 0.1, which is what it is off.
     """
     cells = sets_of(plan.problem)[-1]  # type: ignore[arg-type]
-    assert cells == CELLS[-1]
+    assert cells == CHART_RESOLUTIONS[-1]
     assert made_up.reference.model == "contact"
     assert made_up.reference.element == contact_rung(cells, 0).element
     assert made_up.reference.error > 0.1 / cells.rings * 0.9
@@ -143,7 +145,7 @@ def test_results_are_of_the_same_places(plan: ChartPlan) -> None:
     rungs = (
         JointRung("foundation", ""),
         JointRung("prescribed", "", -2),
-        contact_rung(Cells(4, 18, 6), -2),
+        contact_rung(Resolution(4, 18, 6), -2),
     )
     found = [joint_result_on(problem, rung) for rung in rungs]
     for result in found:

@@ -14,7 +14,12 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import binom, norm
 
 from benchmarks.runs.reliability import assessed, cases
-from pinstress.explore.reliability.form import NOISY, design_point, distinct, form_quantile
+from pinstress.explore.reliability.form import (
+    NOISY_CLOSENESS,
+    design_point,
+    distinct,
+    form_quantile,
+)
 from pinstress.explore.reliability.sampling import (
     Draws,
     importance_draws,
@@ -297,11 +302,11 @@ def test_the_design_point_of_a_limit_state_with_noise(size: float) -> None:
             found: Array = 3.5 - u @ n + 0.5 * size * np.sin(u @ waves.T).sum(axis=1)
             return found
 
-        found = design_point(limit, np.zeros(5), NOISY)
+        found = design_point(limit, np.zeros(5), NOISY_CLOSENESS)
         assert not found.why
         assert found.index == pytest.approx(3.5, abs=0.01 + 3.0 * size)
         assert found.evaluations <= 100
-        low = form_quantile(limit, 0.001, 5, NOISY)
+        low = form_quantile(limit, 0.001, 5, NOISY_CLOSENESS)
         assert low.value == pytest.approx(3.5 + float(ndtri(0.001)), abs=0.01 + 3.0 * size)
         assert low.evaluations <= 100
 

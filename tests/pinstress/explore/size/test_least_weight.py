@@ -13,9 +13,9 @@ from geometry import Pin
 from pinstress.analysis.plan import prepare
 from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.least_weight import LightStudy, lighten
-from pinstress.explore.size.lightest_pin import Aim, problem_of
+from pinstress.explore.size.lightest_pin import WeightGoal, problem_of
 from pinstress.explore.size.other_dimensions import paths_of, written_study
-from pinstress.explore.size.pin_shape import KINDS, Proportions, VariedShape
+from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions, VariedShape
 from pinstress.explore.size.pin_stress import PinStress
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import load_study
@@ -77,7 +77,7 @@ ALLOWED = 250.0  # MPa
 
 
 def lightest(text: str, **aim: object) -> LightStudy:
-    return lighten(pinstress.study_from(HEAD + text), Aim(2.0, **aim))  # type: ignore[arg-type]
+    return lighten(pinstress.study_from(HEAD + text), WeightGoal(2.0, **aim))  # type: ignore[arg-type]
 
 
 def values_of(found: LightStudy) -> dict[str, float]:
@@ -177,7 +177,7 @@ def test_volume_and_limits_of_all_shipped_pins() -> None:
             pin = pin_of(study, name)
             if not isinstance(pin, Pin):
                 continue
-            shape = VariedShape(study, pin, KINDS, Proportions())
+            shape = VariedShape(study, pin, DIMENSION_KINDS, Proportions())
             assert shape.at_limits(shape.values)[0].min(initial=0.0) >= 0.0
             volume, slope = shape.volume(shape.values)
             assert volume == pytest.approx(pin.volume, rel=1e-12)
@@ -197,7 +197,7 @@ def test_dimensions_are_written_where_they_stand() -> None:
     )
     study = pinstress.study_from(text)
     pin = pin_of(study, "P")
-    shape = VariedShape(study, pin, KINDS, Proportions())
+    shape = VariedShape(study, pin, DIMENSION_KINDS, Proportions())
     (dimension,) = shape.dimensions
     assert isinstance(pin, Pin)
     assert len(paths_of(pin, dimension)) == 14
@@ -227,7 +227,7 @@ band.C = { z = [50, 80] }
     )
     study = pinstress.study_from(text.replace("[40, 15, 2], [40, 10]", "[40, 15], [45, 10]"))
     pin = pin_of(study, "P")
-    shape = VariedShape(study, pin, KINDS, Proportions())
+    shape = VariedShape(study, pin, DIMENSION_KINDS, Proportions())
     assert shape.keys == ("meridian[1-2][2]", "meridian[3-4][2]", "bore_meridian[1-2][2]")
     assert isinstance(pin, Pin)
     values = {"P": dict(zip(shape.keys, (0.014, 0.011, 0.005), strict=True))}
@@ -241,10 +241,10 @@ def test_places_have_the_derivatives_of_differences(monkeypatch: pytest.MonkeyPa
     """Of a hollow pin along a motion, where no corner is sharp at the maximum: of its sections,
     which govern, and of its surface, wherever that is.
     """
-    monkeypatch.setattr("pinstress.explore.size.pin_stress.UNKNOWN", 1.0)
+    monkeypatch.setattr("pinstress.explore.size.pin_stress.UNKNOWN_PLACE_WINDOW", 1.0)
     study = load_study(ROOT / "studies" / "engine.toml")
     plan = prepare(study, pins=["C"])
-    problem = problem_of(study, plan, "C", Aim(3.0))
+    problem = problem_of(study, plan, "C", WeightGoal(3.0))
     assert not isinstance(problem, str)
     stress = PinStress(problem, lambda _: None)
     values = problem.shape.values
@@ -271,7 +271,7 @@ def test_places_have_the_derivatives_of_differences(monkeypatch: pytest.MonkeyPa
 def test_no_pin_is_heavier_than_one_that_is_scaled(name: str, pins: list[str] | None) -> None:
     """And what is written is the same for two processes as for one."""
     study = load_study(ROOT / "studies" / f"{name}.toml")
-    found = lighten(study, Aim(5.0), pins)
+    found = lighten(study, WeightGoal(5.0), pins)
     assert found.settled
     for each in found.pins:
         assert each.values is not None, each.why
@@ -281,14 +281,14 @@ def test_no_pin_is_heavier_than_one_that_is_scaled(name: str, pins: list[str] | 
         assert each.scaled is not None
         assert pin_of(found.study, each.pin).volume <= each.scaled * (1.0 + 1e-9)
     assert confirmed(found, 5.0) or pins
-    assert lighten(study, Aim(5.0), pins, jobs=2).study.text == found.study.text
+    assert lighten(study, WeightGoal(5.0), pins, jobs=2).study.text == found.study.text
 
 
 @pytest.mark.slow
 def test_loads_follow_the_weights() -> None:
     """A floating pin's stated weight changes with its shape, and a run has the factor under it."""
     study = load_study(ROOT / "studies" / "grenier2008.toml")
-    found = lighten(study, Aim(10.0), ["F"])
+    found = lighten(study, WeightGoal(10.0), ["F"])
     before, after = study.table.mechanism, found.study.table.mechanism
     assert before is not None
     assert after is not None
@@ -308,7 +308,7 @@ def test_a_pin_with_a_hole_is_scaled_as_a_whole() -> None:
     """Its stress has no derivatives; a run has the factor all the same."""
     text = HEAD + TENSION + "hole = [{ z = 150, diameter = 4 }]\n"
     study = pinstress.study_from(text.replace("factor = 2", "factor = 2\ntolerance = 0.1"))
-    found = lighten(study, Aim(2.0))
+    found = lighten(study, WeightGoal(2.0))
     (only,) = found.pins
     assert only.scale is not None, only.why
     assert "no derivatives" in only.way
@@ -324,7 +324,7 @@ EYE = CLEVIS.replace("[pin.P.lug.M]", "[pin.P.lug.M]\nouter_diameter = 32").repl
 def test_eyes_follow_a_pin_in_the_search_as_in_what_is_written() -> None:
     """From 1.5 times the diameter on: 32 mm about 20, 36 about 24."""
     study = pinstress.study_from(EYE)
-    problem = problem_of(study, prepare(study), "P", Aim(2.0))
+    problem = problem_of(study, prepare(study), "P", WeightGoal(2.0))
     assert not isinstance(problem, str)
     stress, shape = PinStress(problem, lambda _: None), problem.shape
     for times, eye in ((1.0, 0.032), (1.05, 0.032), (1.2, 0.036)):
@@ -338,7 +338,7 @@ def test_eyes_follow_a_pin_in_the_search_as_in_what_is_written() -> None:
 @pytest.mark.slow
 def test_in_contact_rough_cells_are_corrected_by_usual_ones() -> None:
     """Three times the usual factor: the pin and its eye grow, and a run on its own cells has it."""
-    found = lighten(pinstress.study_from(EYE), Aim(6.0))
+    found = lighten(pinstress.study_from(EYE), WeightGoal(6.0))
     (only,) = found.pins
     assert found.settled
     assert only.values is not None, only.why
@@ -357,7 +357,7 @@ def test_in_contact_stress_has_the_derivatives_of_differences() -> None:
     pin: by the cube of its dimensions.
     """
     study = pinstress.study_from(EYE)
-    problem = problem_of(study, prepare(study), "P", Aim(2.0))
+    problem = problem_of(study, prepare(study), "P", WeightGoal(2.0))
     assert not isinstance(problem, str)
     stress, values = PinStress(problem, lambda _: None), 1.2 * problem.shape.values
     here, more, less = (

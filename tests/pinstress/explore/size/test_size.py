@@ -12,14 +12,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pinstress.analysis.remedies.secant import CLOSE, TRIALS, NoSizeError, smallest
+from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.scaled_study import moved, resized, resized_study
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import load_study, parse_study
-from pinstress.study.schema.units import SYSTEMS
+from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import factor_ends, outcome
 from tests.conftest import ROOT
 from tests.support.programs.command_line import ONE_PIN, QUICK, Refused, sizes_nothing
@@ -47,8 +47,8 @@ def test_the_search_finds_the_root(bending: float, tension: float, required: flo
         return
     assert found.scale in tried
     assert found.factor == factor_at(found.scale)
-    assert required <= found.factor <= required * (1.0 + CLOSE)
-    assert len(tried) <= TRIALS + 1
+    assert required <= found.factor <= required * (1.0 + FACTOR_TOLERANCE)
+    assert len(tried) <= MAX_TRIALS + 1
 
 
 def test_the_search_gets_along_with_noise() -> None:
@@ -64,7 +64,7 @@ def test_a_factor_that_does_not_grow_is_told() -> None:
 
 
 def test_only_diameters_change_and_comments_stay() -> None:
-    text = resized(ONE_PIN, {"B": 1.5}, SYSTEMS["in-lbf-s"])
+    text = resized(ONE_PIN, {"B": 1.5}, UNIT_SYSTEMS["in-lbf-s"])
     changed = {
         old: new
         for old, new in zip(ONE_PIN.splitlines(), text.splitlines(), strict=True)
@@ -75,7 +75,7 @@ def test_only_diameters_change_and_comments_stay() -> None:
         '{ length = 2.0, diameter = 3.0, connection = "B" }, # the band loaded by link B',
         "fillet = 0.6 # radius at every inner corner; default 0: sharp",
     }
-    assert resized(ONE_PIN, {"B": 1.0}, SYSTEMS["in-lbf-s"]) == ONE_PIN
+    assert resized(ONE_PIN, {"B": 1.0}, UNIT_SYSTEMS["in-lbf-s"]) == ONE_PIN
 
 
 def test_units_provenance_and_rounding() -> None:
@@ -91,7 +91,7 @@ flat = [{ z = [0.0, 1.0], distance = 1.23456 }]
 hole = [{ z = 1.0, diameter = 0.5 }]
 """
     step = 5e-3  # 5 mm
-    pin = tomllib.loads(resized(text, {"B": 1.11}, SYSTEMS["in-lbf-s"], step, 4.0))
+    pin = tomllib.loads(resized(text, {"B": 1.11}, UNIT_SYSTEMS["in-lbf-s"], step, 4.0))
     first, second = pin["pin"]["B"]["profile"]
     assert first["diameter"] == {
         "value": "115 mm",
@@ -183,7 +183,7 @@ def test_a_floating_pin_of_a_linkage_is_sized_and_a_run_confirms_it(
     assert "reached as described, but not within the range of the joint" in said.err
     (row,) = run(load_study(target)).pins
     low, _ = factor_ends(row)
-    assert 4.0 <= low <= 4.0 * (1.0 + CLOSE)
+    assert 4.0 <= low <= 4.0 * (1.0 + FACTOR_TOLERANCE)
     assert outcome(row) == "depends"
     assert f"{row.safety_factor:.2f}" in said.out
 
@@ -208,8 +208,8 @@ def test_a_run_confirms_the_size_and_a_smaller_pin_misses(
     assert "required_safety_factor = 20.0" in sized
     found, verdict = factor(sized, "again")
     assert verdict == "converged"
-    assert 20.0 <= found <= 20.0 * (1.0 + CLOSE)
-    smaller, _ = factor(resized(sized, {"B": 0.99}, SYSTEMS["in-lbf-s"]), "smaller")
+    assert 20.0 <= found <= 20.0 * (1.0 + FACTOR_TOLERANCE)
+    smaller, _ = factor(resized(sized, {"B": 0.99}, UNIT_SYSTEMS["in-lbf-s"]), "smaller")
     assert smaller < 20.0
     assert run_command_line(["size", "study.toml"]) == 2
     assert "study_sized.toml exists already" in capsys.readouterr().err
@@ -247,7 +247,7 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
     assert "reached only outside the excluded zones; in landing the stress is singular" in said.err
     found, verdict = factor(Path("study_sized.toml").read_text(), "again")
     assert verdict == "singular"
-    assert 10.0 <= found <= 10.0 * (1.0 + CLOSE)
+    assert 10.0 <= found <= 10.0 * (1.0 + FACTOR_TOLERANCE)
 
 
 @pytest.mark.parametrize(

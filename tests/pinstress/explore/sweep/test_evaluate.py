@@ -15,7 +15,7 @@ from geometry.mesh.moved import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
-from pinstress.explore.sweep.evaluate import Evaluator, Recent
+from pinstress.explore.sweep.evaluate import Evaluator, Memo
 from pinstress.explore.sweep.number import number_at
 from pinstress.study.model.cases import case_loads
 from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, varied
@@ -46,7 +46,7 @@ def test_rows_are_those_of_a_run_of_the_changed_study(
             n.key: n.in_study(v / n.factor) for n, v in zip(evaluator.numbers, values, strict=True)
         }
         with monkeypatch.context() as patch:
-            patch.setattr(near_mesh, "_KEPT", near_mesh._Kept())
+            patch.setattr(near_mesh, "_KEPT_MESHES", near_mesh._Kept())
             found = pinstress.run(changed_study(study, changes)).pins[0]
         assert row.max_von_mises is not None
         assert row.max_von_mises / stress == found.max_von_mises
@@ -82,7 +82,7 @@ def test_near_designs_share_their_meshes(monkeypatch: pytest.MonkeyPatch) -> Non
         made.append(pin)
         return meridian_mesh(pin, *more)
 
-    monkeypatch.setattr(near_mesh, "_KEPT", near_mesh._Kept())
+    monkeypatch.setattr(near_mesh, "_KEPT_MESHES", near_mesh._Kept())
     monkeypatch.setattr(near_mesh, "meridian_mesh", counted)
     evaluator, _ = _evaluator(study_from(VARIED), DIAMETER)
     for diameter in np.linspace(0.0505, 0.0510, 6):
@@ -190,7 +190,7 @@ def test_pins_that_a_number_does_not_touch_are_solved_once(
 
 
 def test_what_was_asked_for_last_is_remembered() -> None:
-    known = Recent[int, str](2)
+    known = Memo[int, str](2)
     for key in (1, 2):
         known.put(key, str(key))
     assert known.get(1) == "1"

@@ -10,7 +10,7 @@ import pytest
 from scipy import stats
 
 from pinstress.explore.sweep.correlations import correlations_of
-from pinstress.explore.sweep.fits import UP_TO, limits_of
+from pinstress.explore.sweep.fits import NOMINAL_SIZE_LIMITS, limits_of
 from pinstress.explore.sweep.laws import (
     Floats,
     Law,
@@ -23,7 +23,7 @@ from pinstress.explore.sweep.laws import (
 from pinstress.explore.sweep.number import Number
 from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.explore.sweep.sample import designs_of
-from pinstress.study.schema.units import SYSTEMS
+from pinstress.study.schema.units import UNIT_SYSTEMS
 from pinstress.study.schema.vary import VaryTable
 from tests.support.programs.swept import DIAMETER, FORCE, STRENGTH, swept
 
@@ -86,15 +86,16 @@ def _number(nominal: float, dimension: str = "length") -> Number:
 )
 def test_tolerances_of_a_drawing_are_limits(text: str, low: float, high: float) -> None:
     """Micrometres from a nominal diameter of 60 mm."""
-    found = np.array(limits_of(text, _number(0.06), SYSTEMS["mm-N-s"])) - 0.06
+    found = np.array(limits_of(text, _number(0.06), UNIT_SYSTEMS["mm-N-s"])) - 0.06
     np.testing.assert_allclose(found, np.array([low, high]) * 1e-6, atol=1e-15)
 
 
-@pytest.mark.parametrize("size", UP_TO)
+@pytest.mark.parametrize("size", NOMINAL_SIZE_LIMITS)
 def test_a_range_of_nominal_sizes_has_its_upper_end(size: float) -> None:
     """As the standard has them: over the lower, up to and including the upper."""
     at, above = (
-        np.ptp(limits_of("h7", _number(d * 1e-3), SYSTEMS["mm-N-s"])) for d in (size, size * 0.99)
+        np.ptp(limits_of("h7", _number(d * 1e-3), UNIT_SYSTEMS["mm-N-s"]))
+        for d in (size, size * 0.99)
     )
     assert at == pytest.approx(above)
 

@@ -13,7 +13,7 @@ from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.laws import Uniform
 from pinstress.explore.sweep.number import number_at, unit_of
 from pinstress.explore.sweep.parameters import parameters_of
-from pinstress.study.schema.units import DIMENSIONS, SYSTEMS, to_si
+from pinstress.study.schema.units import DIMENSION_EXPONENTS, UNIT_SYSTEMS, to_si
 from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, swept, varied
 
 LANDING_GEAR = shipped_studies()["landing_gear"]
@@ -79,11 +79,11 @@ def test_an_angle_varies_in_degrees() -> None:
     assert str(number.in_study(12.5)) == "12.5 deg"
 
 
-@pytest.mark.parametrize("dimension", DIMENSIONS)
-@pytest.mark.parametrize("system", SYSTEMS.values())
+@pytest.mark.parametrize("dimension", DIMENSION_EXPONENTS)
+@pytest.mark.parametrize("system", UNIT_SYSTEMS.values())
 def test_the_unit_of_a_dimension_can_be_read(dimension: str, system: object) -> None:
     """What a table names as a unit is that unit; radians are numbers."""
-    found = SYSTEMS[getattr(system, "name", "")]
+    found = UNIT_SYSTEMS[getattr(system, "name", "")]
     unit = unit_of(found, dimension)
     if dimension in ("angle", "angular velocity", "angular acceleration"):
         return

@@ -20,22 +20,22 @@ import pinstress
 from geometry.mesh.moved.near_mesh import step
 from pinstress import InputError, load_study, shipped_studies
 from pinstress.explore.sweep.batches import (
-    AIM,
-    MOST,
-    TASK,
+    BATCH_OVERHEAD_SECONDS,
+    MAX_BATCH_DESIGNS,
+    TARGET_BATCH_SECONDS,
     Batch,
     Batches,
     DesignProblem,
-    Done,
+    SolvedBatch,
     aim_of,
     ordered,
     solve_batch,
 )
 from pinstress.explore.sweep.number import number_at
 from pinstress.explore.sweep.parameters import parameters_of
-from pinstress.explore.sweep.parts import Identity, Parts, identity, is_ours
+from pinstress.explore.sweep.parts import BatchFolder, Identity, identity, is_ours
 from pinstress.explore.sweep.summary import summary
-from pinstress.explore.sweep.sweep import Kept, planned, solved
+from pinstress.explore.sweep.sweep import MemoryStore, planned, solved
 from pinstress.explore.sweep.table import assembled, facts, write_table
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows
 from tests.support.programs.command_line import QUICK
@@ -126,7 +126,7 @@ def test_batches_of_any_size_in_any_order_give_the_same_bytes(
     study = swept(VARIED, "", QUICK)
     sweep = planned(study)
     designs = np.random.default_rng(3).permutation(12).tolist()
-    store = Kept()
+    store = MemoryStore()
     from pinstress.explore.sweep.table import table_of
 
     for some in (designs[:1], designs[1:6], designs[6:]):
@@ -146,12 +146,12 @@ def test_only_what_is_missing_is_solved(table: pa.Table, monkeypatch: pytest.Mon
     batches: list[Batch] = []
     whole = solve_batch
 
-    def noted(problem: DesignProblem, batch: Batch) -> Done:
+    def noted(problem: DesignProblem, batch: Batch) -> SolvedBatch:
         batches.append(batch)
         return whole(problem, batch)
 
     monkeypatch.setattr(module, "solve_batch", noted)
-    store = Kept()
+    store = MemoryStore()
     store.write(table.slice(2, 7))
     told: list[tuple[int, int]] = []
     found = solved(
@@ -170,7 +170,7 @@ def test_designs_of_the_same_shape_follow_each_other_in_a_batch() -> None:
     batches = Batches(numbers, values, {5, 6}, 2)
     order = []
     for batch in batches:
-        batches.learn(Done(batch, [], 0.01 * len(batch.designs)))
+        batches.learn(SolvedBatch(batch, [], 0.01 * len(batch.designs)))
         order += list(batch.designs)
     assert sorted(order) == sorted(set(range(40)) - {5, 6})
     assert (np.diff(values[order, 0]) >= 0.0).all()
@@ -190,28 +190,32 @@ def test_designs_whose_rounded_shapes_are_the_same_follow_each_other() -> None:
 
 def test_batches_are_as_long_as_they_should_be() -> None:
     numbers = [number_at(swept(VARIED), FORCE)]
-    for seconds, size in ((0.1, round(AIM / 0.1)), (5.0, 1), (1e-5, MOST)):
+    for seconds, size in (
+        (0.1, round(TARGET_BATCH_SECONDS / 0.1)),
+        (5.0, 1),
+        (1e-5, MAX_BATCH_DESIGNS),
+    ):
         batches = Batches(numbers, np.zeros((100_000, 1)), set(), 2)
         first = batches.next()
         assert len(first.designs) == 1
-        batches.learn(Done(first, [], seconds))
+        batches.learn(SolvedBatch(first, [], seconds))
         assert len(batches.next().designs) == size
 
 
 def test_many_processes_get_larger_batches() -> None:
     """So that handing out one to each takes no longer than solving it."""
-    assert aim_of(1) == aim_of(250) == AIM
-    assert aim_of(1000) == pytest.approx(1000 * TASK)
+    assert aim_of(1) == aim_of(250) == TARGET_BATCH_SECONDS
+    assert aim_of(1000) == pytest.approx(1000 * BATCH_OVERHEAD_SECONDS)
     problem = planned(swept(VARIED, "", QUICK)).problem
     batches = Batches(problem.numbers, np.zeros((200_000, 2)), set(), 1000)
-    batches.learn(Done(batches.next(), [], 0.1))
-    assert len(batches.next().designs) == round(1000 * TASK / 0.1)
+    batches.learn(SolvedBatch(batches.next(), [], 0.1))
+    assert len(batches.next().designs) == round(1000 * BATCH_OVERHEAD_SECONDS / 0.1)
 
 
 def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
     table: pa.Table, tmp_path: Path
 ) -> None:
-    parts = Parts(tmp_path, Identity("one", "any", 6, "random"))
+    parts = BatchFolder(tmp_path, Identity("one", "any", 6, "random"))
     assert not parts.there()
     with pytest.raises(InputError) as raised:
         parts.require_same()
@@ -225,7 +229,7 @@ def test_parts_are_of_one_sweep_and_damaged_ones_are_solved_again(
     assert [t.num_rows for t in found] == [3, 4]
     assert parts.count == 2
     with pytest.raises(InputError) as raised:
-        Parts(tmp_path, Identity("two", "other", 6, "random")).require_same()
+        BatchFolder(tmp_path, Identity("two", "other", 6, "random")).require_same()
     assert raised.value.code == "other-sweep"
     names = {f"parts/{p.name}" for p in parts.folder.iterdir()} | {"parts/"}
     assert all(map(is_ours, names))
@@ -265,7 +269,7 @@ def test_designs_whose_process_died_are_rows() -> None:
 def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     import pinstress.explore.sweep.cluster as module
 
-    monkeypatch.setattr(module, "ANSWERS", 0.5)
+    monkeypatch.setattr(module, "SCHEDULER_TIMEOUT", 0.5)
     for address in ("tcp://127.0.0.1:1", "nonsense://"):
         with pytest.raises(InputError, match="no scheduler of dask answers at") as raised:
             module.connected(address, (), print).__enter__()
@@ -276,7 +280,7 @@ def test_a_batch_whose_process_died_is_halved_and_its_last_design_solved_alone()
     """The design that does it is given up when it does it alone, and no other one."""
     numbers = [number_at(swept(VARIED), FORCE)]
     batches = Batches(numbers, np.zeros((9, 1)), set(), 1)
-    batches.learn(Done(Batch((0,), ((0.0,),)), [], 1e-3))
+    batches.learn(SolvedBatch(Batch((0,), ((0.0,),)), [], 1e-3))
     kept: list[tuple[int, ...]] = []
     lost = partial(failed_rows, (("B", "landing"),))
     work = BatchQueue(batches, lambda done: kept.append(done.batch.designs), lost)
@@ -287,7 +291,7 @@ def test_a_batch_whose_process_died_is_halved_and_its_last_design_solved_alone()
             killed -= set(batch.designs) if len(batch.designs) == 1 else set()
             work.died(batch)
         else:
-            work.done(Done(batch, [], 0.0))
+            work.done(SolvedBatch(batch, [], 0.0))
     assert sorted(i for designs in kept for i in designs) == list(range(9))
 
 

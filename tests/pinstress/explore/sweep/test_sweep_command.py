@@ -85,12 +85,12 @@ def test_an_unfinished_sweep_is_kept_and_goes_on(
 ) -> None:
     """Interrupted after the third batch; another study does not go on with it."""
     import pinstress.explore.sweep.workers as module
-    from pinstress.explore.sweep.batches import Batch, DesignProblem, Done, solve_batch
+    from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
 
     _study(tmp_path)
     whole, count = solve_batch, 0
 
-    def interrupted(problem: DesignProblem, batch: Batch) -> Done:
+    def interrupted(problem: DesignProblem, batch: Batch) -> SolvedBatch:
         nonlocal count
         count += 1
         if count > 2:
@@ -147,11 +147,11 @@ def test_a_sequence_is_continued_to_more_designs(
 ) -> None:
     """With the bytes of one that was as long from the start; not to fewer, nor of other kinds."""
     import pinstress.explore.sweep.workers as module
-    from pinstress.explore.sweep.batches import Batch, DesignProblem, Done, solve_batch
+    from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
 
     solved: list[int] = []
 
-    def counted(problem: DesignProblem, batch: Batch) -> Done:
+    def counted(problem: DesignProblem, batch: Batch) -> SolvedBatch:
         if not ended and len(solved) >= 2:
             raise KeyboardInterrupt
         solved.extend(batch.designs)
@@ -252,7 +252,7 @@ def test_nothing_is_left_of_a_sweep_that_solved_nothing(
     """Nor is it said to be unfinished; an earlier table stays."""
     import pinstress.explore.sweep.cluster as module
 
-    monkeypatch.setattr(module, "ANSWERS", 0.5)
+    monkeypatch.setattr(module, "SCHEDULER_TIMEOUT", 0.5)
     _study(tmp_path, LOADS, 2)
     nowhere = "sweep", "study.toml", "--out", "out", "--scheduler", "nonsense"
     made = run_here(*nowhere, cwd=tmp_path)

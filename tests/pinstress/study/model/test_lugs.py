@@ -11,7 +11,7 @@ import pytest
 
 from fea.support.lugs.lug import Bushing, Lug, LugRange
 from pinstress import InputError, load_study, prepare, run
-from pinstress.study.model.lugs import Surroundings
+from pinstress.study.model.lugs import AssumedLugs
 from tests.support.errors import raises
 
 STUDY = """
@@ -199,7 +199,7 @@ def test_foundations_are_a_beams_alone(tmp_path: Path, model: str) -> None:
         prepare(load_study(path))
 
 
-def around(folder: Path, pin: str, analysis: str = "") -> Surroundings:
+def around(folder: Path, pin: str, analysis: str = "") -> AssumedLugs:
     (task,) = prepare(load_study(study(folder, pin, analysis))).tasks
     assert task.surroundings is not None
     return task.surroundings

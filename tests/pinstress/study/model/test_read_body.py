@@ -13,7 +13,7 @@ import pytest
 from geometry import GeometryError, Pin, Segment
 from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
-from geometry.imported.recognise import turned
+from geometry.imported.recognise import recognised_profile
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinbase.processes.system import portable
 from pinstress.study.model.imported_pin import apart, read_body, turned_apart
@@ -99,7 +99,7 @@ def test_what_is_read_there_is_what_is_read_here(files: dict[str, BodyFile]) -> 
 
 @pytest.mark.slow
 def test_what_is_recognised_there_is_what_is_recognised_here(files: dict[str, BodyFile]) -> None:
-    here, file = turned(files[".step"]), files[".step"]
+    here, file = recognised_profile(files[".step"]), files[".step"]
     assert turned_apart(file) == beside_a_thread(lambda: turned_apart(file)) == here
     assert read_body(file) == beside_a_thread(lambda: read_body(file))
     assert isinstance(read_body(file), Pin)
@@ -126,7 +126,7 @@ from pinstress.study.model import imported_pin as module
 from tests.support.programs import failing_readers
 
 one = module.Limits(seconds=1, clock=600, memory=2**28)
-module.CAD, module.LARGE = one, module.Limits(seconds=600, clock=3, memory=2**28)
+module.CAD_LIMITS, module.LONG_LIMITS = one, module.Limits(seconds=600, clock=3, memory=2**28)
 
 def read(work, name):
     try:

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import pinstress
-from pinstress.study.reading.errors import MOST_LISTED
-from pinstress.study.schema.shown import LONGEST, cut, shown
+from pinstress.study.reading.errors import MAX_LISTED_ERRORS
+from pinstress.study.schema.shown import MAX_TEXT_LENGTH, as_text, cut
 from tests.conftest import ROOT
 from tests.support.programs.limited_process import limited as check
 from tests.support.programs.limited_process import start_server
@@ -77,8 +77,8 @@ def test_of_many_errors_the_first_are_told(tmp_path: Path, kind: str, count: int
     assert status == 2
     count += kind in LIMITED  # that there are too many is said once, beside the others
     assert f"{count:,} errors" in heading
-    assert len(lines) == MOST_LISTED + 1
-    assert lines[-1].endswith(f"and {count - MOST_LISTED:,} more")
+    assert len(lines) == MAX_LISTED_ERRORS + 1
+    assert lines[-1].endswith(f"and {count - MAX_LISTED_ERRORS:,} more")
     numbers = [int(line.split(":")[1]) for line in lines[:-1]]
     assert numbers == sorted(numbers)
     assert len(told) < 20_000
@@ -246,10 +246,10 @@ def test_numbers_that_are_none_are_refused_everywhere(tmp_path: Path) -> None:
 
 
 def _numbers(text: str) -> list[tuple[str, tuple[int, int]]]:
-    from pinstress.study.reading.toml_lines import TOKEN
+    from pinstress.study.reading.toml_lines import TOKEN_PATTERN
 
     found, start = [], None
-    for match in TOKEN.finditer(text):
+    for match in TOKEN_PATTERN.finditer(text):
         number = match[0].lstrip("+-").isdigit() or (start is not None and match[0] == ".")
         if number and start is None:
             start = match.start()
@@ -261,11 +261,11 @@ def _numbers(text: str) -> list[tuple[str, tuple[int, int]]]:
 
 
 def test_a_value_is_cut_where_it_is_shown() -> None:
-    assert shown("x" * 1000) == repr("x" * (LONGEST - 1) + "…")
-    assert shown("short") == "'short'"
-    assert len(shown([LONG] * 1000)) <= LONGEST
-    assert shown(2**20_000) == "a whole number of more than 80 digits"
-    assert shown(12) == "12"
+    assert as_text("x" * 1000) == repr("x" * (MAX_TEXT_LENGTH - 1) + "…")
+    assert as_text("short") == "'short'"
+    assert len(as_text([LONG] * 1000)) <= MAX_TEXT_LENGTH
+    assert as_text(2**20_000) == "a whole number of more than 80 digits"
+    assert as_text(12) == "12"
     assert cut("abc", 3) == "abc"
     assert cut("abcd", 3) == "ab…"
 

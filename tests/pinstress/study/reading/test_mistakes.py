@@ -15,9 +15,9 @@ from pydantic import ValidationError
 
 from pinstress.study.reading.errors import InputError, Wrong
 from pinstress.study.reading.file import parse_study
-from pinstress.study.reading.validation import OTHERWISE, explain
+from pinstress.study.reading.validation import OTHER_MISTAKE, explain
 from pinstress.study.schema.tables import StudyTable
-from pinstress.study.schema.units import SYSTEMS
+from pinstress.study.schema.units import UNIT_SYSTEMS
 from tests.conftest import ROOT
 from tests.support.errors import raises
 
@@ -52,7 +52,7 @@ def changed(tree: Any, path: Path_, value: object) -> Any:
 
 def mistakes(raw: Any) -> list[Wrong]:
     try:
-        StudyTable.model_validate(raw, context={"system": SYSTEMS["mm-N-s"]})
+        StudyTable.model_validate(raw, context={"system": UNIT_SYSTEMS["mm-N-s"]})
     except ValidationError as error:
         return explain(error)
     return []
@@ -67,7 +67,7 @@ def test_no_wording_of_pydantic_reaches_the_user(study: str) -> None:
             for wrong in mistakes(changed(raw, path, value)):
                 count += 1
                 assert wrong.code, (path, value, wrong)
-                assert wrong.code != OTHERWISE[0], (path, value, wrong)
+                assert wrong.code != OTHER_MISTAKE[0], (path, value, wrong)
                 _, _, message = wrong.message.partition(": ")
                 assert not any(word in message for word in PYDANTICS), (path, value, message)
                 assert "<" not in wrong.message.split(":")[0], wrong.message

@@ -9,7 +9,13 @@ import pytest
 from loads import ArgumentError
 from pinstress import InputError, load_study
 from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.schema.units import DIMENSIONS, SYSTEMS, USUAL, _by_pint, to_si
+from pinstress.study.schema.units import (
+    DIMENSION_EXPONENTS,
+    UNIT_SYSTEMS,
+    USUAL_UNITS,
+    _by_pint,
+    to_si,
+)
 from tests.conftest import INCH, LBF, PSI, ROOT
 from tests.support.errors import raises
 
@@ -54,18 +60,18 @@ def test_shipped_studies_are_valid(name: str) -> None:
     ],
 )
 def test_units(text: object, dimension: str, system: str, si: float) -> None:
-    assert to_si(text, dimension, SYSTEMS[system]) == pytest.approx(si, rel=1e-14)
+    assert to_si(text, dimension, UNIT_SYSTEMS[system]) == pytest.approx(si, rel=1e-14)
 
 
-@pytest.mark.parametrize("unit", USUAL)
+@pytest.mark.parametrize("unit", USUAL_UNITS)
 def test_the_usual_units_are_pints(unit: str) -> None:
-    dimension, factor = USUAL[unit]
+    dimension, factor = USUAL_UNITS[unit]
     assert factor == pytest.approx(_by_pint(unit, dimension, unit), rel=1e-15)
 
 
-@pytest.mark.parametrize("dimension", DIMENSIONS)
+@pytest.mark.parametrize("dimension", DIMENSION_EXPONENTS)
 def test_the_examples_in_messages_are_right(dimension: str) -> None:
-    assert to_si(DIMENSIONS[dimension][1], dimension, SYSTEMS["m-N-s"]) > 0.0
+    assert to_si(DIMENSION_EXPONENTS[dimension][1], dimension, UNIT_SYSTEMS["m-N-s"]) > 0.0
 
 
 @pytest.mark.parametrize(
@@ -85,7 +91,7 @@ def test_the_examples_in_messages_are_right(dimension: str) -> None:
 )
 def test_bad_quantities(value: object, code: str, named: str) -> None:
     with raises(ArgumentError, code, named):
-        to_si(value, "length", SYSTEMS["in-lbf-s"])
+        to_si(value, "length", UNIT_SYSTEMS["in-lbf-s"])
 
 
 def test_values_carry_their_provenance() -> None:
