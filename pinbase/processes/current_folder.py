@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import chdir, contextmanager
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 
 PROCESSES_FOLDER = os.path.dirname(os.path.abspath(__file__))
 IMPORT_FOLDER = os.path.dirname(os.path.dirname(PROCESSES_FOLDER))  # that we are imported from

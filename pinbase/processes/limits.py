@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 
 MB = 2**20
 TIME_CHECK_INTERVAL = 0.1  # s between two looks at the time

@@ -25,9 +25,9 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
+from pinbase.platform import portable
 from pinbase.processes import interrupts
 from pinbase.processes.limits import Limits, limited, passed
-from pinbase.processes.system import portable
 from pinbase.processes.worker import Serve, load, start_worker
 
 T = TypeVar("T")

@@ -17,9 +17,9 @@ from multiprocessing.process import BaseProcess
 from types import ModuleType
 from typing import TypeVar
 
+from pinbase.platform import portable
 from pinbase.processes import interrupts
 from pinbase.processes.current_folder import elsewhere, trusted_path
-from pinbase.processes.system import portable
 from pinbase.processes.threads import hold_threads
 
 T = TypeVar("T")

@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from pinbase.platform import portable
 from pinbase.processes.folder_lock import Release, lock
-from pinbase.processes.system import portable
 from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError
 

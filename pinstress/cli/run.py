@@ -13,8 +13,8 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
+from pinbase.platform import portable
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
-from pinbase.processes.system import portable
 from pinstress.analysis.cache.store import user_cache
 from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare

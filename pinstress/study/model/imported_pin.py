@@ -19,9 +19,9 @@ from geometry.imported.recognise import NotTurnedError, RecognisedProfile, recog
 from geometry.mesh.solid_mesh import MeshError
 from geometry.shape.polyline import Stripe, with_stripes
 from loads import FileError, require_regular
+from pinbase.platform import portable
 from pinbase.processes.limits import MB, Limits
 from pinbase.processes.pool import Job, ProcessDied, Tell, can_fork, in_parallel
-from pinbase.processes.system import portable
 
 CUT_KINDS = "hole", "flat", "slot", "passage"
 MAX_BODY_SIZE = 1024 * MB

@@ -15,7 +15,7 @@ from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
 from geometry.imported.recognise import recognised_profile
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 from pinstress.study.model.imported_pin import apart, read_body, turned_apart
 from tests.conftest import ROOT
 from tests.support.pins.pin_files import MM, write_mesh, write_step
