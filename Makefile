@@ -15,7 +15,7 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 	@sh scripts/setup.sh
 
 PORTABLE = tests/pinstress/test_portable.py tests/pinbase/processes/test_workers.py \
-	$(addprefix tests/pinstress/,cli/test_output.py model/test_read_body.py test_import.py) \
+	$(addprefix tests/pinstress/,cli/test_output.py study/model/test_read_body.py test_import.py) \
 	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/tables/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
