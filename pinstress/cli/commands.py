@@ -31,7 +31,7 @@ from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, clipped
 
 if TYPE_CHECKING:
-    from fea.solve.solve_pin import Model
+    from fea.core.requirement import Model
 
 PLOTS_HELP = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
 MAX_TIMESTAMP = 253_402_300_799  # the end of the year 9999, the last that Python supports
