@@ -23,9 +23,8 @@ Cuts = Mapping[str, Cut]  # by their names, "hole 1"
 Entity = tuple[int, int]
 
 MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # planes by the component that vanishes on them
-MAX_CURVE_DEVIATION = (
-    1e-4  # of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces
-)
+# Of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces.
+MAX_CURVE_DEVIATION = 1e-4
 CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve on two surfaces
 EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of an edge of a face
 

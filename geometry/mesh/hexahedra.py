@@ -19,9 +19,8 @@ from pinbase.arrays import Floats, Ints
 
 SIDE_BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
 SQUARE_SIZE_RATIO = 0.55  # its size over the radius of the disc
-MIN_FILLET_DEPTH = (
-    0.6  # of a fillet's radius, the least room behind its corner; without it that stays sharp
-)
+# Of a fillet's radius, the least room behind its corner; without it that stays sharp.
+MIN_FILLET_DEPTH = 0.6
 FACE_CORNER_ORDER = (
     (0.0, 0.0),
     (1.0, 0.0),

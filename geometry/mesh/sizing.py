@@ -14,9 +14,8 @@ LOW_STRESS_ARC, LOW_STRESS_GROWTH = (
     1.5,
     1.0,
 )  # as of SectionSize, of fillets where nothing is looked for
-ROUNDED_EDGE_ARC_RATIO = (
-    0.4  # elements along a rounded edge, where stress is low, over those along a fillet
-)
+# Elements along a rounded edge, where stress is low, over those along a fillet.
+ROUNDED_EDGE_ARC_RATIO = 0.4
 TRIANGLE_AREA_RATIO = 0.43  # area of a triangle over its side squared
 MAX_UNIFORM_TRIANGLES = 1e4  # triangles of a first mesh
 SPOT_GROWTH = 0.6  # growth of elements next to a spot, on all meshes

@@ -10,9 +10,8 @@ from geometry.shape.pin import Pin
 from geometry.shape.polygon import RZ, cross
 from geometry.shape.profile import Arc, Edge, meridian
 
-MIN_SHAFT_LENGTH = (
-    1e-9  # of the smallest diameter: what rounding leaves of a shaft that fillets take whole
-)
+# Of the smallest diameter: what rounding leaves of a shaft that fillets take whole.
+MIN_SHAFT_LENGTH = 1e-9
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,8 @@ from geometry.shape.segment import Segment
 RZ = tuple[float, float]
 Turn = Literal["step", "inner", "edge", "smooth"]
 
-SMOOTH_ANGLE_TOLERANCE = (
-    1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
-)
+# Rad: two surfaces that meet at pi within this are one smooth surface.
+SMOOTH_ANGLE_TOLERANCE = 1e-9
 
 
 class Profile(Protocol):

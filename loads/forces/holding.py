@@ -19,9 +19,8 @@ from loads.motion.mobility import moving_bodies
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
-OPENING_FORCE_TOLERANCE = (
-    1e-9  # of the largest force: a stop that carries this little of the wrong sign is free
-)
+# Of the largest force: a stop that carries this little of the wrong sign is free.
+OPENING_FORCE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)

@@ -16,13 +16,11 @@ from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
 
-MIN_DRIVE_SHARE = (
-    1e-9  # of the largest force, by length and speed: a drive that gives less gives nothing
-)
+# Of the largest force, by length and speed: a drive that gives less gives nothing.
+MIN_DRIVE_SHARE = 1e-9
 MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
-AGREEMENT_TOLERANCE = (
-    1e-5  # of a maximum: closer than this to its limit, the value at the instant itself is reported
-)
+# Of a maximum: closer than this to its limit, the value at the instant itself is reported.
+AGREEMENT_TOLERANCE = 1e-5
 
 
 @dataclass(frozen=True)

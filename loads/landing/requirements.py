@@ -12,9 +12,8 @@ from pinbase.errors import ArgumentError
 
 M_PER_FOOT = 0.3048
 PA_PER_PSF = 4.4482216152605 / M_PER_FOOT**2  # lbf/ft^2 in Pa
-MAX_TYRE_FRICTION = (
-    0.8  # which no sliding coefficient of a tyre need exceed: 25.473(d), appendix D to 23
-)
+# Which no sliding coefficient of a tyre need exceed: 25.473(d), appendix D to 23.
+MAX_TYRE_FRICTION = 0.8
 
 
 @dataclass(frozen=True)

@@ -24,12 +24,10 @@ from pinbase.arrays import Complex, Floats, Ints
 MAX_ENUMERATED_CONTACTS = 8  # 256 patterns of signs
 FRICTION_STEPS = 4  # in which friction of pins grows from nothing
 MAX_NEWTON_STEPS = 60  # of Newton's method
-FORCE_SIZE_TOLERANCE = (
-    1e-5  # of CONTACT_FORCE_TOLERANCE: sizes are corrected until they change by no more
-)
-CONTACT_FORCE_TOLERANCE = (
-    1e-9  # of the largest contact force: what counts as zero and as the same answer
-)
+# Of CONTACT_FORCE_TOLERANCE: sizes are corrected until they change by no more.
+FORCE_SIZE_TOLERANCE = 1e-5
+# Of the largest contact force: what counts as zero and as the same answer.
+CONTACT_FORCE_TOLERANCE = 1e-9
 
 
 class JammingError(LinkageError):

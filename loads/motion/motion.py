@@ -18,12 +18,10 @@ from loads.motion.positions import Path
 from loads.motion.singular_positions import impasse
 from pinbase.arrays import Complex, Floats
 
-DRIVE_GRID_POINTS = (
-    257  # instants at which a course evaluates its drives, in addition to those of their laws
-)
-MIN_POINT_SPEED = (
-    1e-9  # of the fastest coordinate of the course: a point this slow has no direction
-)
+# Instants at which a course evaluates its drives, in addition to those of their laws.
+DRIVE_GRID_POINTS = 257
+# Of the fastest coordinate of the course: a point this slow has no direction.
+MIN_POINT_SPEED = 1e-9
 MAX_DENSE_COORDINATES = 30  # coordinates up to which condition numbers come from singular values
 CORNER_TIME_TOLERANCE = 1e-12  # of the whole time: this close to a corner is at it
 

@@ -17,9 +17,8 @@ CLOSURE_TOLERANCE = 1e-11  # largest gap of a closed loop, of the length scale
 MAX_STEP_TURN = 0.25  # rad (or length scales) that a step of the continuation may move a coordinate
 MAX_CONTRACTION_RATIO = 0.25  # each Newton correction must be at most this part of the one before
 MIN_PIVOT_RATIO = 1e-10  # pivot, of the largest: below it rank is lost
-MAX_LINE_DEVIATION = (
-    0.02  # rad (or length scales) by which a step may leave the drives' straight line
-)
+# Rad (or length scales) by which a step may leave the drives' straight line.
+MAX_LINE_DEVIATION = 0.02
 
 Drives = Callable[[Floats], Floats]
 _COURSE_KEYS = ("start", "run", "q", "rate", "bend")

@@ -18,20 +18,16 @@ from pinbase.arrays import Floats
 PANEL_DEGREE = 8
 INTERPOLATION_TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
 MIN_PANELS = 16  # at least, of all the time before any is halved
-CORNER_INSET = (
-    1e-6  # of a span: so far inside its corners it is evaluated, to see one side of a jump only
-)
-CORNER_MERGE_TOLERANCE = (
-    1e-9  # of the whole time: corners this close are one; of a maximum: so is an end's value
-)
+# Of a span: so far inside its corners it is evaluated, to see one side of a jump only.
+CORNER_INSET = 1e-6
+# Of the whole time: corners this close are one; of a maximum: so is an end's value.
+CORNER_MERGE_TOLERANCE = 1e-9
 MAXIMUM_TOLERANCE = 1e-12  # of a maximum: what is no larger than by this is not larger
 MAX_PANEL_HALVINGS = 24  # halvings of a panel
-MIN_RESOLVED_SHARE = (
-    1e-6  # of the largest of all quantities: one below it need not be resolved as finely
-)
-SEARCH_POINTS = (
-    33  # points in which a largest value is looked for, in a panel, then between two of those
-)
+# Of the largest of all quantities: one below it need not be resolved as finely.
+MIN_RESOLVED_SHARE = 1e-6
+# Points in which a largest value is looked for, in a panel, then between two of those.
+SEARCH_POINTS = 33
 
 At = Callable[[Floats], Floats]
 
