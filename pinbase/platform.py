@@ -1,6 +1,7 @@
-"""What not every operating system offers to `geometry` and `fea`. PINSTRESS_PORTABLE=1 takes it as
-missing on Linux too, so that what is done without it is tested (as pinbase/processes/system.py
-does for the processes).
+"""Features that `geometry` and `fea` find only on some operating systems.
+
+PINSTRESS_PORTABLE=1 treats them as missing on Linux too, so that the code for other systems can be
+tested there (pinbase/processes/system.py does the same for processes).
 """
 
 from __future__ import annotations
@@ -11,12 +12,12 @@ from typing import Any
 
 
 def portable() -> bool:
-    """Whether to do without whatever only some systems have."""
+    """Whether to use only what every operating system has."""
     return os.name != "posix" or os.environ.get("PINSTRESS_PORTABLE") == "1"
 
 
 def offered(library: str) -> Any:
-    """A compiled library that has no wheels for some systems; None where it is missing."""
+    """The compiled library of this name, or None where the system has no wheel for it."""
     if os.environ.get("PINSTRESS_PORTABLE") == "1":
         return None
     try:
