@@ -38,7 +38,7 @@ class Motion:
     """
 
     loops: Loops
-    found: Mobility
+    mobility: Mobility
     times: Floats
     drives: Floats
     speeds: Floats
@@ -192,7 +192,7 @@ class Course:
             raise LinkageError(
                 f"{len(linkage.driven)} drives need as many laws, not {len(laws)}", "laws-mismatch"
             )
-        self.found = require_determined(linkage)
+        self.mobility = require_determined(linkage)
         self.loops, self.laws = Loops(linkage), tuple(laws)
         self.first, self.last = first, last
         self.corners = self._inside(t for law in laws for t in law.corners)
@@ -242,7 +242,7 @@ class Course:
         weak = int(weakest.argmin())
         if weakest[weak] < RANK_TOLERANCE:
             raise impasse(loops, q[weak], drives[weak], drives[int(times.argmax())])
-        return Motion(loops, self.found, times, drives, speeds, rates, q, v, a, self.pace)
+        return Motion(loops, self.mobility, times, drives, speeds, rates, q, v, a, self.pace)
 
 
 def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
