@@ -92,6 +92,7 @@ def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfil
 
 
 def _not_turned(file: BodyFile, why: str) -> NotTurnedError:
+    """The error of a file whose body is not a turned part, with the reason."""
     return NotTurnedError(file.name, file.path.name, why)
 
 

@@ -276,10 +276,10 @@ class CutFaces:
         faces = [(face, c.local(face.points)[0]) for face in c.faces]
         return [f for f, s in faces if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
 
-    def _bottom(self, c: _Drilled, end: float, way: float) -> tuple[float, Bottom]:
+    def _bottom(self, c: _Drilled, end: float, outward: float) -> tuple[float, Bottom]:
         """The position at which the full diameter ends, without rounding, and the bottom.
 
-        end: end of the wall along the axis. way: direction out of the hole, 1 or -1.
+        end: end of the wall along the axis. outward: direction out of the hole, 1 or -1.
         """
         tip, top, curved = FLAT_TIP_ANGLE, end, False
         for face in self._bottom_faces(c):
@@ -290,14 +290,14 @@ class CutFaces:
             slope = np.abs(face.normals @ c.axis.along)
             if np.ptp(slope) < 10.0 * FACE_TOLERANCE:
                 tip = 2.0 * math.asin(min(1.0, float(slope.mean())))
-                apex = t - way * s / math.tan(tip / 2.0)
-                top = float(apex.mean()) + way * c.radius / math.tan(tip / 2.0)
+                apex = t - outward * s / math.tan(tip / 2.0)
+                top = float(apex.mean()) + outward * c.radius / math.tan(tip / 2.0)
             else:
                 curved = True
         if curved and tip == FLAT_TIP_ANGLE:
-            rims = [way * c.local(face.rim)[1].min() for face in self._bottom_faces(c)]
-            ends = [way * c.local(face.rim)[1].max() for face in self._bottom_faces(c)]
-            top = way * min(*rims, *ends)
+            rims = [outward * c.local(face.rim)[1].min() for face in self._bottom_faces(c)]
+            ends = [outward * c.local(face.rim)[1].max() for face in self._bottom_faces(c)]
+            top = outward * min(*rims, *ends)
         radius = abs(end - top) / math.tan(tip / 4.0) if curved else 0.0
         return top, Bottom(tip, radius)
 
@@ -314,12 +314,14 @@ class CutFaces:
         if c.low < 0.0 < c.high and not blind:
             angle = 0.0 if math.pi - angle % math.pi < FACE_TOLERANCE else angle % math.pi
             return Hole(z, 2.0 * c.radius, angle, chamfer=chamfer)
-        way = 1.0 if c.high > -c.low else -1.0
-        end = c.low if way > 0.0 else c.high
-        floor, bottom = self._bottom(c, end, way) if blind else (end / 2.0, Bottom())  # in a bore
-        angle = angle if way > 0.0 else angle + math.pi
+        outward = 1.0 if c.high > -c.low else -1.0
+        end = c.low if outward > 0.0 else c.high
+        floor, bottom = (
+            self._bottom(c, end, outward) if blind else (end / 2.0, Bottom())
+        )  # in a bore
+        angle = angle if outward > 0.0 else angle + math.pi
         angle = math.atan2(math.sin(angle), math.cos(angle))
-        return Hole(z, 2.0 * c.radius, angle, outer - way * floor, bottom, chamfer)
+        return Hole(z, 2.0 * c.radius, angle, outer - outward * floor, bottom, chamfer)
 
     def _passage(self, pin: Pin, c: _Drilled) -> Passage:
         """The passage of a cylinder along the pin."""

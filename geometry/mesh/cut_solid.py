@@ -42,8 +42,8 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
     # OpenCASCADE can only round whole edges, so the body's seam must not cross a rounded mouth.
     if rounded and sector == 2.0 * math.pi:
         seams = np.linspace(0.0, math.pi, 13)
-        off = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
-        occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(off))]))
+        distances = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
+        occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(distances))]))
     tools = [tool for cut in cuts.values() for tool in _tool(gmsh, pin, cut, reach)]
     left, _ = occ.cut([body], tools)
     occ.synchronize()
@@ -181,9 +181,11 @@ def named_parts(
     named: dict[tuple[str, str], list[int]] = {}
     for _, face in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
         points, kind = _points(gmsh, face), gmsh.model.getType(2, face)
-        off = [float(np.abs(f(points)).max()) if k in ("", kind) else math.inf for _, k, f in known]
-        best = int(np.argmin(off))
-        if off[best] > MAX_CURVE_DEVIATION * size:
+        deviations = [
+            float(np.abs(f(points)).max()) if k in ("", kind) else math.inf for _, k, f in known
+        ]
+        best = int(np.argmin(deviations))
+        if deviations[best] > MAX_CURVE_DEVIATION * size:
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
                 "for surfaces that just touch",

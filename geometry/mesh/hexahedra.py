@@ -102,13 +102,13 @@ def twenty() -> Ints:
 
     Theirs is: corners, then midside nodes of the edges below, above and between.
     """
-    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
+    skfem_nodes = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
     edges = zip(FACE_CORNER_ORDER, (*FACE_CORNER_ORDER[1:], FACE_CORNER_ORDER[0]), strict=True)
     middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in edges]
-    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in FACE_CORNER_ORDER]
-    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
-    theirs += [(*xy, 0.5) for xy in FACE_CORNER_ORDER]
-    return np.array([ours.index(x) for x in theirs])
+    order = [(*xy, z) for z in (0.0, 1.0) for xy in FACE_CORNER_ORDER]
+    order += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
+    order += [(*xy, 0.5) for xy in FACE_CORNER_ORDER]
+    return np.array([skfem_nodes.index(x) for x in order])
 
 
 def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
@@ -128,14 +128,14 @@ class _Fillet:
     """A fillet at the corner of a shaft and a shoulder.
 
     r, z: of the corner, m.
-    way: direction of the shaft from the corner, 1 or -1 along z.
+    direction: of the shaft from the corner, 1 or -1 along z.
     radius: m.
     depth: distance behind the corner within which nodes move, m.
     """
 
     r: float
     z: float
-    way: int
+    direction: int
     radius: float
     depth: float
 
@@ -146,7 +146,7 @@ class _Fillet:
         gives the place on the arc, from one tangent point (-radius) to the other (radius). Behind
         the sides the displacement decreases linearly with depth.
         """
-        a, b = (z - self.z) * self.way, r - self.r
+        a, b = (z - self.z) * self.direction, r - self.r
         place = np.clip((b - a) / self.radius, -1.0, 1.0)
         reach = 1.0 - np.abs(place) / 2.0 - np.sqrt(0.5 - place**2 / 4.0)
         depth = -np.minimum(a, b) / self.depth
@@ -159,12 +159,14 @@ def _fillets(pin: Pin) -> list[_Fillet]:
     fillets = []
     for i, (left, right) in enumerate(pairwise(pin.segments)):
         radius = pin.fillet_at(i)
-        thin, thick, way = (left, right, -1) if left.diameter < right.diameter else (right, left, 1)
+        thin, thick, direction = (
+            (left, right, -1) if left.diameter < right.diameter else (right, left, 1)
+        )
         wall = (thin.diameter - max(thin.bore, thick.bore)) / 2.0
         depth = min(radius, wall, thick.length)
         if radius and depth >= MIN_FILLET_DEPTH * radius:
             at = thin.diameter / 2.0, pin.stations[i + 1]
-            fillets.append(_Fillet(*at, way, radius, depth))
+            fillets.append(_Fillet(*at, direction, radius, depth))
     return fillets
 
 
@@ -174,7 +176,7 @@ def _filleted(pin: Pin, points: Floats) -> Floats:
     outwards, along = np.zeros_like(r), np.zeros_like(z)
     for fillet in _fillets(pin):
         move = fillet.moved(r, z)
-        outwards, along = outwards + move, along + fillet.way * move
+        outwards, along = outwards + move, along + fillet.direction * move
     stretch = 1.0 + np.divide(outwards, r, out=np.zeros_like(r), where=r > 0.0)
     return np.stack([points[..., 0] * stretch, points[..., 1] * stretch, z + along], axis=-1)
 

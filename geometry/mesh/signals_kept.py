@@ -29,24 +29,24 @@ def signals_kept() -> Iterator[None]:
 def _by_sigaction() -> Iterator[None]:
     """Restores handlers in any thread, also those that Python does not know (faulthandler's)."""
     libc = ctypes.CDLL(None)
-    kept = {each: ctypes.create_string_buffer(SIGACTION_BYTES) for each in SIGNALS}
-    for each, handler in kept.items():
-        libc.sigaction(each, None, handler)
+    handlers = {number: ctypes.create_string_buffer(SIGACTION_BYTES) for number in SIGNALS}
+    for number, handler in handlers.items():
+        libc.sigaction(number, None, handler)
     try:
         yield
     finally:
-        for each, handler in kept.items():
-            libc.sigaction(each, handler, None)
+        for number, handler in handlers.items():
+            libc.sigaction(number, handler, None)
 
 
 @contextmanager
 def _by_python() -> Iterator[None]:
     """Restores handlers in the main thread, the only one in which Python sets them."""
-    kept = {each: signal.getsignal(each) for each in SIGNALS}
+    handlers = {number: signal.getsignal(number) for number in SIGNALS}
     try:
         yield
     finally:
         if threading.current_thread() is threading.main_thread():
-            for each, handler in kept.items():
+            for number, handler in handlers.items():
                 if handler is not None:
-                    signal.signal(each, handler)
+                    signal.signal(number, handler)

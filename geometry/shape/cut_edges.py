@@ -101,15 +101,17 @@ def _hole(hole: Hole, pin: Pin) -> list[tuple[Floats, bool]]:
     for side in sides:
         for radius in dict.fromkeys((a, a + wide)):
             out += _seen(_mouth(hole.angle, min(radius, r), hole.z, r, side))
-        for way in (-1.0, 1.0):
+        for direction in (-1.0, 1.0):
             walls = [(a, low, r - wide), (a + wide, r - wide, r)] if wide else [(a, low, r)]
             line = [(w, u) for w, first, last in walls for u in (first, last)]
             w, u = np.array(line).T
-            out += _inside(_placed(hole.angle, side * u, np.zeros(len(u)), hole.z + way * w))
+            out += _inside(_placed(hole.angle, side * u, np.zeros(len(u)), hole.z + direction * w))
     if hole.depth is not None and floor <= -bore and bore:  # through the bore into the other wall
         ends = np.array([-bore, floor])
-        for way in (-1.0, 1.0):
-            out += _inside(_placed(hole.angle, ends, np.zeros(2), np.full(2, hole.z + way * a)))
+        for direction in (-1.0, 1.0):
+            out += _inside(
+                _placed(hole.angle, ends, np.zeros(2), np.full(2, hole.z + direction * a))
+            )
     if hole.depth is not None and not -bore < floor < bore:
         tip = floor - hole.bottom.height(hole.diameter)
         out += _bottom(hole.angle, hole.z, a, floor, tip)

@@ -140,10 +140,12 @@ class Cut(ABC):
 
 
 def _times(value: float | None, factor: float) -> float | None:
+    """The product, or None for no value."""
     return None if value is None else value * factor
 
 
 def _near(a: Any, b: Any, tolerance: float) -> bool:
+    """Whether two values are equal; numbers within a tolerance."""
     if isinstance(a, float) and isinstance(b, float):
         return abs(a - b) <= tolerance
     return bool(a == b)

@@ -283,6 +283,7 @@ def _check_dimensions(pin: Pin) -> None:
 
 
 def _bore_too_large(what: str, i: int) -> GeometryError:
+    """The error of segment i (from 1), whose bore is not less than its diameter."""
     at = ("segment", i)
     return GeometryError(f"{what}: the bore must be less than the diameter", "bore-too-large", at)
 

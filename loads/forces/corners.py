@@ -33,9 +33,9 @@ def corners(course: Course, loads: Sequence[Load], samples: Floats) -> Floats:
     return np.unique(np.concatenate([switches, *passed]))
 
 
-def _touches(off: Floats) -> np.ndarray:
+def _touches(deviation: Floats) -> np.ndarray:
     """Mask of the values (N,) that are zero, except inside an interval at zero."""
-    at = off == 0.0
+    at = deviation == 0.0
     rests = np.concatenate([[True], at[:-1]]) & np.concatenate([at[1:], [True]])
     return np.asarray(at & ~rests)
 
@@ -45,12 +45,16 @@ def _passed(measures: Resolved, j: int, kink: Kinks) -> Floats:
     x = measures.values[:, j]
     out = [measures.times[:0]]
     for level in kink.curve.knots(float(x.min()), float(x.max())):
-        off = x - level
-        turns = np.flatnonzero(off[:-1] * off[1:] < 0.0)
-        low, high, sign = measures.times[turns], measures.times[turns + 1], np.sign(off[turns])
+        deviation = x - level
+        turns = np.flatnonzero(deviation[:-1] * deviation[1:] < 0.0)
+        low, high, sign = (
+            measures.times[turns],
+            measures.times[turns + 1],
+            np.sign(deviation[turns]),
+        )
         for _ in range(BISECTION_STEPS if len(turns) else 0):
             middle = 0.5 * (low + high)
             same = np.sign(measures.interpolate(middle)[:, j] - level) == sign
             low, high = np.where(same, middle, low), np.where(same, high, middle)
-        out += [0.5 * (low + high), measures.times[_touches(off)]]
+        out += [0.5 * (low + high), measures.times[_touches(deviation)]]
     return np.concatenate(out)

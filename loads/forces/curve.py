@@ -87,10 +87,11 @@ class ForceTable:
         return x[(x > low) & (x < high)]
 
     def _require_inside(self, at: Floats) -> None:
+        """Raises: LinkageError where a value of x is outside the table."""
         low, high = self.x[0], self.x[-1]
-        off = np.maximum(low - at, at - high)
-        k = int(off.argmax())
-        if off[k] > TABLE_END_TOLERANCE * (high - low):
+        excess = np.maximum(low - at, at - high)
+        k = int(excess.argmax())
+        if excess[k] > TABLE_END_TOLERANCE * (high - low):
             raise LinkageError(
                 f"{self.name} goes from {self._shown(low)} to {self._shown(high)}, but "
                 f"{self._shown(float(at[k]))} occurs; extend it, or give outside = "

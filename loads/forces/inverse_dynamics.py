@@ -196,7 +196,10 @@ class _Balance:
         )
 
     def _needs(self) -> tuple[Complex, Floats]:
-        """m a - weight - applied force, and the couples about the centres, (T, items) each."""
+        """Required forces, m a - weight - applied force, and couples about the centres, (T, items).
+
+        Forces are in N, complex; couples in N m.
+        """
         motion = self.motion
         _, _, acceleration = motion.centres
         needed = motion.masses * (acceleration - number(motion.linkage.gravity))

@@ -51,6 +51,7 @@ class Levered:
 
     @cached_property
     def _spline(self) -> Any:
+        """Stroke over rise, a SciPy BSpline."""
         from scipy.interpolate import make_interp_spline
 
         return make_interp_spline(self.rises, self.strokes, k=5)

@@ -73,12 +73,14 @@ class TableTyre:
 
     @cached_property
     def _curve(self) -> Any:
+        """Force over deflection, a SciPy PchipInterpolator."""
         from scipy.interpolate import PchipInterpolator
 
         return PchipInterpolator(self.deflections, self.forces)
 
     @cached_property
     def _work(self) -> Any:
+        """Stored energy over deflection, a SciPy polynomial."""
         return self._curve.antiderivative()
 
     def force(self, deflection: Floats) -> Floats:

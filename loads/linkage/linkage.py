@@ -283,6 +283,7 @@ class Linkage:
 
 
 def _pin_item(joint: Joint) -> str:
+    """Name of the item that a floating pin is."""
     return f"pin {joint.name}"
 
 
@@ -332,6 +333,7 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
 def _parallel_contradictions(
     linkage: Linkage, rule: Parallel, known: list[str]
 ) -> Iterator[Contradiction]:
+    """Contradictions of a rule for drives in parallel. known: names of all sliders and turns."""
     names, at = ", ".join(rule.members), ("sharing",)
     for name in rule.members:
         if name not in known:
@@ -345,6 +347,7 @@ def _parallel_contradictions(
 
 
 def _joint_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    """Contradictions of joints and their connections. bodies: by name."""
     for joint in linkage.joints:
         at = ("joint", joint.name)
         for c in joint.connections:
@@ -367,6 +370,7 @@ def _joint_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterator
 
 
 def _slider_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    """Contradictions of sliders and turns. bodies: by name."""
     pairs = [("slider", s.name, (s.base, s.moving)) for s in linkage.sliders]
     pairs += [("drive", t.name, (t.base, t.body)) for t in linkage.turns]
     for kind, name, pair in pairs:
@@ -383,6 +387,7 @@ def _slider_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterato
 
 
 def _particle_contradictions(linkage: Linkage, body: Body) -> Iterator[Contradiction]:
+    """Contradictions of a body without inertia that is neither a particle nor slides on ground."""
     slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
     if any(GROUND in (s.base, s.moving) for s in slides):
         return

@@ -155,7 +155,7 @@ class Factors:
         return out
 
     def _solve_gram(self, x: Floats) -> Floats:
-        """(R^T R)^-1 x for x (columns, T), in place."""
+        """The solution (R^T R)^-1 x for x (columns, T), in place."""
         for step, row in zip(self._steps, self._R, strict=True):
             x[step.columns[0]] = _divided(x[step.columns[0]], row[0])
             x[step.columns[1:]] -= row[1:] * x[step.columns[0]]

@@ -356,6 +356,7 @@ class Loops:
 
     @cached_property
     def _gap_weights(self) -> Floats:
+        """Motion of the teeth per gap at the members that close loops, (teeth, closing)."""
         return gap_weights(self.linkage, self.closing)
 
     @cached_property

@@ -67,8 +67,8 @@ class Path:
         """Follow the drives from the drawing to their first values, then through time.
 
         drives: gives their values (T, D) at times (T,) s.
-        grid: (G,) s, increasing, from the first time to the last, and so dense that the drives do
-        nothing between that it does not show.
+        grid: (G,) s, increasing, from the first time to the last, dense enough to show everything
+        that the drives do.
 
         Raises: MotionBlocked where the linkage cannot follow.
         """
@@ -105,6 +105,7 @@ class Path:
 
     @property
     def _length(self) -> float:
+        """Length scale of the linkage, m."""
         return self.loops.linkage.length_scale
 
     def _follow(self, q: Floats, drives: Drives, grid: Floats) -> list[_Step]:
@@ -198,6 +199,7 @@ class Path:
         return _Step(begin, end, start, run, both, rate, bend / loops.scale)
 
     def _factors(self, q: Floats) -> Factors:
+        """Factors of the equations at coordinates q (n,)."""
         return self.loops.factors(self.loops.pose(q[None]))
 
     @staticmethod

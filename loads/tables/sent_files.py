@@ -76,6 +76,7 @@ def on_disk(path: Path) -> Path:
 
 @lru_cache(1)
 def _folder() -> tempfile.TemporaryDirectory[str]:
+    """The folder of copies, removed when the process ends."""
     return tempfile.TemporaryDirectory(prefix="pinstress-sent-")
 
 
@@ -85,6 +86,7 @@ def _copies() -> Path:
 
 @lru_cache(16)
 def _copy(name: str, content: bytes) -> Path:
+    """Path of a copy of content that was sent."""
     path = _copies() / hashlib.sha256(content).hexdigest() / name
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(content)
