@@ -105,11 +105,8 @@ class CutFaces:
                 bent.append(face)
                 continue
             t = drilled.local(face.rim)[1]
-            drilled.radius, drilled.low, drilled.high = (
-                float(s.mean()),
-                float(t.min()),
-                float(t.max()),
-            )
+            drilled.radius = float(s.mean())
+            drilled.low, drilled.high = float(t.min()), float(t.max())
             self._join(group, drilled)
         return across, along, bent
 

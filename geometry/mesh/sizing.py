@@ -124,7 +124,7 @@ def triangles(pin: Pin, size: SectionSize) -> float:
 
 
 def largest(pin: Pin, size: SectionSize) -> float:
-    """Element size away from small features, by the thinnest wall or shaft, m."""
+    """Element size away from small features, by the smallest diameter less bore, m."""
     return min(min(s.walls) for s in pin.segments) / size.across
 
 

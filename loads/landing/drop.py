@@ -196,8 +196,8 @@ def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
     Each is a name, the direction of the change of sign, and the function of the state that has it.
     """
     out: list[Event] = [("tyre", -1 if mode.touches else 1, lambda y: y[TYRE_DEFLECTION])]
-    if np.isfinite(d.tyre.most):
-        out.append(("tyre-exceeded", 1, lambda y: y[TYRE_DEFLECTION] - d.tyre.most))
+    if np.isfinite(d.tyre.max_deflection):
+        out.append(("tyre-exceeded", 1, lambda y: y[TYRE_DEFLECTION] - d.tyre.max_deflection))
     if d.strut is not None and mode.strut:
         max_rise = d.travel.rise(d.strut.stroke)
         out.append(("turns", -mode.strut, lambda y: y[WHEEL_TRAVEL_RATE]))
@@ -380,7 +380,7 @@ def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> Landi
             "strut-bottoms",
         )
     return LandingError(
-        f"the tyre is deflected beyond the last row of its table, {d.tyre.most:.4g} m, {where}; "
-        "give more rows, or a stiffer tyre",
+        "the tyre is deflected beyond the last row of its table, "
+        f"{d.tyre.max_deflection:.4g} m, {where}; give more rows, or a stiffer tyre",
         "tyre-exceeded",
     )

@@ -19,13 +19,13 @@ class PowerTyre:
     coefficient: a, N/m^r.
     exponent: r.
     damping: s/m; the force is multiplied by 1 + damping z', never negative (Hunt & Crossley, 1975).
-    most: largest deflection, m.
+    max_deflection: m.
     """
 
     coefficient: float
     exponent: float = 1.0
     damping: float = 0.0
-    most: float = np.inf
+    max_deflection: float = np.inf
 
     def force(self, deflection: Floats) -> Floats:
         """Force without damping at deflections (T,) m, (T,) N; zero above the ground."""
@@ -67,7 +67,7 @@ class TableTyre:
                 )
 
     @property
-    def most(self) -> float:
+    def max_deflection(self) -> float:
         """Last deflection of the table, m, beyond which the force is not known."""
         return self.deflections[-1]
 
@@ -88,11 +88,11 @@ class TableTyre:
 
         It is zero above the ground, and beyond the table that of the last row.
         """
-        return np.asarray(self._curve(np.clip(deflection, 0.0, self.most)))
+        return np.asarray(self._curve(np.clip(deflection, 0.0, self.max_deflection)))
 
     def energy(self, deflection: Floats) -> Floats:
         """Energy stored at deflections (T,) m, (T,) J."""
-        return np.asarray(self._work(np.clip(deflection, 0.0, self.most)))
+        return np.asarray(self._work(np.clip(deflection, 0.0, self.max_deflection)))
 
 
 Tyre = PowerTyre | TableTyre

@@ -41,7 +41,7 @@ class _Step:
     """One step of a path, along which the drives are nearly on a straight line.
 
     begin, end: times, s.
-    start, run: (D,) values of the drives at its begin, and their change.
+    start, run: (D,) values of the drives at its start, and their change.
     q, rate, bend: (2, n) coordinates at its ends, and their first and second derivatives by the
     fraction of `run`.
     """
@@ -174,7 +174,7 @@ class Path:
     def _straight(self, factors: Factors, passed: Floats, run: Floats) -> bool:
         """Whether the drives stay near the straight line of a step.
 
-        passed: (M, D) values that they pass, relative to those at its begin. run: (D,) its change.
+        passed: (M, D) values that they pass, relative to those at its start. run: (D,) its change.
         """
         deviation = passed - _fraction(self.loops, passed, run)[:, None] * run
         size = np.abs(factors.solve(self.loops.drive_side(deviation))).max(initial=0.0)
@@ -237,7 +237,7 @@ class Path:
         """Estimated coordinates (T, n) at times (T,) s, with the drives at `values` (T, D).
 
         Along the straight line of a step they follow the Hermite quintic; for the drives' deviation
-        from it, the derivatives at the step's begin.
+        from it, the derivatives at the step's start.
         """
         loops = self.loops
         k = np.searchsorted(self._ends[:-1], times)
@@ -257,7 +257,7 @@ class Path:
 def _fraction(loops: Loops, passed: Floats, run: Floats) -> Floats:
     """Fraction of a step, (T,) between 0 and 1, by projection of the drives on its line.
 
-    passed: (T, D) values of the drives relative to the step's begin.
+    passed: (T, D) values of the drives relative to the step's start.
     run: (D,) or (T, D) their change in the step.
     """
     weight = np.array([loops.drive_scale(k) ** 2 for k in range(passed.shape[1])])

@@ -195,7 +195,7 @@ def resolved(
     times: Floats,
     at: At,
     corners: Floats | tuple[float, ...] = (),
-    most: int = 4096,
+    max_evaluations: int = 4096,
     groups: Sequence[int] | None = None,
     known: Floats | None = None,
 ) -> Resolved:
@@ -203,7 +203,7 @@ def resolved(
 
     at: gives the values (T, K) at times (T,) s, in any order.
     corners: times at which values or their derivatives may jump, s.
-    most: largest number of evaluations after the first round; intervals that remain are
+    max_evaluations: largest number after the first round; intervals that remain are
     `unresolved`.
     groups: (K,) number of each quantity's group, in which the tolerance is relative to the largest
     magnitude of all; by default each quantity is its own group.
@@ -230,7 +230,7 @@ def resolved(
     # predicted the values are done, the others are halved.
     for depth in range(MAX_PANEL_HALVINGS + 1):
         between = _Panels.times(active.low, active.high, middle)
-        if used and used + between.size > most:
+        if used and used + between.size > max_evaluations:
             left.append(active)
             break
         new = at(between.ravel())

@@ -185,7 +185,7 @@ def _columns(path: Path, headers: list[str], layout: Layout, unit: Unit) -> list
             raise TableError(
                 f"{path}: unknown column {name[:40]!r}; allowed: connection, "
                 f"{', '.join(FORCE_COMPONENTS)}, time, case, body; or B.fx for the force on "
-                f"connection B",
+                "connection B",
                 "unknown-column",
             )
         is_number = component in (*FORCE_COMPONENTS, "time")

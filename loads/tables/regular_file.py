@@ -22,34 +22,36 @@ class FileError(CodedError, ValueError):
     """A file must not be read; the message says why, without its name."""
 
 
-def read_regular(path: Path, most: int) -> bytes:
-    """The content of a regular file. most: its largest size, bytes. Raises: FileError, OSError."""
+def read_regular(path: Path, max_bytes: int) -> bytes:
+    """The content of a regular file of at most `max_bytes`. Raises: FileError, OSError."""
     sent = content_sent(path)
     if sent is not None:
-        _require_size(len(sent), most)
+        _require_size(len(sent), max_bytes)
         return sent
-    require_regular(path, most)  # before it is opened: opening alone starts some devices
+    require_regular(path, max_bytes)  # before it is opened: opening alone starts some devices
     descriptor = os.open(path, READ_FLAGS)
     with open(descriptor, "rb") as file:
-        _require_status(os.fstat(descriptor), most)  # it may be another file by now
-        content = file.read(most + 1)
-    _require_size(len(content), most)  # it may be growing, or report no size
+        _require_status(os.fstat(descriptor), max_bytes)  # it may be another file by now
+        content = file.read(max_bytes + 1)
+    _require_size(len(content), max_bytes)  # it may be growing, or report no size
     return content
 
 
-def require_regular(path: Path, most: int) -> None:
+def require_regular(path: Path, max_bytes: int) -> None:
     """Raises: FileError for a file that is not regular or has more bytes; OSError."""
-    _require_status(os.stat(path), most)
+    _require_status(os.stat(path), max_bytes)
 
 
-def _require_status(status: os.stat_result, most: int) -> None:
+def _require_status(status: os.stat_result, max_bytes: int) -> None:
     if stat.S_ISDIR(status.st_mode):
         raise FileError("is a folder; name a file", "folder")
     if not stat.S_ISREG(status.st_mode):
         raise FileError("is a pipe or a device; name a regular file", "not-regular")
-    _require_size(status.st_size, most)
+    _require_size(status.st_size, max_bytes)
 
 
-def _require_size(size: int, most: int) -> None:
-    if size > most:
-        raise FileError(f"is larger than {most // MB:,} MB, the limit for such a file", "too-large")
+def _require_size(size: int, max_bytes: int) -> None:
+    if size > max_bytes:
+        raise FileError(
+            f"is larger than {max_bytes // MB:,} MB, the limit for such a file", "too-large"
+        )
