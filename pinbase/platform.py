@@ -1,26 +1,32 @@
-"""Features that `geometry` and `fea` find only on some operating systems.
+"""The choice between features that only Linux has and their portable substitutes.
 
-PINSTRESS_PORTABLE=1 treats them as missing on Linux too, so that the code for other systems can be
-tested there (pinbase/processes/system.py does the same for processes).
+PINSTRESS_PORTABLE=1 chooses the substitutes on Linux too, so that they can be tested there.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 from importlib import import_module
 from typing import Any
 
+PORTABLE_VARIABLE = "PINSTRESS_PORTABLE"
+
 
 def portable() -> bool:
-    """Whether to use only what every operating system has."""
-    return os.name != "posix" or os.environ.get("PINSTRESS_PORTABLE") == "1"
+    """Whether to use only features that Windows and macOS have, too."""
+    return sys.platform != "linux" or not hasattr(os, "fork") or _requested()
 
 
 def offered(library: str) -> Any:
     """The compiled library of this name, or None where the system has no wheel for it."""
-    if os.environ.get("PINSTRESS_PORTABLE") == "1":
+    if _requested():
         return None
     try:
         return import_module(library)
     except ImportError:
         return None
+
+
+def _requested() -> bool:
+    return os.environ.get(PORTABLE_VARIABLE) == "1"

@@ -16,10 +16,13 @@ from assess.derivatives.derivatives import Adjoint
 from assess.derivatives.records import SolvedCase
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.core.zone import DISTANCE_VARIATIONS
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
-from fea.singular.singularities import DISTANCE_VARIATIONS, find_singularities, free_of_arcs
+from fea.singular.singularities import find_singularities, free_of_arcs, singularities_of
 from fea.solid.sharp_edges import SharpEdges
-from fea.solve.solve_pin import Requirement, Solution, singularities_of, solve_pin
+from fea.solve.solve import solve_pin
+from fea.support.support import Solution
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
 from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
 from geometry.mesh.section_mesh import meridian_mesh
@@ -137,6 +140,7 @@ def test_an_edge_of_a_load_beside_a_groove(steel: Material) -> None:
     assert math.dist((peak.location or (0.0,))[2:], (2.0 * D + 2.0 * deep,)) < deep
 
 
+@pytest.mark.slow
 def test_a_clamps_edge_beside_a_hole(steel: Material) -> None:
     """0.05 d apart: the edge of the hole is the maximum whether a tenth or a fifth of the diameter
     is left out, of which the fifth would leave out the hole's worst point.

@@ -9,17 +9,19 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.voigt import VON_MISES
 from fea.cut.evaluate import CutField
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refusal, zone
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import ArgumentError, CutPin, Flat, Hole, Passage, Pin, Segment
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
+from tests.support.each import each
 from tests.support.errors import raises
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
@@ -53,7 +55,7 @@ def largest(read: Read) -> float:
     return float(np.sqrt(square.max()))
 
 
-@pytest.mark.parametrize("mirrors", [(), ("y",), ("x", "y"), ("x", "y", "z")])
+@each("mirrors", [(), ("y",), ("x", "y"), ("x", "y", "z")])
 def test_any_stress_is_the_sum_of_its_classes(mirrors: tuple[str, ...]) -> None:
     parities = Parities(mirrors)
     stress = np.random.default_rng(1).normal(size=(len(parities.images), 3, 6, 2))

@@ -7,11 +7,13 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.cut import region
 from fea.cut.evaluate import CutField
 from fea.cut.local_fields import LocalFields
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Requirement, Solution, solve_pin
+from fea.solve.solve import solve_pin
+from fea.support.support import Solution
 from geometry import CutPin, Hole, Pin, Segment
 
 STEEL = Material("steel", 210e9, 0.3, 500e6, 0.0)
@@ -68,6 +70,7 @@ def test_a_piece_that_cannot_govern_stays_coarse() -> None:
     assert found.peak.max_von_mises == pytest.approx(one.peak.max_von_mises, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_piece_whose_stress_swings_does_not() -> None:
     """For fatigue: a constant load on one hole, half of it to and fro on the other."""
     pin = shaft(Hole(0.09, 0.004), Hole(0.24, 0.004))

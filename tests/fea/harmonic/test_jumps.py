@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.core.local_fit import at_one_place, continuation
+from fea.core.local_fit import continuation, fit_weights
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
@@ -15,7 +16,7 @@ from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, jumps
 from fea.harmonic.superposition import Circumference
 from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
@@ -143,5 +144,5 @@ def test_quadratic_fields_are_continued_exactly() -> None:
 def test_samples_in_a_row_do_with_what_they_know() -> None:
     """Values along a line say nothing of those beside it, where they are taken to be the same."""
     offsets = np.stack([np.linspace(-1.0, 1.0, 8), np.full(8, 0.1)], axis=1)
-    weights = at_one_place(offsets, np.ones(8))
+    weights = fit_weights(offsets, np.ones(8))
     assert weights @ (1.0 + offsets[:, 0] ** 2) == pytest.approx(1.0, abs=1e-6)

@@ -12,13 +12,16 @@ from fea.core.material import Material
 from fea.core.memory import section_memory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.quiet_corners import NUMEROUS_FILLETS_ABOVE, numerous_fillets
-from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import Requirement, count_loads, singularities_of, solve_pin
+from fea.singular.singularities import singularities_of
+from fea.solve.refine import MESH_RATIO, count_loads
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles
+from tests.support.each import sampled
 from tests.support.pins.section_pins import nodes
 
 D = 0.02
@@ -51,7 +54,7 @@ def known(pin: Pin, steel: Material) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [50, 200])
+@pytest.mark.parametrize("count", sampled([50, 200], every=2))
 def test_equal_segments_are_a_plain_shaft(count: int, steel: Material) -> None:
     """Bending at the clamp, less 0.1 D that is excluded and what the clamp's rim changes."""
     moment = 100.0 * (count - 0.5) * D - 50.0 * (count // 2 + 0.5) * D
@@ -60,7 +63,7 @@ def test_equal_segments_are_a_plain_shaft(count: int, steel: Material) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [50, 100])
+@pytest.mark.parametrize("count", sampled([50, 100], every=2))
 def test_a_crowd_of_fillets(count: int, steel: Material) -> None:
     """Stress at the first fillet is that of a pin of two segments under the same moment and shear
     there: 3 %, both being known to 2.

@@ -9,9 +9,11 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.core.verdict import MeshHistory, judge
+from fea.solid.evaluate import SOLID_MESHES
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Requirement, solve_pin
-from fea.solve.verdict import MeshHistory, judge
+from fea.solve.solve import solve_pin
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from geometry.mesh.elements import Element
 from tests.support.errors import raises
@@ -56,6 +58,7 @@ def test_a_harmonic_rung_is_the_mesh_of_a_run(cantilever_pin: Pin, steel: Materi
     assert [s.max_von_mises for s in run.peak.history] == [first.maximum, second.maximum]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("element", ["linear", "straight", "curved"])
 def test_finer_solid_meshes_are_nearer_to_the_harmonic_model(
     element: Element, cantilever_pin: Pin, steel: Material
@@ -76,6 +79,7 @@ def test_finer_solid_meshes_are_nearer_to_the_harmonic_model(
     )
 
 
+@pytest.mark.slow
 def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
     steel: Material,
 ) -> None:
@@ -94,4 +98,4 @@ def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
 def test_stress_that_is_not_finite_has_no_verdict() -> None:
     result = MeshMaximum(900, float("nan"), 0, (0.0, 0.0, 0.0))
     with raises(SolveError, "not-finite", "pin P, case up"):
-        judge(MeshHistory("P", "up", "solid", (result,), (0.1,), 2.0), (), 0.02)
+        judge(MeshHistory("P", "up", "solid", (result,), (0.1,), SOLID_MESHES), (), 0.02)

@@ -10,11 +10,14 @@ import pytest
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Zone
-from fea.solve.requirement import Requirement, accurate_enough, reasons
-from fea.solve.verdict import MIN_MESHES, MeshHistory, judge
+from fea.core.requirement import Requirement, accurate_enough
+from fea.core.verdict import MeshHistory, judge
+from fea.core.zone import Zone
+from fea.harmonic.evaluate import SECTION_MESHES
+from fea.solve.refine import met
 from fea.support.contact.pressed_cases import Compared
 from fea.support.contact.variations import AtPlaces, ResolutionComparison
+from tests.support.each import each
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=400e6)
 CLAMP = Zone(0.01, 0.02, "edge of a clamp", ("held", "shaft"), 0.5, 0.5, 0.002, "none")
@@ -28,12 +31,13 @@ def mesh(maximum: float, felt: float, interval: tuple[float, float] | None = Non
     return MeshMaximum(1000, maximum * 1e6, 0, (0.0, 0.0, 0.0), (edge,), interval=ends)
 
 
-def seen(*results: MeshMaximum, fewest: int = MIN_MESHES) -> MeshHistory:
+def seen(*results: MeshMaximum, fewest: int = 3) -> MeshHistory:
     times = (0.1,) * len(results)
-    return MeshHistory("P", "c", "harmonic", results, times, 2.0**0.5, fewest=fewest)
+    meshes = replace(SECTION_MESHES, min_meshes=fewest)
+    return MeshHistory("P", "c", "harmonic", results, times, meshes)
 
 
-@pytest.mark.parametrize(
+@each(
     ("felt", "maximum", "done"),
     [
         (90.0, 100.0, True),  # far below the limit
@@ -62,7 +66,7 @@ def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> No
     for section, done in ((1.001 * high, True), (0.999 * high, False)):
         asked = Requirement(1e-4, elsewhere={"c": section})
         assert accurate_enough(asked, STEEL, here) is done
-        assert ("surface-below-sections" in reasons(asked, STEEL, "harmonic")(here).codes) is done
+        assert ("surface-below-sections" in met(asked, STEEL, here).codes) is done
     assert not accurate_enough(Requirement(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
 
 
@@ -86,7 +90,7 @@ def compared(surface: float, section: float, beneath: float, cells: AtPlaces) ->
     return Compared(found, found)
 
 
-@pytest.mark.parametrize(
+@each(
     ("stress", "cells", "value", "decide"),
     [
         ((150.0, 100.0, 90.0), (0.01, 0.01, 0.01), True, True),  # little of the tolerance

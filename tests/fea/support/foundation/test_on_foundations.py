@@ -15,17 +15,18 @@ from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve
 from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.plane_contact import half_angle, largest_pressure
-from fea.support.foundation.solve_on_foundations import solve_joints
 from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange, prescribed_ranges
 from fea.support.lugs.lug import Bushing, Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 from tests.fea.support.contact.test_contact import PERSSON
+from tests.support.each import each, sampled
 
 D, FORCE = 0.02, 50e3
 STEEL = Material("steel", 210e9, 0.3, density=7850.0)
@@ -43,11 +44,9 @@ def on_foundations(pin: Pin, lugs: tuple[Lug, ...], loads: PinLoads = PULL) -> S
     return stress_bounds(FoundationStress.of(model), model.solve(loads))
 
 
-def solved(
-    lugs: tuple[Lug, ...], pin: Pin, asked: Requirement, joints: str = "auto"
-) -> LugSolution:
+def solved(lugs: tuple[Lug, ...], pin: Pin, asked: Requirement, joints: str = "auto") -> Solution:
     given = PinProblem(pin, STEEL, lugs, (PULL,))
-    (found,) = solve_joints(given, asked, joints)  # type: ignore[arg-type]
+    (found,) = solve(given, replace(asked, joints=joints))  # type: ignore[arg-type]
     return found
 
 
@@ -126,7 +125,7 @@ def test_a_single_lug_of_a_structure_reacts_a_couple() -> None:
         FoundationModel(pin, STEEL, [replace(lug, tilt=0.0) for lug in lugs]).solve(loads)
 
 
-@pytest.mark.parametrize("gap", PERSSON)
+@each("gap", PERSSON)
 def test_plane_contact_is_perssons(gap: float) -> None:
     angle, peak = PERSSON[gap]
     assert math.degrees(half_angle(gap)) == pytest.approx(angle, abs=1e-3)
@@ -135,16 +134,17 @@ def test_plane_contact_is_perssons(gap: float) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("play", [0.0, 3.0])
-def test_contact_is_within_the_bounds_of_most_pins(play: float) -> None:
-    """9 in 10 of 20, on pins that had no part in any constant: the larger of surface and section,
+@pytest.mark.parametrize("count", sampled([6, 20], every=2))
+def test_contact_is_within_the_bounds_of_most_pins(play: float, count: int) -> None:
+    """9 in 10, on pins that had no part in any constant: the larger of surface and section,
     and what lies beneath contact.
     """
     inside = 0
-    for trial in (played(x, play) for x in joint_trials(20, 25)):
+    for trial in (played(x, play) for x in joint_trials(count, 25)):
         low, high = bounds_of(trial).bounds or (0.0, 0.0)
         found = contact_places(trial)
         inside += low <= found.row <= max(found.row, found.beneath) <= high
-    assert inside >= 18
+    assert inside >= math.floor(0.9 * count)
 
 
 def test_what_the_beam_leaves_out_makes_the_bounds_wider() -> None:
@@ -160,7 +160,7 @@ def test_what_the_beam_leaves_out_makes_the_bounds_wider() -> None:
         assert wider.bounds[1] > tight.bounds[1]
 
 
-@pytest.mark.parametrize(
+@each(
     "change",
     [{"clearance": 1.9e-3}, {"edge_radius": 2e-3}, {"outer_diameter": 0.1}],
 )
@@ -187,7 +187,7 @@ def test_sharp_corners_are_left_out_and_fillets_without_a_factor_are_not() -> No
 def test_a_row_has_the_error_of_the_model_alone() -> None:
     pin, lugs = usual()
     found = solved(lugs, pin, Requirement(tolerance=0.02), "foundation")
-    peak, joint = found.solution.peak, found.joint
+    peak, joint = found.peak, found.joint
     assert (peak.model, peak.verdict) == ("foundation", "unconverged")
     assert peak.parts is not None
     assert peak.error_estimate == peak.parts.model > 0.11 * (peak.max_von_mises or 0.0)
@@ -201,12 +201,12 @@ def test_a_row_has_the_error_of_the_model_alone() -> None:
     assert joint.bands[1].couple == pytest.approx(0.0, abs=1e-6)
     assert joint.bands[0].couple > 1.0
     rough = solved(lugs, pin, Requirement(tolerance=0.9), "foundation")
-    assert rough.solution.peak.verdict == "converged"
+    assert rough.peak.verdict == "converged"
 
 
 def test_a_row_without_a_known_error_has_one_as_large_as_itself() -> None:
     pin, lugs = clevis(10, 5, 0.5)  # thinner lugs than were measured
-    peak = solved(tuple(lugs), pin, Requirement(tolerance=0.9), "foundation").solution.peak
+    peak = solved(tuple(lugs), pin, Requirement(tolerance=0.9), "foundation").peak
     assert peak.verdict == "unconverged"
     assert peak.error_estimate == peak.max_von_mises
     assert "no-error-known" in peak.reasons
@@ -223,12 +223,12 @@ def test_a_motion_governs_between_its_samples() -> None:
     pin, lugs = usual()
     case = at(np.linspace(0.0, 1.0, 4))
     given = PinProblem(pin, STEEL, lugs, (case,), {"swing": at})
-    (found,) = solve_joints(given, Requirement(), "foundation")
-    peak = found.solution.peak
+    (found,) = solve(given, Requirement(joints="foundation"))
+    peak = found.peak
     assert peak.time == pytest.approx(0.41, abs=1e-3)
     assert peak.max_von_mises == pytest.approx(on_foundations(pin, lugs).maximum, rel=1e-4)
-    assert found.solution.answer is not None
-    assert found.solution.answer.maxima(PULL)[0] == pytest.approx(peak.max_von_mises, rel=1e-4)
+    assert found.answer is not None
+    assert found.answer.maxima(PULL)[0] == pytest.approx(peak.max_von_mises, rel=1e-4)
 
 
 def far_apart() -> tuple[Pin, tuple[Lug, ...]]:
@@ -241,23 +241,23 @@ def far_apart() -> tuple[Pin, tuple[Lug, ...]]:
 
 def test_auto_takes_foundations_where_bending_governs() -> None:
     pin, lugs = far_apart()
-    assert solved(lugs, pin, Requirement(tolerance=0.3)).solution.peak.model == "foundation"
+    assert solved(lugs, pin, Requirement(tolerance=0.3)).peak.model == "foundation"
 
 
 STRONG = replace(STEEL, yield_strength=1e9)
 
 
-def decided(required: float, edges: float = 3e-4) -> LugSolution:
+def decided(required: float, edges: float = 3e-4) -> Solution:
     """The clevis of about 300 MPa, with rounded or sharp edges of its lugs."""
     pin, lugs = usual()
     rounded = tuple(replace(lug, edge_radius=edges) for lug in lugs)
     asked = Requirement(goal="decide", required=required)
-    (found,) = solve_joints(PinProblem(pin, STRONG, rounded, (PULL,)), asked)
+    (found,) = solve(PinProblem(pin, STRONG, rounded, (PULL,)), asked)
     return found
 
 
 def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
-    peak = decided(1.5).solution.peak
+    peak = decided(1.5).peak
     assert (peak.model, "foundation-decides" in peak.reasons) == ("foundation", True)
     assert (peak.max_von_mises or 0.0) + (peak.error_estimate or 0.0) < 1e9 / 1.5
 
@@ -267,17 +267,17 @@ def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
 def test_auto_takes_contact_for_what_is_close_or_fails_or_is_singular(
     required: float, edges: float
 ) -> None:
-    assert decided(required, edges).solution.peak.model == "harmonic"
+    assert decided(required, edges).peak.model == "harmonic"
 
 
 @pytest.mark.slow
 def test_auto_takes_contact_for_more_than_foundations_can() -> None:
     """The clevis, though its error is within the tolerance, is pressed too hard."""
     pin, lugs = usual()
-    assert solved(lugs, pin, Requirement(tolerance=0.5)).solution.peak.model == "harmonic"
+    assert solved(lugs, pin, Requirement(tolerance=0.5)).peak.model == "harmonic"
 
 
-@pytest.mark.parametrize(("lugs", "clearance", "largest"), [
+@each(("lugs", "clearance", "largest"), [
     ((inner, outer, gap), clearance, mid)
     for inner, outer, gap, clearance, _, mid in TRUTH if inner != 10
 ])  # fmt: skip

@@ -15,8 +15,8 @@ import pytest
 
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.single_mesh import Rung
-from fea.solve.verdict import FIRST_MESH_SCATTER
 from geometry import Pin, Segment
 from pinstress import load_study, study_from
 from pinstress.cli.chart import _report_missed
@@ -30,6 +30,7 @@ from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.exact.plastic import STEEL, D
 from tests.support.programs.command_line import ONE_PIN
 
@@ -92,14 +93,12 @@ def test_every_model_and_mesh_is_charted_coarse_to_fine(made_up: Chart) -> None:
 
 def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart) -> None:
     """Of made-up errors of second order Roache's index makes 1.25 times themselves, and the least
-    error of a section (fea.solve.verdict) is a little more.
+    error of a section (fea.core.verdict) is a little more.
     """
     charted = max(p.dofs or 0 for p in made_up.points if p.model == "harmonic")
     assert made_up.reference.dofs >= 10 * charted
     true = 0.02 * 1000 / made_up.reference.dofs
-    assert made_up.reference.error == pytest.approx(
-        FIRST_MESH_SCATTER["harmonic"] / 0.02 * true, rel=1e-2
-    )
+    assert made_up.reference.error == pytest.approx(SECTION_MESHES.scatter / 0.02 * true, rel=1e-2)
     beam = made_up.points[0]
     assert beam.error == pytest.approx(0.3, abs=2 * true)
     assert "Reference: harmonic model" in reference_line(made_up)
@@ -259,6 +258,7 @@ def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) 
         assert (one / name).read_bytes() == (two / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
     """What it says is the same every time; its time and memory are its own."""
     rung = Rung("harmonic", level=0)
@@ -270,7 +270,7 @@ def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
     assert 30.0 < one.bare < 500.0
 
 
-@pytest.mark.parametrize(
+@each(
     ("rung", "limits", "reason"),
     [
         (Rung("solid", level=2), MeasureLimits(seconds=0.5), "exceeded the limit of 0.5 s"),
