@@ -1,5 +1,6 @@
-"""The handling of signals kept as it is while gmsh, which takes that of some away, is initialised:
-they would end the process at once.
+"""Preservation of signal handlers while gmsh is initialised.
+
+gmsh replaces some handlers; these signals would then end the process at once.
 """
 
 from __future__ import annotations
@@ -19,33 +20,33 @@ SIGACTION_BYTES = 256  # bytes; more than any C library's struct sigaction has
 
 @contextmanager
 def signals_kept() -> Iterator[None]:
-    """Signals are handled afterwards as before."""
+    """Restores the handlers of signals at the end of the `with` block."""
     with _by_python() if portable() else _by_sigaction():
         yield
 
 
 @contextmanager
 def _by_sigaction() -> Iterator[None]:
-    """In any thread, and also handlers that Python does not know (faulthandler's)."""
+    """Restores handlers in any thread, also those that Python does not know (faulthandler's)."""
     libc = ctypes.CDLL(None)
-    kept = {each: ctypes.create_string_buffer(SIGACTION_BYTES) for each in SIGNALS}
-    for each, handler in kept.items():
-        libc.sigaction(each, None, handler)
+    handlers = {number: ctypes.create_string_buffer(SIGACTION_BYTES) for number in SIGNALS}
+    for number, handler in handlers.items():
+        libc.sigaction(number, None, handler)
     try:
         yield
     finally:
-        for each, handler in kept.items():
-            libc.sigaction(each, handler, None)
+        for number, handler in handlers.items():
+            libc.sigaction(number, handler, None)
 
 
 @contextmanager
 def _by_python() -> Iterator[None]:
-    """In the main thread, the only one in which Python sets handlers."""
-    kept = {each: signal.getsignal(each) for each in SIGNALS}
+    """Restores handlers in the main thread, the only one in which Python sets them."""
+    handlers = {number: signal.getsignal(number) for number in SIGNALS}
     try:
         yield
     finally:
         if threading.current_thread() is threading.main_thread():
-            for each, handler in kept.items():
+            for number, handler in handlers.items():
                 if handler is not None:
-                    signal.signal(each, handler)
+                    signal.signal(number, handler)
