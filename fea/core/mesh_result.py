@@ -9,8 +9,9 @@ from fea.core.strain_energy import StrainEnergy
 
 Point = tuple[float, float, float]
 
-# Of a feature: a singularity governs if the stress at this distance is the largest.
-FEATURE_READING_DISTANCE = 0.1
+FEATURE_READING_DISTANCE = (
+    0.1  # of a feature: a singularity governs if the stress at this distance is the largest
+)
 
 
 @dataclass(frozen=True)

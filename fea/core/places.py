@@ -22,8 +22,9 @@ from pinbase.dimensions import Force, Length, Moment, Point, Stress
 
 Place = Literal["surface", "section"]
 
-# Of the diameter: farther from every pressed cell a point lies beneath the contact.
-BENEATH_DISTANCE = 0.1
+BENEATH_DISTANCE = (
+    0.1  # of the diameter: farther from every pressed cell a point lies beneath the contact
+)
 
 
 @dataclass(frozen=True)

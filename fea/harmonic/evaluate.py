@@ -36,8 +36,9 @@ FIRST_MESH_SIZE = SectionSize()  # of the first mesh
 BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
 LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
 MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere
-# Of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1).
-SERIES_REMAINDER_RATIO = 0.6
+SERIES_REMAINDER_RATIO = (
+    0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
+)
 LOW_STRESS_POWER = 0.5  # power of the refinement where stresses are low
 REFINE_ABOVE, MIN_SPACING, MAX_PLACES = (
     0.95,

@@ -20,14 +20,17 @@ from reports.format.script_json import script_json
 from reports.format.words import verdict_words
 
 MAX_LOAD_INTEGER = 32767  # loads are integers up to this, scaled by the largest
-# The same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it.
-MAX_STRESS_INTEGER = 4095
-# The same of displacements, which are shown by nothing but the shape.
-MAX_DISPLACEMENT_INTEGER = 127
+MAX_STRESS_INTEGER = (
+    4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
+)
+MAX_DISPLACEMENT_INTEGER = (
+    127  # the same of displacements, which are shown by nothing but the shape
+)
 MAX_SECTION_INTEGER = 4095  # stresses on a section are integers up to this, at the maximum
 PRESSURE_PERCENTILE = 90.0  # per cent of cells under pressure whose colours differ
-# Of the maximum; if the whole surface is below it, the maximum is inside.
-SURFACE_MAXIMUM_SHARE = 0.999
+SURFACE_MAXIMUM_SHARE = (
+    0.999  # of the maximum; if the whole surface is below it, the maximum is inside
+)
 
 
 @dataclass(frozen=True)

@@ -42,8 +42,9 @@ CSV_ONLY_TABLES = (
     "linkage",
     "sliders",
 )
-# Rows of a sheet; longer tables are written as CSV only, which is much faster.
-MAX_SHEET_ROWS = 2000
+MAX_SHEET_ROWS = (
+    2000  # rows of a sheet; longer tables are written as CSV only, which is much faster
+)
 
 
 def sheets(tables: Sequence[Table]) -> list[Table]:

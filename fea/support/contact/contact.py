@@ -44,8 +44,9 @@ LOAD_REDUCTION, MIN_LOAD_REDUCTION = 2.0, 1.01  # factors by which they become s
 BALANCE_TOLERANCE = 1e-9  # of the largest force
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
 SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: what is round-off
-# Of the stiffness of the cells: holds a lug that has lost all contact.
-SOFT_SPRING_STIFFNESS = 1e-13
+SOFT_SPRING_STIFFNESS = (
+    1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
+)
 TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
 MAX_KEPT_NUMBERS = 4_000_000  # numbers: of what sets of cells answer
 

@@ -30,10 +30,12 @@ from fea.support.contact.pressure_loads import (
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.contact.variations import CELL_ERROR_SHARE, ResolutionComparison, compare
 
-# Of the largest on the first mesh: from there on an instant may govern on finer ones.
-CANDIDATE_FRACTION = 0.8
-# Of the largest load: what an instant left out to begin with may be off its chord.
-CHORD_TOLERANCE = 0.01
+CANDIDATE_FRACTION = (
+    0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
+)
+CHORD_TOLERANCE = (
+    0.01  # of the largest load: what an instant left out to begin with may be off its chord
+)
 MIN_INTERVALS = 16  # intervals to begin with
 
 

@@ -36,11 +36,13 @@ SURFACE_CELL_ORDER, SECTION_CELL_ORDER = 1.4, 2.0
 # Relative, of the usual number of rings, and less of more: by so much the stress beside the edges
 # of lugs goes up and down with where rings happen to end, whatever two sets of cells tell.
 RING_SCATTER = 0.01
-# At least, of cells larger than the usual ones: two such can agree by chance (pin D.
-MIN_CELL_ERROR = 0.06
+MIN_CELL_ERROR = (
+    0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
+)
 # of the landing gear to 2 %, while both are 4 to 5 % off)
-# Of the largest amplitude: what a pattern must add to that of a changed joint.
-VARIATION_MODE_TOLERANCE = 1e-2
+VARIATION_MODE_TOLERANCE = (
+    1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
+)
 
 
 @dataclass(frozen=True)

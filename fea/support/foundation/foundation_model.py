@@ -40,14 +40,16 @@ from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import graded, ring, ringed
 from geometry import Pin, Segment
 
-# Of the plane's compliance, fitted to the largest moments of 60 pins at random.
-COMPLIANCE_SHARE = 0.70
+COMPLIANCE_SHARE = (
+    0.70  # of the plane's compliance, fitted to the largest moments of 60 pins at random
+)
 
 # Error of the largest bending moment, of contact without clearance over this model's, less 1: what
 # 19 in 20 of 180 pins at random are within (python -m benchmarks foundation).
 PLAIN_MOMENT_ERROR = 0.06
-# More with two lugs: the moment is small, and where in the lugs loads are counts.
-SINGLE_SHEAR_ERROR = 0.04
+SINGLE_SHEAR_ERROR = (
+    0.04  # more with two lugs: the moment is small, and where in the lugs loads are counts
+)
 TUBE_BORE_RATIO, TUBE_ERROR = (
     0.4,
     0.04,

@@ -41,8 +41,9 @@ if TYPE_CHECKING:
 DIMENSION_STEPS = 12  # rounded dimensions in a factor of two
 SIZE_STEPS = 8  # rounded sizes of elements in a factor of two
 PLACE_STEPS = 32  # rounded places on the smallest diameter
-# Times which an edge may be longer or shorter than that of the rounded shape.
-MAX_EDGE_STRETCH = 1.4
+MAX_EDGE_STRETCH = (
+    1.4  # times which an edge may be longer or shorter than that of the rounded shape
+)
 RATIO_DIGITS = 9  # of ratios that are the same for all shapes
 MAX_KEPT_NODES = 20_000  # that are kept
 

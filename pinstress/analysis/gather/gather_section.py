@@ -15,8 +15,9 @@ SECTION_STATIONS, SECTION_ROWS = (
     200,
     33,
 )  # at most 2.5 times as many stations, of which few are needed
-# Of the length: how close to a shoulder, on both sides of it, stress is read.
-SHOULDER_OFFSET = 1e-6
+SHOULDER_OFFSET = (
+    1e-6  # of the length: how close to a shoulder, on both sides of it, stress is read
+)
 SECTION_STRESS_TOLERANCE = 7e-3  # of the maximum
 RADIUS_TOLERANCE = 2e-3  # of the radius
 

@@ -19,8 +19,9 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import LugTable
 
-# Of the pin's radius: what steps of a clearance are parts of, as it may be none.
-CLEARANCE_SCALE = 1e-3
+CLEARANCE_SCALE = (
+    1e-3  # of the pin's radius: what steps of a clearance are parts of, as it may be none
+)
 
 
 @dataclass(frozen=True)

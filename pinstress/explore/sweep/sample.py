@@ -12,8 +12,9 @@ from pinstress.explore.sweep.laws import Floats, Uniform
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.schema.vary import VaryTable
 
-# How close a probability may come to 0 and 1, where a normal law has no value.
-MIN_PROBABILITY = 2.0**-53
+MIN_PROBABILITY = (
+    2.0**-53
+)  # how close a probability may come to 0 and 1, where a normal law has no value
 
 
 def designs_of(

@@ -33,8 +33,9 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
 
-# Of the mechanism's unsprung mass, which changes by as much along a stroke.
-UNSPRUNG_MASS_TOLERANCE = 0.1
+UNSPRUNG_MASS_TOLERANCE = (
+    0.1  # of the mechanism's unsprung mass, which changes by as much along a stroke
+)
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:

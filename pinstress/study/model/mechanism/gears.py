@@ -8,8 +8,9 @@ from loads import Gear, LinkageError, Rack, Slider, Teeth, gear_pair, rack_and_p
 from pinstress.study.model.mechanism.drawing import Drawing
 from pinstress.study.schema.gears import GearTable, RackTable
 
-# Of the distance of the centres: by so much pitch radii may miss each other.
-CENTRE_DISTANCE_TOLERANCE = 1e-3
+CENTRE_DISTANCE_TOLERANCE = (
+    1e-3  # of the distance of the centres: by so much pitch radii may miss each other
+)
 NAME_JOINT_REMEDY = "name the joint about which it turns"
 
 
