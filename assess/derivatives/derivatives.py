@@ -6,7 +6,7 @@ their displacements u and of the tractions t. With K u = f and the adjoint l, K 
     dJ/dp = J,x x' + J,t t' + l^T f' - (l^T K u),x x'
 
 for any parameter p, so that one solution l of each harmonic, with the stiffness that the stress
-itself took, serves all of them. Nodes move by x' as geometry.mesh.moved.outline_motion says on the
+itself took, serves all of them. Nodes move by x' as geometry.mesh.outline_motion says on the
 outline and harmonically inside. The maximum moves along the surface, over the circumference and in
 time too, but there it is stationary, or held by the edge of an excluded zone, which x' follows. So
 this is the derivative of the maximum on the mesh as it is moved, to round-off; its error is that of
@@ -46,7 +46,7 @@ from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
 from fea.singular.singularities import free_of_arcs
 from geometry import Pin
-from geometry.mesh.moved.outline_motion import (
+from geometry.mesh.outline_motion import (
     DIFFERENCE_STEPS,
     NodeMotion,
     OtherShapeError,

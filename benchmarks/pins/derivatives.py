@@ -23,7 +23,7 @@ from fea.harmonic.model import HarmonicModel
 from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import singularities_of, solve_pin
 from geometry import Pin
-from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
+from geometry.mesh.outline_motion import OutlineNodes, Reach
 from geometry.shape.dimensions import Dimension, dimensions
 from pinbase.arrays import Floats
 

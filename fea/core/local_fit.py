@@ -33,18 +33,17 @@ def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_
     return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
 
 
-def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> sp.csr_matrix:
+def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
     """Matrix (P, S) from values at samples (S, 2) to those at points (P, 2): of the quadratic
     polynomial that fits those at the nearest samples best; the nearer, the more they count, down to
     nothing for the last, so that it does not matter which of several at its distance that is.
-    near: (P, C) which samples these are; `nearest` by default.
 
     Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
     elements round a node instead.
     """
     if not len(points):
         return sp.csr_matrix((0, len(samples)))
-    near = nearest(samples, points) if near is None else near
+    near = nearest(samples, points)
     offsets = np.empty((2, *near.shape))
     for out, sample, point in zip(offsets, samples.T, points.T, strict=True):
         np.subtract(sample.take(near), point[:, None], out=out)

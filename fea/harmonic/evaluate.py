@@ -25,7 +25,6 @@ from fea.harmonic.superposition import Circumference, Crest
 from fea.singular.probes import rim
 from fea.singular.singularities import DISTANCE_VARIATIONS, Zone, smooth_edges
 from geometry import Pin
-from geometry.mesh.moved.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats, Mask
@@ -73,8 +72,7 @@ class HarmonicSolution:
 class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
     singularities of any of these. first: where the first mesh is kept for other loads. besides:
-    unit loads that are solved, too. near: whether meshes are those of a near shape with their nodes
-    moved (geometry.mesh.moved.near_mesh).
+    unit loads that are solved, too.
     """
 
     pin: Pin
@@ -84,7 +82,6 @@ class SectionProblem:
     singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
     besides: tuple[UnitLoad, ...] = ()
-    near: bool = False
 
 
 def harmonic_solution(
@@ -130,8 +127,7 @@ def harmonic_solution(
         read = np.concatenate([elsewhere, _rims(pin, singularities), just_beneath(pin, rings)])
 
         def model() -> HarmonicModel:
-            made = near_mesh if problem.near else meridian_mesh
-            section = made(pin, size, places, grades, quiet)
+            section = meridian_mesh(pin, size, places, grades, quiet)
             return HarmonicModel(pin, section, material, problem.clamps)
 
         elastic = material.youngs_modulus, material.poisson_ratio, material.density

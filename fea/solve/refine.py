@@ -247,7 +247,6 @@ def _mesh(
         assert isinstance(job.pin, Pin)
         problem = SectionProblem(
             job.pin, job.material, job.constrained, cases, singularities, job.first,
-            near=job.asked.near,
         )  # fmt: skip
         answers: dict[str, StressField]
         if model == LOCAL_MODEL:

@@ -24,11 +24,10 @@ class Requirement:
     `required` safety factor is met. distance: excluded distance around singularities, as a fraction
     of the local diameter. meshes: maximum number of meshes, by default that of the model.
     memory: limit for a mesh in MB, by default most of the free memory. because: reason for the
-    model, where this package does not choose it. near: whether sections have the meshes of near
-    shapes with their nodes moved. cells: of contact with lugs, these alone; None: until they are
-    fine enough. elsewhere: by case, stress (Pa) that sections have: a surface that surely has less
-    needs no finer mesh. besides: by case, the error, relative, that is known to come to that of
-    meshes and instants.
+    model, where this package does not choose it. cells: of contact with lugs, these alone; None:
+    until they are fine enough. elsewhere: by case, stress (Pa) that sections have: a surface that
+    surely has less needs no finer mesh. besides: by case, the error, relative, that is known to
+    come to that of meshes and instants.
     """
 
     tolerance: float = 0.02
@@ -39,7 +38,6 @@ class Requirement:
     meshes: int | None = None
     memory: float | None = None
     because: Reason | None = None
-    near: bool = False
     cells: Literal["rough", "usual"] | None = None
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -36,14 +36,7 @@ __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 TRIANGLE3, LINE2 = 2, 1  # gmsh's element types
 MAX_TRIANGLES = 2e5
 UNBOUNDED_LENGTH = 1e9  # beyond any pin, whose smallest diameter is 1
-MIN_JACOBIAN_RATIO = 0.1  # min / max of det J that every element must exceed
 MIN_FILLET_RATIO = 1e-8  # of the adjacent diameter: gmsh hangs at 1e-13
-
-
-class SharedByMeshes(dict[str, Any]):
-    """What depends on the numbers of a mesh's nodes alone, by what it is, once it was found; and
-    `still`, the mesh of which others have the elements with the nodes moved.
-    """
 
 
 @dataclass(frozen=True)
@@ -51,14 +44,12 @@ class MeridianMesh:
     """Quadratic triangles. nodes: (N, 2) r and z, m, first those at corners, then those amid sides.
     elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02. edges: by surface
     name, the edges there in no order, (E, 3) node numbers: ends, then middle. axis: nodes at r = 0.
-    shared: by all meshes with the same elements, edges and axis, where these are known.
     """
 
     nodes: Floats
     elements: Ints
     edges: dict[str, Ints]
     axis: Ints
-    shared: SharedByMeshes | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def of(cls, mesh: MeshTri2, edges: dict[str, Ints], axis: Ints) -> MeridianMesh:
@@ -66,14 +57,6 @@ class MeridianMesh:
         nodes = np.ascontiguousarray(mesh.doflocs.T)
         elements = np.ascontiguousarray(mesh.dofs.element_dofs.T).astype(np.int64)
         return cls(nodes, elements, edges, axis)
-
-    def distortion(self) -> Floats:
-        """Least over largest det J (M,) at corners and amid sides."""
-        x = self.nodes[self.elements].swapaxes(1, 2) @ _NODE_SLOPES
-        r, z = x[:, 0], x[:, 1]
-        det = r[:, :6] * z[:, 6:] - r[:, 6:] * z[:, :6]
-        det *= np.sign(det[:, :1])
-        return np.asarray(det.min(axis=1) / det.max(axis=1))
 
     @cached_property
     def mesh(self) -> MeshTri2:
@@ -94,10 +77,6 @@ def triangle_shapes(at: Floats) -> tuple[Floats, Floats]:
     value = np.concatenate([corner * (2.0 * corner - 1.0), 4.0 * corner[first] * corner[second]])
     sides = slope[:, first] * corner[second] + corner[first] * slope[:, second]
     return value, np.concatenate([slope * (4.0 * corner - 1.0), 4.0 * sides], axis=1)
-
-
-_AT_NODES = np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]).T
-_NODE_SLOPES = triangle_shapes(_AT_NODES)[1].swapaxes(0, 1).reshape(6, 12)  # by x, then by y
 
 
 def meridian_mesh(

@@ -21,7 +21,7 @@ from fea.singular.singularities import DISTANCE_VARIATIONS, find_singularities, 
 from fea.solid.sharp_edges import SharpEdges
 from fea.solve.solve_pin import Requirement, Solution, singularities_of, solve_pin
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
-from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
+from geometry.mesh.outline_motion import DIFFERENCE_STEPS
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
 from geometry.shape.dimensions import dimensions

@@ -17,7 +17,6 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.mesh.moved.near_mesh import step
 from loads import noted_files
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
 from pinstress.explore.sweep.laws import Floats
@@ -112,12 +111,9 @@ def evaluator_of(problem: DesignProblem) -> Evaluator:
 
 
 def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
-    """The designs (N, p) so that those with the same shapes follow each other, and those whose
-    meshes are moved from that of the same rounded shape.
-    """
+    """The designs (N, p) so that those with the same shapes follow each other."""
     shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
-    near = [np.array([step(x) for x in each]) for each in shape]
-    keys = [np.arange(len(values)), *reversed(shape), *reversed(near)]
+    keys = [np.arange(len(values)), *reversed(shape)]
     return [int(i) for i in np.lexsort(keys)]
 
 

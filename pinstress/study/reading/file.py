@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -71,11 +71,6 @@ class Study:
     def system(self) -> UnitSystem:
         """The study's unit system."""
         return UNIT_SYSTEMS[self.table.units]
-
-    @property
-    def meshes(self) -> Literal["own", "moved"]:
-        """Of sections: each shape's own, or those of near shapes with their nodes moved."""
-        return self.table.analysis.meshes or ("moved" if self.table.vary else "own")
 
     @property
     def name(self) -> str:

@@ -23,7 +23,7 @@ from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solu
 from fea.solve.refine import MESH_RATIO, singularities_of
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import Pin, Segment
-from geometry.mesh.moved.outline_motion import OtherShapeError, OutlineNodes, Reach
+from geometry.mesh.outline_motion import OtherShapeError, OutlineNodes, Reach
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.shape.dimensions import dimensions
 
