@@ -26,12 +26,7 @@ MAX_UNKNOWNS_BELOW_REFERENCE = 50_000
 MAX_REFERENCE_UNKNOWNS = 400_000
 REFERENCE_UNKNOWNS_RATIO = 10.0  # times the unknowns of the finest that is charted
 MIN_REFERENCE_MESHES = 3
-ADAPTIVE_MODELS = (
-    "harmonic",
-    LOCAL_MODEL,
-    "contact",
-    "prescribed",
-)  # models whose meshes are finer where stress is high
+ADAPTIVE_MODELS = "harmonic", LOCAL_MODEL, "contact"  # finer meshes where stress is high
 
 
 @dataclass
