@@ -11,6 +11,7 @@ import numpy as np
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import Loads, PinLoads
 from fea.core.solution import Picture
+from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.cut.local_fields import (
     LOCAL_MESH_RATIO,
     MAX_REFINED_RISE,
@@ -34,7 +35,6 @@ from fea.harmonic.evaluate import (
 )
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.stress_recovery import NO_POINTS
-from fea.singular.singularities import DISTANCE_VARIATIONS, Zone
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry import CutPin

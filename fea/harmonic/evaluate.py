@@ -12,6 +12,7 @@ from fea.core.material import Material
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, MeshMaximum, Point
 from fea.core.pin_loads import Loads, PinLoads, UnitLoad
 from fea.core.solution import Picture
+from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.beneath import just_beneath
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import reader
@@ -23,7 +24,7 @@ from fea.harmonic.revolve import revolve
 from fea.harmonic.stress_recovery import NO_POINTS
 from fea.harmonic.superposition import Circumference, Crest
 from fea.singular.probes import rim
-from fea.singular.singularities import DISTANCE_VARIATIONS, Zone, smooth_edges
+from fea.singular.singularities import smooth_edges
 from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at

@@ -13,8 +13,9 @@ from fea.core.memory import require_memory
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import Loads, PinLoads, UnitLoad
 from fea.core.solution import Picture
+from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.singular.probes import all_round, rim
-from fea.singular.singularities import DISTANCE_VARIATIONS, Zone, clamp_rims, free_of_arcs, outside
+from fea.singular.singularities import clamp_rims, free_of_arcs, outside
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope

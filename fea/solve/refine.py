@@ -18,6 +18,7 @@ from fea.core.over_time import Between, rise_between, through_time, with_crest
 from fea.core.peak import NO_REASON, Maximum, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import StressField
+from fea.core.zone import Zone
 from fea.cut.evaluate import CutField, CutSolution, cut_result, cut_solution
 from fea.cut.local_fields import LOCAL_MESH_RATIO, LocalFields
 from fea.cut.region import PIECE_REACH, REACH_FACTOR, pieces
@@ -28,7 +29,7 @@ from fea.harmonic.evaluate import (
     harmonic_solution,
 )
 from fea.harmonic.kept_fields import FirstMesh
-from fea.singular.singularities import Zone, begins, find_singularities
+from fea.singular.singularities import begins, find_singularities
 from fea.solid.evaluate import SolidField, solid_result, solid_solution
 from fea.solve.requirement import Requirement, accurate_enough, reasons
 from fea.solve.verdict import MIN_MESHES, MeshHistory, judge

@@ -15,10 +15,10 @@ from fea.beam.model import BeamField
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.core.zone import Zone
 from fea.cut.evaluate import cut_result, cut_solution
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.singular.singularities import Zone
 from fea.solid.evaluate import solid_solution
 from fea.solid.superposition import envelope
 from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, singularities_of

@@ -19,7 +19,7 @@ from fea.core.peak import (
     discretisation_error,
 )
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Zone
+from fea.core.zone import Zone
 
 MIN_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
 # Scatter of the maximum on the first mesh with the positions of nodes, relative; ~ h^2. Sections:

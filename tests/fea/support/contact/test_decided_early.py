@@ -10,7 +10,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Zone
+from fea.core.zone import Zone
 from fea.solve.requirement import Requirement, accurate_enough, reasons
 from fea.solve.verdict import MIN_MESHES, MeshHistory, judge
 from fea.support.contact.pressed_cases import Compared
