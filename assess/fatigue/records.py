@@ -11,7 +11,7 @@ from pinbase.dimensions import Floats, Point, Stress, Stresses, Times
 @dataclass(frozen=True)
 class CaseHistory:
     """Stress (T, 6) Pa at a point in one case, and its von Mises stress without and with a sign
-    (assess.fatigue.signed_stress), (T,) Pa. times: None without a motion. Components are rr, tt,
+    (assess.fatigue.critical_points), (T,) Pa. times: None without a motion. Components are rr, tt,
     zz, tz, rz, rt of a body of revolution; xx, yy, zz, yz, xz, xy of any other.
     """
 
