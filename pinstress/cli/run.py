@@ -46,12 +46,8 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
-RUN_MODULES = (
-    "gmsh",
-    "pymetis",
-    "cvxopt.cholmod",
-    "vtkmodules.vtkIOXML",
-)  # what fea and reports import on demand
+# What fea and reports import on demand
+RUN_MODULES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 
 
 @dataclass(frozen=True)

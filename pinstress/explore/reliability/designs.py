@@ -21,9 +21,8 @@ Array = NDArray[np.float64]
 
 MAX_JOB_DESIGNS = 100  # designs in a job
 JOBS_PER_PROCESS = 4  # for each process, so that all end at about the same time
-MAX_SERIAL_DESIGNS = (
-    30  # designs that this process solves itself, as FORM's, one step after another
-)
+# Designs that this process solves itself, as FORM's, one step after another
+MAX_SERIAL_DESIGNS = 30
 
 
 Marginal = Callable[[Array], Array]  # values at standard normal deviates

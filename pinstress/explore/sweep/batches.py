@@ -24,9 +24,8 @@ from pinstress.explore.sweep.number import Number
 from pinstress.study.reading.file import Study, parse_study
 
 TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
-BATCH_OVERHEAD_SECONDS = (
-    0.008  # s in which a batch is handed out to one of many processes and its rows are read
-)
+# s in which a batch is handed out to one of many processes and its rows are read
+BATCH_OVERHEAD_SECONDS = 0.008
 MAX_BATCH_DESIGNS = 5000  # designs in a batch
 STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
