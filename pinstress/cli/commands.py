@@ -13,7 +13,7 @@ import click
 from pinbase.processes import interrupts
 from pinbase.processes.environment import settle_surroundings
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
-from pinstress.cli.designs.commands import reliability, sweep
+from pinstress.cli.design_commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,

@@ -15,7 +15,7 @@ from rich.console import Console
 
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
 from pinbase.processes.system import portable
-from pinstress.analysis.cache.store import user_cache
+from pinstress.analysis.cache import user_cache
 from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks

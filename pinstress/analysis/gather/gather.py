@@ -20,7 +20,7 @@ from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import Cut, CutPin, Flat, Hole, Passage, Pin, Slot
 from geometry.shape.cut_edges import drawn
 from pinstress.analysis.assessed.checked import Checked, factor_assumption
-from pinstress.analysis.cache.store import REQUIRED_PACKAGES
+from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.analysis.gather.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
