@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.support.contact.records import JointResult, Variation
+from fea.support.records import JointResult, Variation
 from reports.data.results import PinResult, Units
 from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from fea.support.contact.records import JointRange, JointResult
+from fea.support.records import JointRange, JointResult
 from reports.data.results import PinResult, Results
 from reports.format.files.csv import Cell
 from reports.format.numbers import finite
