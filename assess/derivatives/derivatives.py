@@ -7,7 +7,7 @@ their displacements u and of the tractions t. With K u = f and the adjoint l, K 
 
 for any parameter p, so that one solution l of each harmonic, with the stiffness of the stress
 itself, serves all of them. Nodes move by x': on the outline as given by
-geometry.mesh.moved.outline_motion, inside harmonically. The maximum moves along the surface, over
+geometry.mesh.outline_motion, inside harmonically. The maximum moves along the surface, over
 the circumference and in time too, but there it is stationary, or held by the edge of an excluded
 zone, which x' follows. So this is the derivative of the maximum on the moved mesh, to round-off;
 its error is that of the mesh.
@@ -46,7 +46,7 @@ from fea.harmonic.model import HarmonicModel, applied, generalised
 from fea.harmonic.stress_recovery import points_of_nodes
 from fea.singular.singularities import free_of_arcs
 from geometry import Pin
-from geometry.mesh.moved.outline_motion import (
+from geometry.mesh.outline_motion import (
     DIFFERENCE_STEPS,
     NodeMotion,
     OtherShapeError,

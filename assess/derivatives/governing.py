@@ -11,7 +11,7 @@ import numpy as np
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.five_numbers import COSINE_COMPONENTS
 from fea.harmonic.superposition import Crest
-from geometry.mesh.moved.outline_motion import rate
+from geometry.mesh.outline_motion import rate
 from pinbase.arrays import Floats
 
 FORCE_STEP = 1e-3  # of the largest force: step of central differences; chosen by judgement

@@ -32,7 +32,7 @@ from fea.support.contact.pressure_loads import others_along
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, GeometryError, Pin
-from geometry.mesh.moved.outline_motion import (
+from geometry.mesh.outline_motion import (
     DIFFERENCE_STEPS,
     RELATIVE_STEPS,
     OtherShapeError,

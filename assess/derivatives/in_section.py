@@ -25,7 +25,7 @@ from fea.harmonic.superposition import Crest
 from fea.section.section_stress import AtSection, SectionField, sections_at
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import GeometryError, Pin
-from geometry.mesh.moved.outline_motion import (
+from geometry.mesh.outline_motion import (
     DIFFERENCE_STEPS,
     RELATIVE_STEPS,
     OtherShapeError,

@@ -16,7 +16,7 @@ from assess.derivatives.records import SolvedCase
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.free_surface import reader
 from fea.harmonic.superposition import Crest
-from geometry.mesh.moved.outline_motion import NodeMotion, OtherShapeError
+from geometry.mesh.outline_motion import NodeMotion, OtherShapeError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats, Mask
 

@@ -21,7 +21,7 @@ from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.support.contact.pressure_loads import others_along, resultants
 from fea.support.contact.solve_joint import ContactModel
 from geometry import Pin
-from geometry.mesh.moved.outline_motion import NodeMotion, rate_of
+from geometry.mesh.outline_motion import NodeMotion, rate_of
 from pinbase.arrays import Floats
 
 

@@ -19,7 +19,7 @@ from assess.derivatives.virtual_work import shape_gradient, work
 from fea.core.material import Material
 from fea.harmonic.assembly import around, elasticity
 from fea.support.contact.flexibility import RingBody
-from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS, rate_of
+from geometry.mesh.outline_motion import DIFFERENCE_STEPS, rate_of
 from pinbase.arrays import Floats
 
 

@@ -7,7 +7,7 @@ over the largest von Mises stress. It is 2 where the sign of a torsion does not 
 1.4 for components 90 degrees out of phase.
 
 In pure shear the principal stresses are equal, so that neither gives the von Mises stress its sign
-(assess.fatigue.signed_stress). There the side of zero on the line does; the larger side counts as
+(assess.fatigue.critical_points). There the side of zero on the line does; the larger side counts as
 tension, the safe choice.
 """
 

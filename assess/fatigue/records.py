@@ -14,7 +14,7 @@ class CaseHistory:
 
     stress: (T, 6) Pa; rr, tt, zz, tz, rz, rt for a body of revolution; xx, yy, zz, yz, xz, xy for
     any other.
-    von_mises, signed: (T,) Pa, without and with a sign (assess.fatigue.signed_stress).
+    von_mises, signed: (T,) Pa, without and with a sign (assess.fatigue.critical_points).
     times: (T,) s, None without a motion.
     """
 

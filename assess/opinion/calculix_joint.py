@@ -41,11 +41,8 @@ ZERO_INCREMENT_MESSAGE = "zero-size increment is appended"
 DEFAULT_FINENESS = Fineness()
 MIN_FLAT_LENGTH = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
 MAX_OUT_OF_PLANE_FORCE = 1e-6  # of the largest force: what may be across the plane of the others
-NEAREST_ELEMENTS, MAX_LOCATING_STEPS, LOCATING_TOLERANCE = (
-    12,
-    12,
-    1e-9,
-)  # elements in which a point is looked for, and how
+# Elements in which a point is looked for, and how
+NEAREST_ELEMENTS, MAX_LOCATING_STEPS, LOCATING_TOLERANCE = 12, 12, 1e-9
 CORNER_SIGNS = np.array(
     [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
 )

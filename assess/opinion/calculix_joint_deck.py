@@ -25,9 +25,8 @@ Ints = NDArray[np.int64]
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
 FACE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 LAST_INCREMENT_ONLY = "FREQUENCY=1000000"  # of the increments, at which results are written
-WEAK_SPRING_STIFFNESS = (
-    1e-7  # of Young's modulus times the pin's length: springs that hold what has no contact
-)
+# Of Young's modulus times the pin's length: springs that hold what has no contact
+WEAK_SPRING_STIFFNESS = 1e-7
 
 
 @dataclass(frozen=True)

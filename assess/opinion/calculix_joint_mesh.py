@@ -28,9 +28,8 @@ FACE_NODES = {OUTER_FACE: [1, 5, 6, 2, 17, 13, 18, 9], INNER_FACE: [3, 7, 4, 0, 
 # Of the contact, times Young's modulus over the diameter. Halved or doubled it changes the moment
 # and the stress of a clevis by 0.1 to 0.2 %, of two lugs with clearance by up to 0.6 %.
 CONTACT_STIFFNESS = 200.0
-SMALL_LOAD_SCALE = (
-    0.01  # so that displacements are small compared with elements: contact is found on moved nodes
-)
+# So that displacements are small compared with elements: contact is found on moved nodes
+SMALL_LOAD_SCALE = 0.01
 CORE_SIZE = 0.55  # of the least radius of a solid pin: half the side of the core, about
 CORE_ROUNDNESS = 0.4  # how round the core is: 0 a square, 1 a circle
 

@@ -17,9 +17,6 @@ MAX_MAXIMUM_DIFFERENCE = 0.30
 # For contact with lugs, on meshes that CalculiX solves in minutes: on random joints moments differ
 # by 3.5 % and loads by 6 % at most.
 MAX_MOMENT_DIFFERENCE, MAX_LOAD_DIFFERENCE = 0.05, 0.10
-# Our steps end where the work of flow is within 2 % of that of the loads; CalculiX goes on until it
-# finds no equilibrium, 0.7 % higher at most in docs/past-yield.md.
-MAX_LIMIT_LOAD_DIFFERENCE = 0.02
 
 
 @dataclass(frozen=True)
@@ -69,29 +66,6 @@ class ContactOpinion:
 
 
 @dataclass(frozen=True)
-class LimitOpinion:
-    """The load factors that both programs reach on the coarsest mesh of a limit load, of
-    `unknowns`. failure: why there are none, or empty.
-    """
-
-    unknowns: int = 0
-    ours: float | None = None
-    theirs: float | None = None
-    failure: str = ""
-
-    @property
-    def difference(self) -> float | None:
-        """CalculiX's over ours, less 1."""
-        return None if not self.ours or self.theirs is None else self.theirs / self.ours - 1.0
-
-    @property
-    def complaint(self) -> str:
-        """As an Opinion's."""
-        said = _beyond("its limit load is", self.difference, MAX_LIMIT_LOAD_DIFFERENCE)
-        return self.failure or "; ".join(said)
-
-
-@dataclass(frozen=True)
 class Opinion:
     """Of one pin in one case: both programs on one mesh of `unknowns`, and the answer of the run.
 
@@ -99,7 +73,7 @@ class Opinion:
     stress. ours, theirs: largest von Mises stress outside of singularities, both averaged
     at the nodes, Pa. answer, error: the run's, Pa. failure: why there is none of this, or empty.
     contact: of a pin in its lugs, which CalculiX solves on its own mesh of `unknowns`;
-    `theirs` is then its stress at the point of our maximum. limit: where a solid gave a limit load.
+    `theirs` is then its stress at the point of our maximum.
     """
 
     pin: str
@@ -113,7 +87,6 @@ class Opinion:
     theirs: Stress | None = None
     failure: str = ""
     contact: ContactOpinion | None = None
-    limit: LimitOpinion | None = None
 
     @property
     def deviation(self) -> float | None:
@@ -131,8 +104,7 @@ class Opinion:
     def complaint(self) -> str:
         """What is beyond its limit, in words; empty when they agree."""
         said = self._contact() if self.contact else self._same_mesh()
-        own = self.failure or "; ".join(said)
-        return "; ".join(x for x in (own, self.limit.complaint if self.limit else "") if x)
+        return self.failure or "; ".join(said)
 
     def _same_mesh(self) -> Iterator[str]:
         for what, value, limit in (

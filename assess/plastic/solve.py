@@ -11,18 +11,23 @@ import time
 from dataclasses import replace
 from typing import Literal
 
+import numpy as np
+from skfem import ElementHexS2
+
 from assess.plastic.budget import Budget, OutOfTimeError
 from assess.plastic.flow import FlowRule
-from assess.plastic.flow_field import flow_field
 from assess.plastic.hinge import HINGE_ERROR, BeamBounds, beam_bounds
 from assess.plastic.limit_load import EQUILIBRIUM_ALLOWANCE, MeshBracket, bracket, limit_on_mesh
-from assess.plastic.pin_body import PinBody, acting_at, pin_body, plane_of, refine
-from assess.plastic.records import LimitLoad, PlasticMesh
+from assess.plastic.path import State
+from assess.plastic.pin_body import PinBody, acting_at, pin_body, plane_of, reading, refine
+from assess.plastic.records import FlowField, LimitLoad, PlasticMesh
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
+from fea.core.voigt import von_mises
 from geometry import Pin, PinLike
-from geometry.mesh.hexahedra import HexSize
+from geometry.mesh.hexahedra import HexSize, twenty
+from pinbase.arrays import Floats
 
 Rung = Literal["auto", "solid"]
 
@@ -199,3 +204,27 @@ def _of_solid(
         curve=finest.curve,
         note=note,
     )
+
+
+def flow_field(made: PinBody, state: State, angle: float) -> FlowField:
+    """How a pin flows at its limit load, at the nodes of its mesh: a state in axes that are turned
+    by an angle (rad) from the pin's.
+    """
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return FlowField(
+        points=made.mesh.nodes @ turn,
+        cells=made.mesh.elements[:, twenty()],
+        displacement=made.body.displacement(state.unknowns) @ turn,
+        plastic_strain=np.maximum(_at_nodes(made, state.flow.equivalent), 0.0),
+        von_mises=_at_nodes(made, von_mises(state.flow.stress)),
+        factor=state.factor,
+    )
+
+
+def _at_nodes(made: PinBody, values: Floats) -> Floats:
+    """(N,) means over the elements of what their values (M, 8) extrapolate to."""
+    each = values @ reading(np.asarray(ElementHexS2().doflocs)).T
+    numbers = made.mesh.elements.ravel()
+    total = np.bincount(numbers, each.ravel(), minlength=len(made.mesh.nodes))
+    return np.asarray(total / np.bincount(numbers, minlength=len(made.mesh.nodes)))

@@ -89,7 +89,7 @@ class BeamCheck:
     surface and on the axis (a bore of the diameter axis_bore).
 
     expected_offset*: by how much exact elasticity is above beam theory while the load acts, away
-    from the ends (assess.opinion.michell), Pa.
+    from the ends (assess.opinion.cantilever), Pa.
     """
 
     pin: str

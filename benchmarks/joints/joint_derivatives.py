@@ -33,7 +33,7 @@ from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin
-from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
+from geometry.mesh.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import MeridianMesh
 from geometry.shape.dimensions import Dimension, dimensions
 from pinbase.arrays import Floats

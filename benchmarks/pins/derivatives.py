@@ -24,7 +24,7 @@ from fea.harmonic.model import HarmonicModel
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 from geometry import Pin
-from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
+from geometry.mesh.outline_motion import OutlineNodes, Reach
 from geometry.shape.dimensions import Dimension, dimensions
 from pinbase.arrays import Floats
 

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from assess.opinion.calculix import installed
-from assess.opinion.calculix_plastic import factor_reached
 from assess.plastic.body import Elements, FlowingBody, untied
 from assess.plastic.flow import FlowRule
 from assess.plastic.limit_load import MeshBracket, limit_on_mesh
 from assess.plastic.mechanism import RefinedElements
 from assess.plastic.pin_body import PinBody, acting_at, pin_body, refine
+from benchmarks.pins.calculix_plastic import factor_reached
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads

@@ -18,10 +18,9 @@ from scipy.special import ndtr
 from scipy.stats import binom, chi2, norm
 
 from pinstress.explore.reliability.assess import first_order, starts_of, weighted_sample
-from pinstress.explore.reliability.designs import Answers, SolvedDesigns
+from pinstress.explore.reliability.designs import Answers, Marginal, NormalSpace, SolvedDesigns
 from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.explore.reliability.sampling import plain_draws
-from pinstress.explore.reliability.space import Marginal, NormalSpace
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import Risk
 

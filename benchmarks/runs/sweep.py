@@ -150,7 +150,6 @@ def _kinds() -> str:
     for name, study in (
         ("every shape another", _study(MANY)),
         ('the same, goal = "decide"', _asking(_study(MANY), 'goal = "decide"')),
-        ('the same, meshes = "own"', _asking(_study(MANY), 'meshes = "own"')),
         ("a grid of 5 diameters, 50 forces, 40 strengths", _study(0, 5)),
     ):
         designs = len(planned(study).values)

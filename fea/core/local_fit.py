@@ -36,20 +36,19 @@ def nodal_extrapolation(elements: Ints, samples: Floats, singularities: Floats) 
     return sp.csr_matrix((value, (row, column)), shape=(len(count), q * m))
 
 
-def continuation(samples: Floats, points: Floats, near: Ints | None = None) -> sp.csr_matrix:
+def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
     """Matrix (P, S) that takes values at samples (S, 2) to points (P, 2) by local least squares.
 
     A quadratic polynomial is fitted to the nearest samples of each point. Their weights fall with
     distance to nothing for the last one, so that it does not matter which of several equally
     distant samples that is.
-    near: (P, C) which samples these are; those of `nearest` by default.
 
     Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
     elements round a node instead.
     """
     if not len(points):
         return sp.csr_matrix((0, len(samples)))
-    near = nearest(samples, points) if near is None else near
+    near = nearest(samples, points)
     offsets = np.empty((2, *near.shape))
     for out, sample, point in zip(offsets, samples.T, points.T, strict=True):
         np.subtract(sample.take(near), point[:, None], out=out)

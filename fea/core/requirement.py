@@ -25,8 +25,8 @@ class Requirement:
     to the tolerance, "decide" only whether the `required` safety factor is met. distance: excluded
     around singularities, as a fraction of the local diameter. meshes: maximum number of meshes, by
     default that of the model. memory: limit for a mesh in MB, by default most of the free memory.
-    near: whether sections have the meshes of near shapes with their nodes moved. joints: how lugs
-    hold a pin. cells: of contact with lugs, these alone; None: until they are fine enough.
+    joints: how lugs hold a pin. cells: of contact with lugs, these alone; None: until they are fine
+    enough.
 
     A support adds what it knows. elsewhere: by case, stress (Pa) that sections have: a surface that
     surely has less needs no finer mesh. besides: by case, the error, relative, that comes to that
@@ -40,7 +40,6 @@ class Requirement:
     distance: float = 0.1
     meshes: int | None = None
     memory: float | None = None
-    near: bool = False
     joints: Joints = "auto"
     cells: Literal["rough", "usual"] | None = None
     elsewhere: Mapping[str, float] = field(default_factory=dict)

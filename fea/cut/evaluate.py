@@ -241,9 +241,8 @@ class LocalSolids:
         cut: CutPin,
         bands: tuple[tuple[float, float], ...] = (),
         first: FirstMesh | None = None,
-        near: bool = False,
     ) -> None:
-        self._cut, self._bands, self._first, self._near = cut, bands, first, near
+        self._cut, self._bands, self._first = cut, bands, first
 
     def solve(self, problem: MeshProblem, level: int, before: MeshBefore | None = None) -> CutMesh:
         """As of every model. Local solids grow where their ends or each other disturb the maximum
@@ -263,7 +262,7 @@ class LocalSolids:
             elif level > 1 and any(r.truncated > most * r.maximum for r in results):
                 reach *= REACH_FACTOR
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
-        posed = section_problem(problem, self._first, self._near)
+        posed = section_problem(problem, self._first)
         solution = cut_solution(
             posed, local, level, results, self._bands, problem.distance, kept=kept
         )

@@ -17,9 +17,8 @@ Source: Zienkiewicz & Taylor, The Finite Element Method, ch. on semi-analytical 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -107,17 +106,7 @@ class Section:
     @cached_property
     def pattern(self) -> Pattern:
         """The pairs of nodes that share an element."""
-        pattern: Pattern = self.shared("pattern", lambda: Pattern(self.elements, len(self.nodes)))
-        return pattern
-
-    def shared(self, what: str, make: Callable[[], Any]) -> Any:
-        """A quantity that depends on the elements alone, for all meshes that share them."""
-        shared = self.section.shared
-        if shared is None:
-            return make()
-        if what not in shared:
-            shared[what] = make()
-        return shared[what]
+        return Pattern(self.elements, len(self.nodes))
 
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
         """The stiffness matrix of harmonic n, for displacements as above and around the whole axis.

@@ -27,7 +27,6 @@ from fea.harmonic.superposition import Circumference, Crest
 from fea.singular.probes import rim
 from fea.singular.singularities import smooth_edges
 from geometry import ArgumentError, Pin
-from geometry.mesh.moved.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats, Mask
@@ -82,8 +81,7 @@ class HarmonicSolution:
 class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
     singularities of any of these. first: where the first mesh is kept for other loads. besides:
-    unit loads that are solved, too. near: whether meshes are those of a near shape with their nodes
-    moved (geometry.mesh.moved.near_mesh).
+    unit loads that are solved, too.
     """
 
     pin: Pin
@@ -93,7 +91,6 @@ class SectionProblem:
     singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
     besides: tuple[UnitLoad, ...] = ()
-    near: bool = False
 
 
 def harmonic_solution(
@@ -139,8 +136,7 @@ def harmonic_solution(
         read = np.concatenate([elsewhere, _rims(pin, singularities), just_beneath(pin, rings)])
 
         def model() -> HarmonicModel:
-            made = near_mesh if problem.near else meridian_mesh
-            section = made(pin, size, places, grades, quiet)
+            section = meridian_mesh(pin, size, places, grades, quiet)
             return HarmonicModel(pin, section, material, problem.clamps)
 
         elastic = material.youngs_modulus, material.poisson_ratio, material.density
@@ -291,35 +287,31 @@ class HarmonicMesh:
 
 class Harmonic:
     """Any body of revolution (fea.core.model.Model). first: what was solved on the first mesh
-    before. pressed: whether pressures of contact act; near: as of SectionProblem.
+    before. pressed: whether pressures of contact act.
     """
 
     name = "harmonic"
 
-    def __init__(
-        self, first: FirstMesh | None = None, pressed: bool = False, near: bool = False
-    ) -> None:
+    def __init__(self, first: FirstMesh | None = None, pressed: bool = False) -> None:
         self.meshes = PRESSED_SECTION_MESHES if pressed else SECTION_MESHES
-        self._first, self._near = first or FirstMesh(), near
+        self._first = first or FirstMesh()
 
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> HarmonicMesh:
         """As of every model."""
-        posed = section_problem(problem, self._first, self._near)
+        posed = section_problem(problem, self._first)
         results = () if before is None else before.results
         return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
 
 
-def section_problem(
-    problem: MeshProblem, first: FirstMesh | None = None, near: bool = False
-) -> SectionProblem:
+def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> SectionProblem:
     """A problem as its sections are solved. Raises: ArgumentError for what is not turned."""
     pin = problem.pin
     if not isinstance(pin, Pin):
         raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
     return SectionProblem(
-        pin, problem.material, problem.clamps, problem.cases, problem.zones, first, near=near
+        pin, problem.material, problem.clamps, problem.cases, problem.zones, first
     )
 
 

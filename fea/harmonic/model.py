@@ -7,7 +7,7 @@ directions, share it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -61,7 +61,7 @@ class HarmonicBody:
         free = np.ones(K.shape[0])
         free[fixed] = 0.0
         if self._system is None:
-            self._system = self.space.shared("system", lambda: ConstrainedSystem(K))
+            self._system = ConstrainedSystem(K)
         if moved is None:
             return self._system.solve(K, free, forces)
         return self._system.solve(K, free, forces - K @ moved) + moved
@@ -268,7 +268,7 @@ class HarmonicModel(HarmonicBody):
             read.triangles,
             unread(read.jumps, read.points, read.skin),
             read.at_points(moved.applied),
-            replace(self.space.section, shared=None),
+            self.space.section,
         )
 
     def _shifted(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from fea.core.local_fit import continuation, nearest
+from fea.core.local_fit import continuation
 from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline, shapes
@@ -89,23 +89,6 @@ class Reading:
         return np.asarray(self.rows[self.space.elements[:, :3]])
 
 
-def _near(space: Section, nodes: Ints, inside: Floats) -> Ints:
-    """Samples near some nodes and near points inside.
-
-    Where other meshes have the same elements, the samples near these nodes on the first of these
-    meshes.
-    """
-    shared = space.section.shared
-    if shared is None:
-        return nearest(space.samples, np.concatenate([space.nodes[nodes], inside]))
-
-    def once() -> Ints:
-        still = Section(shared["still"])
-        return nearest(still.samples, still.nodes)
-
-    return np.concatenate([space.shared("near", once)[nodes], nearest(space.samples, inside)])
-
-
 def points_of_nodes(outline: Outline, count: int) -> Ints:
     """The point of a reading at each of `count` nodes, (N,)."""
     row = np.zeros(count, dtype=np.int64)
@@ -155,7 +138,7 @@ def reading(
     # displacement.
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
     targets = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
-    continued = continuation(space.samples, targets, _near(space, np.append(inner, rough), inside))
+    continued = continuation(space.samples, targets)
     return Reading(
         space,
         outline,

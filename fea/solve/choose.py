@@ -170,7 +170,7 @@ def _beam_instead(at: Attempt) -> dict[str, Solution]:
 
 def _harmonic(at: Attempt) -> dict[str, Solution]:
     pressed = any(at.held.start(case.case).pressed is not None for case in at.problem.cases)
-    return at.refined(Harmonic(at.problem.first, pressed, at.requirement.near))
+    return at.refined(Harmonic(at.problem.first, pressed))
 
 
 def _local(at: Attempt) -> dict[str, Solution]:
@@ -200,7 +200,7 @@ def _local_solids(at: Attempt) -> LocalSolids:
     why = refusal(whole, clamps, loaded) or corner_refusal(whole, zones)
     if why is not None:
         raise Refused(why)
-    return LocalSolids(whole, loaded_bands(whole, loaded), problem.first, at.requirement.near)
+    return LocalSolids(whole, loaded_bands(whole, loaded), problem.first)
 
 
 def _contact(at: Attempt) -> dict[str, Solution]:
@@ -213,7 +213,7 @@ def _contact(at: Attempt) -> dict[str, Solution]:
         return {}
     problem = replace(at.problem, cases=ready, first=held.model.first)
     at = replace(at, problem=problem, requirement=held.of_meshes(requirement))
-    model: Harmonic | LocalSolids = Harmonic(problem.first, True, requirement.near)
+    model: Harmonic | LocalSolids = Harmonic(problem.first, True)
     why = CONTACT_REASON
     if isinstance(held.pin, RingedCutPin):
         why = CUT_CONTACT_REASON

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
+import signal
 import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from geometry.mesh.signals_kept import signals_kept
 from pinbase.errors import CodedError
+from pinbase.platform import portable
 
 # gmsh has one state for all threads of a process. So has the C library's rand(): whatever else
 # draws from it takes this lock, too, or meshes would differ from run to run.
 GMSH_LOCK = threading.RLock()
 
 _open = False
+
+
+SIGNAL_NAMES = "SIGFPE", "SIGHUP", "SIGINT", "SIGPIPE", "SIGSEGV", "SIGTERM"
+SIGNALS = tuple(getattr(signal, name) for name in SIGNAL_NAMES if hasattr(signal, name))
+SIGACTION_BYTES = 256  # bytes; more than any C library's struct sigaction has
 
 
 class MeshError(CodedError, ArithmeticError):
@@ -97,3 +104,37 @@ def silence() -> Iterator[None]:
         os.dup2(stdout, 1)
         os.close(stdout)
         os.close(null)
+
+
+@contextmanager
+def signals_kept() -> Iterator[None]:
+    """Signals are handled afterwards as before."""
+    with _by_python() if portable() else _by_sigaction():
+        yield
+
+
+@contextmanager
+def _by_sigaction() -> Iterator[None]:
+    """In any thread, and also handlers that Python does not know (faulthandler's)."""
+    libc = ctypes.CDLL(None)
+    kept = {each: ctypes.create_string_buffer(SIGACTION_BYTES) for each in SIGNALS}
+    for each, handler in kept.items():
+        libc.sigaction(each, None, handler)
+    try:
+        yield
+    finally:
+        for each, handler in kept.items():
+            libc.sigaction(each, handler, None)
+
+
+@contextmanager
+def _by_python() -> Iterator[None]:
+    """In the main thread, the only one in which Python sets handlers."""
+    kept = {each: signal.getsignal(each) for each in SIGNALS}
+    try:
+        yield
+    finally:
+        if threading.current_thread() is threading.main_thread():
+            for each, handler in kept.items():
+                if handler is not None:
+                    signal.signal(each, handler)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -36,15 +36,7 @@ __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 TRIANGLE3, LINE2 = 2, 1  # gmsh's element types
 MAX_TRIANGLES = 2e5
 UNBOUNDED_LENGTH = 1e9  # longer than any pin in a unit in which its smallest diameter is 1
-MIN_JACOBIAN_RATIO = 0.1  # min / max det J, which every element must exceed
 MIN_FILLET_RATIO = 1e-8  # over the adjacent diameter: gmsh hangs at 1e-13
-
-
-class SharedByMeshes(dict[str, Any]):
-    """Cached results, by name, that depend only on the node numbers of a mesh.
-
-    `still` is the mesh whose elements the others have, with moved nodes.
-    """
 
 
 @dataclass(frozen=True)
@@ -55,14 +47,12 @@ class MeridianMesh:
     elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02.
     edges: by surface name, (E, 3) node numbers of the edges there, in no order: ends, then middle.
     axis: numbers of the nodes at r = 0.
-    shared: results shared by all meshes with the same elements, edges and axis.
     """
 
     nodes: Floats
     elements: Ints
     edges: dict[str, Ints]
     axis: Ints
-    shared: SharedByMeshes | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def of(cls, mesh: MeshTri2, edges: dict[str, Ints], axis: Ints) -> MeridianMesh:
@@ -70,14 +60,6 @@ class MeridianMesh:
         nodes = np.ascontiguousarray(mesh.doflocs.T)
         elements = np.ascontiguousarray(mesh.dofs.element_dofs.T).astype(np.int64)
         return cls(nodes, elements, edges, axis)
-
-    def distortion(self) -> Floats:
-        """Smallest over largest det J of every element, (M,), at its six nodes."""
-        x = self.nodes[self.elements].swapaxes(1, 2) @ _NODE_SLOPES
-        r, z = x[:, 0], x[:, 1]
-        det = r[:, :6] * z[:, 6:] - r[:, 6:] * z[:, :6]
-        det *= np.sign(det[:, :1])
-        return np.asarray(det.min(axis=1) / det.max(axis=1))
 
     @cached_property
     def mesh(self) -> MeshTri2:
@@ -99,10 +81,6 @@ def triangle_shapes(at: Floats) -> tuple[Floats, Floats]:
     value = np.concatenate([corner * (2.0 * corner - 1.0), 4.0 * corner[first] * corner[second]])
     sides = slope[:, first] * corner[second] + corner[first] * slope[:, second]
     return value, np.concatenate([slope * (4.0 * corner - 1.0), 4.0 * sides], axis=1)
-
-
-_AT_NODES = np.array([(0, 0), (1, 0), (0, 1), (0.5, 0), (0.5, 0.5), (0, 0.5)]).T
-_NODE_SLOPES = triangle_shapes(_AT_NODES)[1].swapaxes(0, 1).reshape(6, 12)  # by x, then by y
 
 
 def meridian_mesh(

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from assess.opinion.calculix_compare import second_opinions
 from assess.opinion.calculix_in_lugs import PinInLugs, opinion_in_lugs
-from assess.opinion.calculix_plastic import limit_opinion
-from assess.opinion.opinions import LimitOpinion, Opinion
-from fea.core.peak import Maximum
-from fea.support.contact.solve_joint import ContactModel
+from assess.opinion.opinions import Opinion
 from geometry import Pin
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
@@ -19,26 +14,7 @@ from pinstress.study.model.tasks import Task
 
 def ask_calculix(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
     """Solve the rows of a task once more; for the task's own process."""
-    limits = {
-        peak.case: _limit(task, peak, tell)
-        for peak, limit in zip(solved.peaks, solved.limits, strict=False)  # none of a failed task
-        if limit is not None and limit.method == "solid"
-    }
-    found = _in_lugs(task, solved, tell) if task.lugs else _alone(plan, task, solved, tell)
-    return tuple(replace(opinion, limit=limits.get(opinion.case)) for opinion in found)
-
-
-def _limit(task: Task, peak: Maximum, tell: Tell) -> LimitOpinion:
-    """Of a limit load; contact with lugs is found again for it."""
-    tell(f"pin {task.pin.name}, {peak.case}: CalculiX, limit load")
-    pin, loads = task.pin, peak.governing
-    assert isinstance(pin, Pin)
-    assert loads is not None
-    if task.lugs:
-        contact = ContactModel(pin, task.material, task.lugs).solve(loads)
-        pin, loads = contact.pin, contact.loads
-    clamps = tuple(pin.surface(name) for name in task.clamps)
-    return limit_opinion(pin, task.material, clamps, loads)
+    return _in_lugs(task, solved, tell) if task.lugs else _alone(plan, task, solved, tell)
 
 
 def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:

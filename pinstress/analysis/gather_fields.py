@@ -108,9 +108,8 @@ def at_samples(solution: Solution, case: CaseLoads) -> Solution:
 def _still(
     task: Task, answer: StressField, loads: PinLoads, instant: int, time: float
 ) -> plain.Still:
-    shown = answer.picture(
-        loads.at(np.array([instant])), 0
-    )  # whose envelope is then of this instant only
+    # Whose envelope is then of this instant only
+    shown = answer.picture(loads.at(np.array([instant])), 0)
     assert shown is not None
     return plain.Still(
         time,

@@ -147,5 +147,4 @@ def requirement_of(
         table.required_safety_factor,
         table.excluded_distance,
         memory=allowed_memory(require_positive("memory_limit", memory, endless=True)),
-        near=study.meshes == "moved",
     )

@@ -24,7 +24,7 @@ from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.checked import checked
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
-from pinstress.analysis.cache.store import Cache
+from pinstress.analysis.cache import Cache
 from pinstress.analysis.gather import gather
 from pinstress.analysis.gather.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan

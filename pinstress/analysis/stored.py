@@ -70,7 +70,7 @@ class Entry:
 
 def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
     """All that the answer to a task depends on, but for versions and memory, as what
-    pinstress.analysis.cache.serialise takes. seconds: of an answer without some limit load, which
+    pinstress.analysis.serialise takes. seconds: of an answer without some limit load, which
     would have taken longer.
     """
     study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
@@ -99,7 +99,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
 
 
 def shape_of(pin: PinLike) -> object:
-    """A pin's shape as what pinstress.analysis.cache.serialise takes, with the content of its
+    """A pin's shape as what pinstress.analysis.serialise takes, with the content of its
     file.
     """
     if isinstance(pin, Pin | CutPin):

@@ -12,21 +12,17 @@ from fea.solve.surface_fields import UnitSurface
 from geometry.shape.chords import needed
 from reports.data.surface import Mask, SurfaceCase
 
-STRESS_TOLERANCE = (
-    8e-3  # of the stress at a point, or of MIN_STRESS_SHARE of the largest one at the instant
-)
+# Of the stress at a point, or of MIN_STRESS_SHARE of the largest one at the instant
+STRESS_TOLERANCE = 8e-3
 MIN_STRESS_SHARE = 0.1
 SAMPLE_ANGLES = 16
-STRESS_COMPONENTS, DISPLACEMENT_COMPONENTS = (
-    slice(0, 5),
-    slice(5, 8),
-)  # of the eight numbers of a surface
+# Of the eight numbers of a surface
+STRESS_COMPONENTS, DISPLACEMENT_COMPONENTS = slice(0, 5), slice(5, 8)
 SAMPLE_INSTANTS = 8  # of a motion, about, besides the governing one
 DISPLACEMENT_TOLERANCE = 5e-3  # of the largest displacement
 OUTLINE_TOLERANCE = 2e-4  # of the length
-MIN_UNIT_LOAD_SHARE = (
-    1e-2  # of the largest stress of a case: what a unit load must add at some instant
-)
+# Of the largest stress of a case: what a unit load must add at some instant
+MIN_UNIT_LOAD_SHARE = 1e-2
 GOVERNING_WEIGHT = 5.0
 MAX_CORNER_COSINE = 0.94  # cosine of the turn at a corner, at most
 COINCIDENCE_DISTANCE = 1e-9  # of the length: points that are one

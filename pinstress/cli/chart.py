@@ -87,7 +87,7 @@ def _report_missed(found: Chart) -> int:
             f"exceeds the tolerance of {tolerance}.", err=True,
         )  # fmt: skip
         return 1
-    errors = [p.error for p in found.points if p.error is not None and p.bracket is None]
+    errors = [p.error for p in found.points if p.error is not None]
     if not any(error <= found.tolerance for error in errors):
         click.echo(f"Not converged: no mesh is within the tolerance of {tolerance}.", err=True)
         return 1

@@ -14,7 +14,7 @@ import click
 from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
-from pinstress.cli.designs.commands import reliability, sweep
+from pinstress.cli.design_commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,

@@ -262,8 +262,8 @@ def size(
         raise InputError(f"--step: {error}", code="not-a-length") from None
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
-    from pinstress.cli.sizing.least_weight import Wishes, lighten_and_write, require_aim
-    from pinstress.cli.sizing.size import require_wish, size_and_write
+    from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
+    from pinstress.cli.size import require_wish, size_and_write
 
     asked = Wishes(**wishes)
     if asked.given and not least_weight:

@@ -15,7 +15,7 @@ from rich.console import Console
 
 from pinbase.platform import portable
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
-from pinstress.analysis.cache.store import user_cache
+from pinstress.analysis.cache import user_cache
 from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import solve_tasks
@@ -47,12 +47,8 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
-RUN_MODULES = (
-    "gmsh",
-    "pymetis",
-    "cvxopt.cholmod",
-    "vtkmodules.vtkIOXML",
-)  # what fea and reports import on demand
+# What fea and reports import on demand
+RUN_MODULES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 CHART_NAME = "chart"
-LIMIT_LOAD_MODELS = "hinges", "elastic-plastic"  # models of the limit load
 
 
 @dataclass(frozen=True)
@@ -13,8 +12,7 @@ class ChartPoint:
     """One mesh of one element of a model. dofs: unknowns, 0 of a beam. seconds: median wall time
     from the mesh to the maximum over the motion. memory: the most it took above the process with
     its libraries loaded, MB. error: of the maximum relative to the reference. chosen: whether
-    `auto` ends on it. All are None where it `failed`, for that reason. bracket: of a limit load,
-    whose error is half of its width over its middle.
+    `auto` ends on it. All are None where it `failed`, for that reason.
     """
 
     model: str
@@ -26,7 +24,6 @@ class ChartPoint:
     error: float | None = None
     chosen: bool = False
     failed: str = ""
-    bracket: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

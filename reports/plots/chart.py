@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from math import ceil, floor, log10
 
-from reports.data.chart import CHART_NAME, LIMIT_LOAD_MODELS, Chart, ChartPoint
+from reports.data.chart import CHART_NAME, Chart, ChartPoint
 from reports.plots.spec import Plot, Spec, clipped, headed, level, rows
 from reports.text.chart_summary import curve_name, error, failures, percent, reference_line
 
@@ -22,7 +22,7 @@ def chart_plot(chart: Chart) -> Plot:
     floor = max(chart.reference.error, 1e-9)  # of the reference, positive
     data = [
         _row(curve_name(model, element), point, floor)
-        for (model, element), curve in _lines(chart).items()
+        for (model, element), curve in chart.curves.items()
         for point in curve
     ]
     errors = [row["error"] for row in data]
@@ -42,14 +42,6 @@ def chart_plot(chart: Chart) -> Plot:
     return Plot(CHART_NAME, title, spec)
 
 
-def _lines(chart: Chart) -> dict[tuple[str, str], list[ChartPoint]]:
-    """Its curves; the meshes of a limit load are one."""
-    out: dict[tuple[str, str], list[ChartPoint]] = {}
-    for (model, element), curve in chart.curves.items():
-        out.setdefault((model, "" if model in LIMIT_LOAD_MODELS else element), []).extend(curve)
-    return out
-
-
 def _row(of: str, point: ChartPoint, floor: float) -> Spec:
     return {
         "of": of, "seconds": point.seconds or 0.0, "memory": point.memory or 0.0,
@@ -63,7 +55,7 @@ def _panel(across: str, heading: str, limits: list[float], chart: Chart, names: 
     x = {"field": across, "type": "quantitative", "title": heading,
          "scale": {"type": "log", "nice": False, "padding": 20},
          "axis": {"tickCount": 4, "grid": False}}  # fmt: skip
-    y = {"field": "error", "type": "quantitative", "title": _errors(chart),
+    y = {"field": "error", "type": "quantitative", "title": "error of the maximum von Mises stress",
          "scale": {"type": "log", "domain": limits, "nice": False},
          "axis": {"format": "~%", "values": _decades(*limits)}}  # fmt: skip
     key = {"field": "of", "type": "nominal", "title": None, "scale": {"domain": names},
@@ -93,12 +85,6 @@ def _panel(across: str, heading: str, limits: list[float], chart: Chart, names: 
     }
     tolerance = level(chart.tolerance, f"tolerance {percent(chart.tolerance)}")
     return {"width": 300, "height": 240, "layer": [unclear, tolerance, line, ring, auto]}
-
-
-def _errors(chart: Chart) -> list[str]:
-    """Of what, a line each."""
-    limits = ["limit load: half of its bracket"] if any(p.bracket for p in chart.points) else []
-    return ["error of the maximum von Mises stress", *limits]
 
 
 def _decades(low: float, high: float) -> list[float]:

@@ -9,7 +9,7 @@ from reports.format.files.csv import write_csv
 
 COLUMNS = (
     "model", "element", "dofs", "seconds", "peak_memory_mb", "max_von_mises", "relative_error",
-    "within_tolerance", "chosen_by_auto", "failed", "load_factor_lower", "load_factor_upper",
+    "within_tolerance", "chosen_by_auto", "failed",
 )  # fmt: skip
 
 
@@ -22,7 +22,6 @@ def write_chart_csv(chart: Chart, directory: Path) -> None:
             (
                 p.model, p.element, p.dofs, p.seconds, p.memory, p.max_von_mises, p.error,
                 None if p.error is None else p.error <= chart.tolerance, p.chosen, p.failed,
-                *(p.bracket or (None, None)),
             )
             for p in chart.points
         ),

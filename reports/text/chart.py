@@ -50,7 +50,7 @@ def _cells(p: ChartPoint) -> list[str]:
         f"{p.dofs:,}" if p.dofs else DASH,
         seconds(p.seconds),
         engineering(p.memory, 2),
-        DASH if p.bracket else engineering(p.max_von_mises),
+        engineering(p.max_von_mises),
         percent(error(p)),
         "auto" if p.chosen else "",
     ]

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.data.chart import LIMIT_LOAD_MODELS, Chart, ChartPoint
+from reports.data.chart import Chart, ChartPoint
 from reports.format.numbers import engineering, short
 
 MIN_CHART_ERROR = 1e-12  # replaces an error of zero
-MODELS_WITHOUT_MESH_ERROR = "foundation", "prescribed"  # whose error is not that of a mesh
+FOUNDATION_MODEL = "foundation"  # whose error is not that of a mesh
 HARMONIC_MODEL_NAMES = {
     "harmonic": "the harmonic model",
     "harmonic+local": "the harmonic model with local solids",
@@ -19,8 +19,6 @@ HARMONIC_MODEL_NAMES = {
 SOLID_MODEL_NAMES = {"solid": "the solid model", "calculix": "CalculiX"}
 SHORT_MODEL_NAMES = {
     "foundation": "foundation",
-    "hinges": "limit load: hinges",
-    "elastic-plastic": "limit load: elastic-plastic",
     "calculix": "CalculiX",
     "Timoshenko beam": "beam",
     "quadratic triangles": "harmonic",
@@ -80,9 +78,9 @@ def cost(curve: Curve, wanted: float) -> Cost | None:
 
 def summary(chart: Chart) -> str:
     """The sentences under the table: cheapest model within the tolerance, cost of equal errors, and
-    errors of models of another form.
+    the error of the beam on foundations.
     """
-    said = (_cheapest(chart), _ratio(chart), _another_form(chart), _limit_load(chart))
+    said = (_cheapest(chart), _ratio(chart), _foundation_error(chart))
     return " ".join(text for text in said if text)
 
 
@@ -91,7 +89,7 @@ def _cheapest(chart: Chart) -> str:
     found = [
         staying(curve, chart.tolerance)
         for (model, _), curve in chart.curves.items()
-        if model not in (*MODELS_WITHOUT_MESH_ERROR, *LIMIT_LOAD_MODELS)
+        if model != FOUNDATION_MODEL
     ]
     first = [within[0] for within in found if within]
     if not first:
@@ -108,28 +106,11 @@ def _cheapest(chart: Chart) -> str:
     return text
 
 
-def _another_form(chart: Chart) -> str:
-    """Errors that finer meshes do not reduce."""
-    found = [
-        f"{model} ({element}) {percent(error(curve[-1]))}"
-        for (model, element), curve in chart.curves.items()
-        if model in MODELS_WITHOUT_MESH_ERROR
-    ]
-    if not found:
-        return ""
-    return f"Errors of simpler models of the joint, on their finest meshes: {', '.join(found)}."
-
-
-def _limit_load(chart: Chart) -> str:
-    """The bracket of the model on which a run ends."""
-    found = [p for p in chart.points if p.bracket and p.chosen]
-    if not found:
-        return ""
-    (best,) = found
-    lower, upper = (engineering(x, 4) for x in best.bracket or ())
-    return (
-        f"Limit load: {lower} to {upper} times the loads by {label(best)} in "
-        f"{seconds(best.seconds)}; its error is half of the bracket's width."
+def _foundation_error(chart: Chart) -> str:
+    """The error of the beam on foundations, which finer meshes do not reduce."""
+    _, beams = _curves(chart, {FOUNDATION_MODEL: ""})
+    return "".join(
+        f"Error of the beam on foundations: {percent(error(beam[-1]))}." for beam in beams.values()
     )
 
 
@@ -195,7 +176,7 @@ def curve_name(model: str, element: str) -> str:
 
 def label(point: ChartPoint) -> str:
     """A point as text."""
-    if point.model in ("beam", "foundation", "hinges"):
+    if point.model in ("beam", FOUNDATION_MODEL):
         return point.model
     dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
     return f"{point.model} ({point.element}{dofs})"

@@ -7,13 +7,11 @@ from typing import TYPE_CHECKING
 
 from assess.opinion.opinions import (
     MAX_DISPLACEMENT_DIFFERENCE,
-    MAX_LIMIT_LOAD_DIFFERENCE,
     MAX_LOAD_DIFFERENCE,
     MAX_MAXIMUM_DIFFERENCE,
     MAX_MOMENT_DIFFERENCE,
     MAX_STRESS_DIFFERENCE,
     ContactOpinion,
-    LimitOpinion,
     Opinion,
 )
 from reports.data.results import Results, Units
@@ -38,11 +36,9 @@ def outcome_of(opinion: Opinion) -> str:
 
 def sentences(opinion: Opinion, units: Units) -> list[str]:
     """What CalculiX found for a row, and how it compares."""
-    limit = _limit(opinion.limit)
     if opinion.failure:
-        return [f"Not compared with CalculiX: {opinion.failure}.", *limit]
+        return [f"Not compared with CalculiX: {opinion.failure}."]
     said = _contact(opinion, units) if opinion.contact else [_same_mesh(opinion, units)]
-    said += limit
     if opinion.complaint:
         return [*said, f"Beyond the limits: {opinion.complaint}."]
     return said
@@ -85,17 +81,6 @@ def _contact(o: Opinion, units: Units) -> list[str]:
     return said
 
 
-def _limit(limit: LimitOpinion | None) -> list[str]:
-    """What became of a limit load."""
-    if limit is None or limit.theirs is None:
-        return [] if limit is None else [f"CalculiX has no {limit.failure}."]
-    return [
-        f"Past yield, on our coarsest mesh of the limit load ({limit.unknowns:,} unknowns), "
-        f"CalculiX carries {engineering(limit.theirs, 4)} times the loads, we "
-        f"{engineering(limit.ours, 4)} ({_signed(limit.difference)})."
-    ]
-
-
 def _meshes(o: Opinion, c: ContactOpinion) -> str:
     """Whether CalculiX's mesh explains the difference in stress."""
     change, error, difference = abs(c.stress_change), o.own_error, abs(o.deviation or 0.0)
@@ -126,9 +111,6 @@ def print_second_opinion(results: Results, console: Console) -> None:
                 table.add_row(Text(o.pin, "bold"), Text(o.case), *cells(o), _word(o))
             console.print()
             console.print(table)
-    for o in opinions:
-        for line in _limit(o.limit):
-            console.print(Text(f"Pin {o.pin}, {o.case}: {line}"))
     console.print(Text(summary(others, pressed)))
 
 
@@ -222,6 +204,4 @@ def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
             f"the error; "
             f"{MAX_LOAD_DIFFERENCE:.0%} of the load of a lug elsewhere along it."
         )
-    if any(o.limit for o in every):
-        text += f" Limit for limit loads on the same mesh: {MAX_LIMIT_LOAD_DIFFERENCE:.0%}."
     return text

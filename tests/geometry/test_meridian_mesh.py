@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from skfem import Basis, ElementTriP2
 
 from geometry import Arc, Edge, Pin, Segment, meridian
+from geometry.mesh.gmsh_tetrahedra import MIN_JACOBIAN_RATIO
 from geometry.mesh.section_mesh import (
-    MIN_JACOBIAN_RATIO,
     MeridianMesh,
     SectionSize,
     Spot,

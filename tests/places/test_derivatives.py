@@ -36,7 +36,7 @@ from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
-from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
+from geometry.mesh.outline_motion import DIFFERENCE_STEPS
 from geometry.shape.dimensions import dimensions
 from pinbase.arrays import Floats
 from tests.support.each import sampled

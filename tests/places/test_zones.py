@@ -24,7 +24,7 @@ from fea.solid.sharp_edges import SharpEdges
 from fea.solve.solve import solve_pin
 from fea.support.support import Solution
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
-from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
+from geometry.mesh.outline_motion import DIFFERENCE_STEPS
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot
 from geometry.shape.dimensions import dimensions

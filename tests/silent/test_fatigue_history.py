@@ -18,12 +18,12 @@ import pytest
 
 from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
 from assess.fatigue.critical_plane import _counted, findley_k, worst_plane
+from assess.fatigue.critical_points import signed_von_mises
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from assess.fatigue.flight import Flight, flight
 from assess.fatigue.many_planes import on_planes
 from assess.fatigue.proportional import SIGNED_SHEAR_RULE
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
-from assess.fatigue.signed_stress import signed_von_mises
 from assess.fatigue.sn_curve import SnCurve
 from fea.core.voigt import TENSOR_TO_VOIGT
 from pinbase.arrays import Floats

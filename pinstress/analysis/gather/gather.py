@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -15,16 +16,16 @@ from fea.section.section_stress import SectionField
 from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.records import JointResult
 from fea.support.support import Solution
-from geometry import CutPin, Pin
+from geometry import Cut, CutPin, Flat, Hole, Passage, Pin, Slot
+from geometry.shape.cut_edges import drawn
 from pinstress.analysis.assessed.checked import Checked, factor_assumption
-from pinstress.analysis.cache.store import REQUIRED_PACKAGES
+from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.analysis.gather.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
-from pinstress.study.model.drawn_cuts import cut_shapes
 from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.sequence import chosen_cases
 from pinstress.study.model.tasks import Task
@@ -35,6 +36,7 @@ from pinstress.study.schema.tables import ReportTable
 from reports.data import results as plain
 from reports.data.changes import Remedy
 from reports.data.dependence import depends_on
+from reports.data.results import CutShape
 from reports.data.sensitivities import PinSensitivities
 
 WITHOUT_FRICTION_NOTE = (
@@ -317,3 +319,39 @@ def _spread(peak: Maximum) -> tuple[float, float] | None:
         return None
     low, high = peak.interval
     return peak.max_von_mises / high, peak.max_von_mises / low if low > 0.0 else np.inf
+
+
+def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
+    """The cuts of a pin as reports draw them, in SI."""
+    for name, cut in pin.cuts.items():
+        found = drawn(cut, pin.profile)
+        size, offset, depth = _cut_sizes(cut)
+        low, high = (cut.z, cut.z) if isinstance(cut, Hole) else _cut_ends(cut)
+        lines = tuple((tuple((z, x) for z, x in at.tolist()), hide) for at, hide in found.lines)
+        yield CutShape(
+            name,
+            (max(low, 0.0), min(high, pin.length)),
+            size,
+            offset,
+            depth,
+            math.degrees(cut.angle),
+            lines,
+            found.notches,
+        )
+
+
+def _cut_ends(cut: Cut) -> tuple[float, float]:
+    assert isinstance(cut, Flat | Slot | Passage)
+    return cut.z0, cut.z1
+
+
+def _cut_sizes(cut: Cut) -> tuple[float, float, float | None]:
+    """Diameter, width or distance, offset, depth."""
+    if isinstance(cut, Flat):
+        return cut.distance, 0.0, None
+    if isinstance(cut, Slot):
+        return cut.width, 0.0, cut.depth
+    if isinstance(cut, Hole):
+        return cut.diameter, 0.0, cut.depth
+    assert isinstance(cut, Passage)
+    return cut.diameter, cut.offset, None if cut.mouth == "both" else cut.z1 - cut.z0

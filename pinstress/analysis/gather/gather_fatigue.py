@@ -6,17 +6,19 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
 
-from assess.fatigue.assess import FatigueMaterial, assess
+from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
+from assess.fatigue.fkm import FkmMaterial
 from assess.fatigue.proportional import SIGNED_SHEAR_RULE
 from assess.fatigue.records import PointFatigue, PointHistory
+from assess.fatigue.sn_curve import SnCurve
 from assess.strength.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
 from fea.core.peak import meets_limit
 from fea.support.lugs.lug import Lug
 from pinbase.errors import ArgumentError
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
-from pinstress.study.model.fatigue import fatigue_material, spectrum
-from pinstress.study.schema.fatigue import FatigueTable
+from pinstress.study.schema.fatigue import FatigueTable, SnTable
+from pinstress.study.schema.pins import MaterialTable
 from reports.data.headline import FATIGUE_LIFE
 from reports.data.results import Fatigue
 
@@ -110,7 +112,7 @@ def _margins(found: Fatigue, needs: dict[str, str]) -> Iterator[PinMargin]:
 
 def _material(plan: Plan, pin: str) -> FatigueMaterial:
     table = plan.study.table
-    return fatigue_material(table.material[table.pin[pin].material])
+    return _fatigue_material(table.material[table.pin[pin].material])
 
 
 def _pressed(lugs: Iterable[Lug]) -> bool:
@@ -134,7 +136,7 @@ def _points(
     for history in histories:
         at = f"at point {history.point}"
         try:
-            point = assess(history, spectrum(table), _material(plan, history.pin))
+            point = assess(history, _spectrum(table), _material(plan, history.pin))
         except ArgumentError as error:
             failed = failed or _Open(
                 f"{at}, {error}", 'fatigue.method = "critical-plane" with its data'
@@ -217,4 +219,38 @@ def _left_out(
         *said,
         ZERO_LOAD_NOTE,
         GRADIENT_SUPPORT_NOTE if table.method == "fkm-p-ram" else FACTORS_NOT_APPLIED_NOTE,
+    )
+
+
+def _spectrum(table: FatigueTable) -> Spectrum:
+    """Of a study."""
+    return Spectrum(table.occurrences, table.method, table.failure_probability, table.life)
+
+
+def _fatigue_material(table: MaterialTable) -> FatigueMaterial:
+    """What is given of a material."""
+    sn, fkm, ultimate = table.fatigue, table.fkm, table.ultimate_strength
+    return FatigueMaterial(
+        None if sn is None else _sn_curve(sn, ultimate),
+        None if sn is None else sn.mean_stress_sensitivity,
+        None
+        if fkm is None or ultimate is None
+        else FkmMaterial(fkm.group, ultimate, fkm.roughness, fkm.plastic_factor),
+    )
+
+
+def _sn_curve(table: SnTable, ultimate: float | None) -> SnCurve:
+    of_rule = {
+        "fkm": table.mean_stress_sensitivity,
+        "goodman": ultimate,
+        "walker": table.walker_exponent,
+    }
+    return SnCurve(
+        (table.knee_stress, table.knee_cycles),
+        table.slope,
+        inf if table.slope_below is None else table.slope_below,
+        table.scatter or 1.0,
+        table.failure_probability,
+        table.mean_stress,
+        of_rule.get(table.mean_stress) or 0.0,
     )

@@ -11,13 +11,10 @@ from fea.harmonic.half_section import MeridianPlane
 from geometry.shape.chords import needed
 from reports.data.surface import HalfSection, Mask
 
-SECTION_STATIONS, SECTION_ROWS = (
-    200,
-    33,
-)  # at most 2.5 times as many stations, of which few are needed
-SHOULDER_OFFSET = (
-    1e-6  # of the length: how close to a shoulder, on both sides of it, stress is read
-)
+# At most 2.5 times as many stations, of which few are needed
+SECTION_STATIONS, SECTION_ROWS = 200, 33
+# Of the length: how close to a shoulder, on both sides of it, stress is read
+SHOULDER_OFFSET = 1e-6
 SECTION_STRESS_TOLERANCE = 7e-3  # of the maximum
 RADIUS_TOLERANCE = 2e-3  # of the radius
 

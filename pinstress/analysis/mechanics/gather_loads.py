@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
-from loads import GROUND, Dynamics, Effort, Linkage, OverTime, Slider, energy, ledger
+from loads import (
+    GROUND,
+    Dynamics,
+    Effort,
+    Gear,
+    Linkage,
+    Motion,
+    OverTime,
+    Rack,
+    Slider,
+    Teeth,
+    energy,
+    ledger,
+)
+from loads.linkage.linkage import Point
 from loads.motion.loop_equations import pairs
 from loads.motion.mobility import is_particle
 from loads.motion.transmission_angles import transmission_angles
@@ -14,7 +29,6 @@ from pinbase.arrays import Floats
 from pinstress.analysis.checks import motion_check
 from pinstress.analysis.mechanics.gather_drops import drop_record
 from pinstress.analysis.mechanics.gather_sequences import sequence_tables
-from pinstress.analysis.mechanics.gather_teeth import pitch_curves
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.mechanism.drives import offsets
@@ -22,6 +36,7 @@ from pinstress.study.model.mechanism.linkage import ground_joint
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published
 from reports.data import results as plain
+from reports.data.mechanics import PitchCurve
 
 LEG_VECTORS = {  # of loads.LegDynamics, and what they are
     "wheel_omega": "omega",
@@ -255,7 +270,7 @@ def _motion(
         extremes=None if over is None else _extremes(over),
         slider_forces=_slider_forces(dynamics),
         paths=_paths(study, dynamics),
-        pitch=pitch_curves(motion),
+        pitch=_pitch_curves(motion),
     )
 
 
@@ -333,3 +348,38 @@ def _direction(dynamics: Dynamics, body: str) -> Floats:
         return np.full(len(motion), np.nan)
     x, y = lines[0] if lines else (1.0, 0.0)
     return np.asarray(np.degrees(np.arctan2(y, x) + motion.angle(body)))
+
+
+def _pitch_curves(motion: Motion) -> tuple[PitchCurve, ...]:
+    """Pitch circles of gears and pitch lines of racks as drawn: of all teeth, each circle once."""
+    found: dict[tuple[str, str, float], PitchCurve] = {}
+    for teeth in motion.linkage.teeth:
+        for side in teeth.sides:
+            if isinstance(side, Rack):
+                found[side.body, side.slider, 0.0] = _pitch_line(motion, teeth, side)
+                continue
+            centre = motion.linkage.joint(side.joint).at
+            radius = float(f"{math.dist(centre, teeth.at):.9g}")
+            if (key := (side.body, side.joint, radius)) not in found:
+                found[key] = PitchCurve(
+                    side.body, _moving_points(motion, side, centre, teeth.at), True
+                )
+    return tuple(found.values())
+
+
+def _moving_points(motion: Motion, side: Gear | Rack, first: Point, second: Point) -> np.ndarray:
+    """(T, 2, 2) of two points of a body, m as drawn."""
+    return np.stack([motion.point(side.body, p)[0] for p in (first, second)], axis=1)
+
+
+def _pitch_line(motion: Motion, teeth: Teeth, rack: Rack) -> PitchCurve:
+    """What of the pitch line meets the gear, and as much again as its radius on both sides."""
+    slider = next(s for s in motion.linkage.sliders if s.name == rack.slider)
+    gear = next(side for side in teeth.sides if isinstance(side, Gear))
+    radius = math.dist(motion.linkage.joint(gear.joint).at, teeth.at)
+    travel = motion.coordinate(slider)[0] - slider.drawn
+    met = -travel if slider.moving == rack.body else travel
+    (x, y), (ex, ey) = teeth.at, slider.axis
+    far = (float(met.min()) - radius, float(met.max()) + radius)
+    low, high = ((x + s * ex, y + s * ey) for s in far)
+    return PitchCurve(rack.body, _moving_points(motion, rack, low, high), False)

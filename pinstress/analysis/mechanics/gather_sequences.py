@@ -18,9 +18,8 @@ from reports.data import results as plain
 from reports.format.numbers import engineering
 
 T = TypeVar("T")
-JUMP_TOLERANCE = (
-    1e-6  # of the linkage's size: a joint that is so far off where the next case begins
-)
+# Of the linkage's size: a joint that is so far off where the next case begins
+JUMP_TOLERANCE = 1e-6
 
 
 def _joined(parts: Sequence[Any]) -> Any:

@@ -26,10 +26,8 @@ from reports.data.changes import Remedy
 
 FIRST_RUNG = Rung("harmonic")
 FIRST_MESH_TOLERANCE = 0.04  # of the factor: what the first mesh is worth
-IMPULSE_SHARES, SEARCH_ROUNDS = (
-    17,
-    3,
-)  # of an impulse tried at a time, each time between the last two
+# Of an impulse tried at a time, each time between the last two
+IMPULSE_SHARES, SEARCH_ROUNDS = 17, 3
 SIZED_BY_COMMAND = "diameters are found by pinstress size"
 
 

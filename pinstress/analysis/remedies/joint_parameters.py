@@ -19,9 +19,8 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import LugTable
 
-CLEARANCE_SCALE = (
-    1e-3  # of the pin's radius: what steps of a clearance are parts of, as it may be none
-)
+# Of the pin's radius: what steps of a clearance are parts of, as it may be none
+CLEARANCE_SCALE = 1e-3
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ first mesh are taken, relative to its own maximum.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -73,24 +73,6 @@ def sensitivities(
 
 def _largest(solution: Solution) -> float:
     return solution.peak.max_von_mises or 0.0
-
-
-def by_length(
-    study: Study,
-    task: Task,
-    joined: Solution,
-    keys: Collection[str] | None = None,
-) -> dict[str, float] | None:
-    """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
-    each of its lengths, Pa/m, by their keys in the pin's table: "profile[2].diameter", "fillet",
-    "lug.M.clearance"; None where it has no derivatives. keys: those asked for; without, all.
-
-    Raises: MeshError, SolveError.
-    """
-    lengths = [x.of_joint for x in joint_parameters(study, task) if x.kind == "length"]
-    asked = [x for x in lengths if keys is None or x.key in keys]
-    found = differentiated_in_lugs(joined, task, asked, alone=True)
-    return None if found is None else found.by_parameter
 
 
 def differentiated_in_lugs(

@@ -20,7 +20,6 @@ from geometry.mesh.elements import Element
 from pinbase.processes.pool import Progress
 from pinstress.analysis.plan import all_loads
 from pinstress.explore.chart.in_lugs import chosen_in_lugs, climb_in_lugs, contact_reference
-from pinstress.explore.chart.limit_loads import limit_points, limit_problem
 from pinstress.explore.chart.measured_process import Measure, Measured
 from pinstress.explore.chart.mesh_sequences import (
     HARMONIC_LEVELS,
@@ -35,7 +34,6 @@ from pinstress.explore.chart.mesh_sequences import (
     solid_reference,
 )
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
-from pinstress.explore.chart.single_limit import LimitProblem
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.choices import require_tolerance, select
@@ -56,7 +54,7 @@ ELEMENT_NAMES = {
 class ChartPlan:
     """What is to be charted, every input read and found usable. peak: what `auto` says of it on
     its first mesh. beam_error: relative, of the beam by itself. chosen: of a pin in its lugs, on
-    which mesh of contact a run ends. limit: load, where a run computes one.
+    which mesh of contact a run ends.
     """
 
     study: Study
@@ -65,7 +63,6 @@ class ChartPlan:
     peak: Maximum
     beam_error: float | None = None
     chosen: JointRung | None = None
-    limit: LimitProblem | None = None
 
 
 def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None) -> ChartPlan:
@@ -100,8 +97,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
             beam = first(replace(asked, model="beam")).peak
             if beam.max_von_mises and beam.error_estimate is not None:
                 beam_error = beam.error_estimate / beam.max_von_mises
-    limit = limit_problem(study, task, solution)
-    return ChartPlan(study, problem, asked, peak, beam_error, limit=limit)
+    return ChartPlan(study, problem, asked, peak, beam_error)
 
 
 def _require_stress(study: Study, peak: Maximum) -> None:
@@ -132,11 +128,9 @@ def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
         loads.links if isinstance(loads, PressureLoads) else loads,
         solution.instant,
         asked.distance,
-        loads.pressed,
     )
     end = chosen_in_lugs(problem, solution.peak, solution.joint)
-    limit = limit_problem(study, task, solution)
-    return ChartPlan(study, problem, asked, solution.peak, chosen=end, limit=limit)
+    return ChartPlan(study, problem, asked, solution.peak, chosen=end)
 
 
 def chart(
@@ -160,15 +154,6 @@ def chart(
         behind += 1
 
     climb = Climb(plan.problem, plan.asked, plan.peak.model, measure, runs, tell)
-    made = _climbed(plan, climb, meshes, calculix)
-    if plan.limit is None:
-        return made
-    limits = limit_points(plan.limit, measure, runs, tell)
-    return replace(made, points=(*made.points, *limits))
-
-
-def _climbed(plan: ChartPlan, climb: Climb, meshes: int | None, calculix: bool) -> Chart:
-    """The ladders of the maximum von Mises stress."""
     if plan.chosen is not None:
         climb_in_lugs(climb, plan.chosen, calculix)
         rung, seen, cells = contact_reference(climb)

@@ -1,5 +1,5 @@
 """The ladders of a chart of a pin in its lugs: contact on several cells and meshes, the beam on
-foundations, prescribed tractions and, where it is requested, CalculiX.
+foundations and, where it is requested, CalculiX.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from assess.opinion.calculix_in_lugs import HALF_MODEL_MESHES
 from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum
-from fea.core.pin_loads import Distribution
 from fea.core.verdict import MeshHistory
 from fea.support.contact.held import MAX_CELLS
 from fea.support.contact.solve_joint import Resolution
@@ -26,13 +25,8 @@ CHART_RESOLUTIONS = (
     Resolution(16, 64, 20),
 )
 CONTACT_LEVELS = (-2, 0, 1, 2)
-TRACTION_LEVELS = (-2, 1)  # whose error is that of the model
 REFERENCE_LEVELS = (2, 3, 4)
 CALCULIX_MESHES = (*HALF_MODEL_MESHES, Fineness(sectors=32, layers=3, eye=2))
-TRACTION_NAMES: tuple[tuple[Distribution, str], ...] = (
-    ("uniform", "even tractions"),
-    ("cosine", "bearing pressure"),
-)
 
 
 def rings_of(problem: JointProblem, cells: Resolution) -> int:
@@ -66,10 +60,6 @@ def climb_in_lugs(climb: Climb, chosen: JointRung, calculix: bool) -> None:
     """All models, the cheapest first."""
     assert isinstance(climb.problem, JointProblem)
     climb.to(JointRung("foundation", "Timoshenko beam"))
-    for distribution, name in TRACTION_NAMES:
-        for level in TRACTION_LEVELS:
-            climb.to(JointRung("prescribed", name, level, distribution=distribution))
-            climb.drop_repeated()
     for cells in sets_of(climb.problem)[:-1]:
         last = max(CONTACT_LEVELS[-1], chosen.level if cells == chosen.cells else 0)
         for level in (*CONTACT_LEVELS, *range(CONTACT_LEVELS[-1] + 1, last + 1)):

@@ -19,7 +19,6 @@ from fea.solve.single_mesh import Problem, Rung, result_on
 from pinbase.processes.apart import Failed, guarded
 from pinbase.processes.pool import Job, Tell
 from pinstress.explore.chart.single_joint import JointProblem, JointRung, joint_result_on
-from pinstress.explore.chart.single_limit import LimitFound, LimitProblem, LimitRung, limit_found_on
 
 MIN_MEASURED_MEMORY = 0.1  # MB: less cannot be distinguished from the libraries' own
 
@@ -34,8 +33,7 @@ class MeasureLimits:
 
 @dataclass(frozen=True)
 class Measured:
-    """result: what the mesh says, None where it `failed`, for that reason; limit: of a limit load,
-    instead. seconds: the median of
+    """result: what the mesh says, None where it `failed`, for that reason. seconds: the median of
     the runs, each from the mesh to the maximum over the motion, without the start of the
     interpreter and imports. memory: the largest during the first run above the process with its
     libraries loaded, MB; bare: that process, MB. over: it failed because it passed a limit, as
@@ -48,7 +46,6 @@ class Measured:
     bare: float = 0.0
     failed: str = ""
     over: bool = False
-    limit: LimitFound | None = None
 
 
 @dataclass(frozen=True)
@@ -57,8 +54,8 @@ class MeasureJob:
     many times. reference: whatever time it takes.
     """
 
-    problem: Problem | JointProblem | LimitProblem
-    rung: Rung | JointRung | LimitRung
+    problem: Problem | JointProblem
+    rung: Rung | JointRung
     before: tuple[MeshMaximum, ...] = ()
     runs: int = 1
     reference: bool = False
@@ -118,16 +115,10 @@ def climb(job: MeasureJob, tell: Tell) -> Measured:
 
             others = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
             result, peak = found, memory("self", "VmHWM") + others
-    cost = statistics.median(spent), max(peak - bare, MIN_MEASURED_MEMORY), bare
-    if isinstance(result, LimitFound):
-        return Measured(None, *cost, limit=result)
-    return Measured(result, *cost)
+    return Measured(result, statistics.median(spent), max(peak - bare, MIN_MEASURED_MEMORY), bare)
 
 
-def _result(job: MeasureJob) -> MeshMaximum | LimitFound:
-    if isinstance(job.problem, LimitProblem):
-        assert isinstance(job.rung, LimitRung)
-        return limit_found_on(job.problem, job.rung)
+def _result(job: MeasureJob) -> MeshMaximum:
     if isinstance(job.problem, JointProblem):
         assert isinstance(job.rung, JointRung)
         return joint_result_on(job.problem, job.rung, job.before)

@@ -21,19 +21,12 @@ from pinstress.explore.chart.single_joint import JointProblem, JointRung
 HARMONIC_LEVELS = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.solve.single_mesh)
 FIRST_SOLID_LEVEL: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
 SOLID_MESHES, MIN_SOLID_MESHES = 5, 4  # meshes of an element, however large
-MAX_CHARTED_UNKNOWNS = (
-    150_000  # unknowns of a solid that is charted; of one that has no other reference:
-)
-MAX_UNKNOWNS_BELOW_REFERENCE = 50_000
+MAX_CHARTED_UNKNOWNS = 150_000  # unknowns of a solid that is charted
+MAX_UNKNOWNS_BELOW_REFERENCE = 50_000  # the same of one that has no other reference
 MAX_REFERENCE_UNKNOWNS = 400_000
 REFERENCE_UNKNOWNS_RATIO = 10.0  # times the unknowns of the finest that is charted
 MIN_REFERENCE_MESHES = 3
-ADAPTIVE_MODELS = (
-    "harmonic",
-    LOCAL_MODEL,
-    "contact",
-    "prescribed",
-)  # models whose meshes are finer where stress is high
+ADAPTIVE_MODELS = "harmonic", LOCAL_MODEL, "contact"  # finer meshes where stress is high
 
 
 @dataclass

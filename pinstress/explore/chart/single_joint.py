@@ -4,7 +4,7 @@ models (fea.solve.single_mesh for other pins).
 All models are compared by the same number, that of a row: the larger of surface and section
 (fea.core.places). The surface is read where lugs leave it free, but for the pin's own
 singularities: by the contact of the answer, that of other cells by their own, CalculiX's by its
-pressed nodes. What is prescribed are the forces of the links as tractions, of a pin without clamps.
+pressed nodes.
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ from assess.opinion.calculix_joint_mesh import Fineness
 from assess.opinion.calculix_row import free, section_of
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
-from fea.core.pin_loads import Distribution, PinLoads
-from fea.core.pressed import PressedArcs
+from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
@@ -45,7 +44,6 @@ DEFAULT_RESOLUTION = Resolution()
 class JointProblem:
     """A pin in its lugs in one case. loads: of the links. governing: number of the instant with
     the largest stress, the only one that CalculiX solves. distance: as in fea.solve.solve.
-    pressed: where contact presses at these instants; by default that on cells as usual.
     """
 
     pin: Pin
@@ -54,7 +52,6 @@ class JointProblem:
     loads: PinLoads
     governing: int = 0
     distance: float = 0.1
-    pressed: PressedArcs | None = None
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:
@@ -63,26 +60,17 @@ class JointProblem:
         none = PinLoads(self.loads.case, (), np.zeros((1, 0, 3)))
         return singularities_of(whole, self.material, (), (none,), self.distance)
 
-    @cached_property
-    def arcs(self) -> PressedArcs:
-        """Where the lugs press."""
-        if self.pressed is not None:
-            return self.pressed
-        model = ContactModel(self.pin, self.material, self.lugs)
-        return model.arcs(model.pressed(self.loads))
-
 
 @dataclass(frozen=True)
 class JointRung:
-    """A mesh of a model; level: as of fea.solve.single_mesh.Rung. cells: of contact; distribution:
-    of prescribed tractions; fineness: of CalculiX.
+    """A mesh of a model; level: as of fea.solve.single_mesh.Rung. cells: of contact; fineness: of
+    CalculiX.
     """
 
-    model: Literal["contact", "foundation", "prescribed", "calculix"]
+    model: Literal["contact", "foundation", "calculix"]
     element: str
     level: int = 0
     cells: Resolution = DEFAULT_RESOLUTION
-    distribution: Distribution = "uniform"
     fineness: Fineness = DEFAULT_FINENESS
 
 
@@ -97,29 +85,7 @@ def joint_result_on(
         return _calculix(problem, rung)
     if rung.model == "foundation":
         return _foundation(problem)
-    if rung.model == "contact":
-        return _contact(problem, rung, before)
-    loads = replace(problem.loads, distribution=rung.distribution, pressed=problem.arcs)
-    return _harmonic(problem, problem.pin, loads, (loads, rung.level), before)
-
-
-def _harmonic(
-    problem: JointProblem,
-    pin: Pin,
-    loads: PinLoads,
-    on: tuple[PinLoads, int],
-    before: tuple[MeshMaximum, ...],
-) -> MeshMaximum:
-    """on: the loads that sections feel, and the mesh's level."""
-    zones, (felt, level) = problem.singularities, on
-    posed = SectionProblem(pin, problem.material, (), (loads,), zones)
-    section = harmonic_solution(posed, level, MESH_RATIO, before)
-    return _row(harmonic_result(section, zones, loads), pin, problem.material, felt)
-
-
-def _row(surface: MeshMaximum, pin: Pin, material: Material, felt: PinLoads) -> MeshMaximum:
-    """The larger one of a surface and of sections under loads."""
-    return _larger(surface, SectionField(pin, material, (), [felt]).place(felt))
+    return _contact(problem, rung, before)
 
 
 def _larger(surface: MeshMaximum, at: AtSection) -> MeshMaximum:
@@ -133,9 +99,12 @@ def _contact(
     problem: JointProblem, rung: JointRung, before: tuple[MeshMaximum, ...]
 ) -> MeshMaximum:
     model = ContactModel(problem.pin, problem.material, problem.lugs, rung.cells)
-    found = model.solve(problem.loads)
-    on = found.loads.on_rings, rung.level
-    result = _harmonic(problem, found.pin, found.loads, on, before)
+    found, zones = model.solve(problem.loads), problem.singularities
+    posed = SectionProblem(found.pin, problem.material, (), (found.loads,), zones)
+    section = harmonic_solution(posed, rung.level, MESH_RATIO, before)
+    surface, felt = harmonic_result(section, zones, found.loads), found.loads.on_rings
+    at = SectionField(found.pin, problem.material, (), [felt]).place(felt)
+    result = _larger(surface, at)
     return replace(result, unknowns=result.unknowns + model.contact.area.size)
 
 

@@ -46,9 +46,8 @@ Array = NDArray[np.float64]
 
 MAX_SEARCH_STARTS = 3  # failing samples from which further design points are sought
 MAX_DIRECTION_COSINE = 0.7  # cosine below which a sample's direction is another
-SEARCH_DISTANCE_BEYOND = (
-    1.0  # standard deviations beyond the design points: where others are looked for
-)
+# Standard deviations beyond the design points: where others are looked for
+SEARCH_DISTANCE_BEYOND = 1.0
 MAX_CENTRES = 40  # of importance sampling
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel
 from pinstress.explore.reliability.form import LimitState
-from pinstress.explore.reliability.space import NormalSpace
 from pinstress.explore.sweep.correlations import correlations_of, root_of
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
 from pinstress.explore.sweep.parameters import Parameter, parameters_of, require_laws
@@ -21,9 +21,43 @@ Array = NDArray[np.float64]
 
 MAX_JOB_DESIGNS = 100  # designs in a job
 JOBS_PER_PROCESS = 4  # for each process, so that all end at about the same time
-MAX_SERIAL_DESIGNS = (
-    30  # designs that this process solves itself, as FORM's, one step after another
-)
+# Designs that this process solves itself, as FORM's, one step after another
+MAX_SERIAL_DESIGNS = 30
+
+
+Marginal = Callable[[Array], Array]  # values at standard normal deviates
+
+
+@dataclass(frozen=True)
+class NormalSpace:
+    """d random variables: each a function of its own standard normal deviate. Normal variables may
+    be correlated: a linear map of independent ones (the Nataf transformation, which is exact for
+    normal variables). All others are independent.
+
+    lower: L (d, d) with L L^T the correlation of the deviates; None where all are independent.
+    """
+
+    marginals: tuple[Marginal, ...]
+    lower: Array | None = None
+
+    @property
+    def size(self) -> int:
+        return len(self.marginals)
+
+    def physical(self, u: Array) -> Array:
+        """Values (n, d) of the variables at independent standard normal u (n, d)."""
+        z = u if self.lower is None else u @ self.lower.T
+        return np.stack([at(z[:, i]) for i, at in enumerate(self.marginals)], axis=1)
+
+    def importance(self, direction: Array) -> Array:
+        """Squares (d,), of sum one, of the importance of each variable for a design point in this
+        unit direction; with correlation, of the variables' own deviates (Der Kiureghian's gamma).
+        """
+        if self.lower is not None:
+            direction = np.linalg.lstsq(self.lower.T, direction)[0].astype(np.float64)
+        squares: Array = direction**2
+        part: Array = squares / squares.sum()
+        return part
 
 
 @dataclass(frozen=True)

@@ -27,9 +27,8 @@ from scipy.special import ndtr, ndtri
 Array = NDArray[np.float64]
 LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
 
-MAX_RELIABILITY_INDEX = (
-    10.0  # standard deviations: where the search ends, probabilities are below 1e-18
-)
+# Standard deviations: where the search ends, probabilities are below 1e-18
+MAX_RELIABILITY_INDEX = 10.0
 QUANTILE_ANGLE = 0.01  # angle of a quantile's point, whose square is in the value
 
 

@@ -59,18 +59,14 @@ STRESS_MARGIN = 0.004  # of the stress, below what is allowed: noise of meshes, 
 WEIGHT_CONVERGENCE = 2e-3  # of the weight: what meshes are worth
 SCALE_BRACKET_TOLERANCE = 5e-3  # a bracket of scales that is not looked into
 SLOPE_RANGE = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
-CONTACT_STRESS_TOLERANCE = (
-    0.05  # of the stress of a pin in contact, below what is allowed: near enough
-)
-CONTACT_STRESS_MARGIN, CONTACT_WEIGHT_CONVERGENCE = (
-    0.015,
-    1e-2,
-)  # STRESS_MARGIN and WEIGHT_CONVERGENCE in contact, where meshes and cells scatter
+# Of the stress of a pin in contact, below what is allowed: near enough
+CONTACT_STRESS_TOLERANCE = 0.05
+# STRESS_MARGIN and WEIGHT_CONVERGENCE in contact, where meshes and cells scatter
+CONTACT_STRESS_MARGIN, CONTACT_WEIGHT_CONVERGENCE = 0.015, 1e-2
 MAX_CORRECTIONS = 3  # of what rough cells say
 MAX_SCALINGS = 10
-SCALED_WEIGHT_DOUBT = (
-    0.03  # of the weight of a pin that is only scaled, where that was found by slopes
-)
+# Of the weight of a pin that is only scaled, where that was found by slopes
+SCALED_WEIGHT_DOUBT = 0.03
 MAX_REPAIRS = 4
 SCALED_AS_WHOLE_NOTE = (
     "scaled as a whole, because its stress has no derivatives by its dimensions{}"

@@ -27,17 +27,15 @@ from scipy.optimize import minimize, nnls
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
-STRESS_PENALTY = (
-    2.0  # of excess stress; multipliers add up to 1 where stress falls with the area or faster
-)
+# Of excess stress; multipliers add up to 1 where stress falls with the area or faster
+STRESS_PENALTY = 2.0
 GEOMETRY_PENALTY = 10.0  # the same of geometric limits
 FIRST_LOG_STEP, MAX_LOG_STEP = 0.7, 1.1  # steps of a logarithm: to half, to a third
 MIN_LOG_STEP = 2e-3
 MERIT_TOLERANCE = 5e-4  # of the merit
 MIN_GAIN_RATIO = 0.1  # part of the promise that a step must keep
-ACTIVE_TOLERANCE = (
-    0.02  # of the limit: a stress, ratio or bound that is active; what meshes are worth
-)
+# Of the limit: a stress, ratio or bound that is active; what meshes are worth
+ACTIVE_TOLERANCE = 0.02
 TANGENT_TOLERANCE = 1e-3  # by which an earlier tangent may exceed the stress
 MAX_TANGENTS = 6  # tangents of a place
 MAX_SOLUTIONS = 25  # solutions

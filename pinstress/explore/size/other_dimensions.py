@@ -24,11 +24,8 @@ from pinstress.study.reading.file import Study, with_raw
 from pinstress.study.schema.units import UnitSystem, to_si
 
 PATH_PROBE_STEP = 1e-3  # of a dimension, to see where it is
-ROUNDING_DIRECTIONS = {
-    "diameters": 1,
-    "bores": -1,
-    "fillets": -1,
-}  # where rounding up is on the safe side
+# Where rounding up is on the safe side
+ROUNDING_DIRECTIONS = {"diameters": 1, "bores": -1, "fillets": -1}
 
 Path = tuple[str | int, ...]
 Values = Mapping[str, Mapping[str, float]]  # m, by pin and by key of a dimension

@@ -25,12 +25,10 @@ MAX_FACE_SHARE = 0.6  # of a step's height, that its fillet takes at most
 MAX_BAND_SHARE = 0.25  # of a segment's length, that fillets take at most
 MAX_DIMENSION_RATIO = 50.0  # times a dimension, and parts of it
 SHAPE_STEP = 1e-3  # of a dimension, of which shapes are linear
-FILLET_AREA_FACTOR = (
-    1.0 - math.pi / 4.0
-)  # area between a fillet and its corner, of the radius squared
-FILLET_CENTROID_FACTOR = (10.0 - 3.0 * math.pi) / (
-    12.0 - 3.0 * math.pi
-)  # its distance from the sides
+# Area between a fillet and its corner, of the radius squared
+FILLET_AREA_FACTOR = 1.0 - math.pi / 4.0
+# Its distance from the sides
+FILLET_CENTROID_FACTOR = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)
 
 
 @dataclass(frozen=True)

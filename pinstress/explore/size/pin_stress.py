@@ -53,13 +53,11 @@ from pinstress.study.reading.file import Study, raw_study
 
 GRADIENT_WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
 UNKNOWN_PLACE_WINDOW = 0.3  # the same of places where they are not yet known
-MIN_FORCE_SHARE = (
-    0.05  # of the largest force in any case: a case whose forces are smaller does not govern
-)
+# Of the largest force in any case: a case whose forces are smaller does not govern
+MIN_FORCE_SHARE = 0.05
 CASE_WINDOW = 1.0  # the logarithm of stress below the largest, from which on a case is left out
-CASE_REVIEW_DISTANCE = (
-    0.7  # the logarithm of a dimension's change after which all cases are looked at again
-)
+# The logarithm of a dimension's change after which all cases are looked at again
+CASE_REVIEW_DISTANCE = 0.7
 DIMENSION_TOLERANCE = 1e-9  # of a dimension
 
 Tell = Callable[[str], None]

@@ -16,9 +16,8 @@ from pinstress.study.reading.file import Study, parse_study
 from pinstress.study.schema.units import UnitSystem, to_si
 
 LENGTH_DIGITS = 4  # of a length that is not rounded to a step
-MIN_EYE_RATIO = (
-    1.5  # outer diameter over the bore below which an eye that was wider grows with its pin
-)
+# Outer diameter over the bore below which an eye that was wider grows with its pin
+MIN_EYE_RATIO = 1.5
 LEADING_NUMBER_PATTERN = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
 # Keys of lengths across the axis; 1 where rounding up is on the safe side.
 TRANSVERSE_LENGTH_KEYS = {

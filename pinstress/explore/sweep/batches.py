@@ -17,7 +17,6 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.mesh.moved.near_mesh import step
 from loads import noted_files
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
 from pinstress.explore.sweep.laws import Floats
@@ -25,9 +24,8 @@ from pinstress.explore.sweep.number import Number
 from pinstress.study.reading.file import Study, parse_study
 
 TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
-BATCH_OVERHEAD_SECONDS = (
-    0.008  # s in which a batch is handed out to one of many processes and its rows are read
-)
+# s in which a batch is handed out to one of many processes and its rows are read
+BATCH_OVERHEAD_SECONDS = 0.008
 MAX_BATCH_DESIGNS = 5000  # designs in a batch
 STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
@@ -112,12 +110,9 @@ def evaluator_of(problem: DesignProblem) -> Evaluator:
 
 
 def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
-    """The designs (N, p) so that those with the same shapes follow each other, and those whose
-    meshes are moved from that of the same rounded shape.
-    """
+    """The designs (N, p) so that those with the same shapes follow each other."""
     shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
-    near = [np.array([step(x) for x in each]) for each in shape]
-    keys = [np.arange(len(values)), *reversed(shape), *reversed(near)]
+    keys = [np.arange(len(values)), *reversed(shape)]
     return [int(i) for i in np.lexsort(keys)]
 
 

@@ -14,16 +14,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 METADATA_KEY = b"pinstress"
-ROW_COLUMNS = (
-    "pin",
-    "case",
-    "outcome",
-    "depends_on",
-    "verdict",
-    "reason",
-    "code",
-    "governs",
-)  # texts of every row
+# Texts of every row
+ROW_COLUMNS = "pin", "case", "outcome", "depends_on", "verdict", "reason", "code", "governs"
 COLUMN_TITLES = {
     "mass": "mass",
     "max_von_mises": "maximum von Mises",

@@ -23,8 +23,8 @@ from fea.harmonic.kept_fields import EveryMesh
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
-from pinstress.analysis.cache.serialise import pack
 from pinstress.analysis.plan import prepare, requirement_of
+from pinstress.analysis.serialise import pack
 from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.laws import Floats
@@ -115,8 +115,6 @@ class Evaluator:
     ) -> None:
         self.numbers = tuple(p.number if isinstance(p, Parameter) else p for p in parameters)
         self._raw = {k: v for k, v in raw_study(study).items() if k not in IGNORED_TABLES}
-        analysis = {**self._raw.get("analysis", {}), "meshes": study.meshes}
-        self._raw["analysis"] = analysis  # whose default depends on [vary]
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
         self.files: tuple[Path, ...] = ()

@@ -178,7 +178,7 @@ def identity(study: Study, *chosen: object) -> Identity:
     """Of a study; the hashes are of all on which a sweep's numbers depend. chosen: pins, cases."""
     import tomlkit
 
-    from pinstress.analysis.cache.store import program
+    from pinstress.analysis.cache import program
 
     vary = study.table.vary  # a sweep of a study without is refused by who reads its parameters
     document = tomlkit.parse(study.text)

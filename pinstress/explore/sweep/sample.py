@@ -12,9 +12,8 @@ from pinstress.explore.sweep.laws import Floats, Uniform
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.schema.vary import VaryTable
 
-MIN_PROBABILITY = (
-    2.0**-53
-)  # how close a probability may come to 0 and 1, where a normal law has no value
+# How close a probability may come to 0 and 1, where a normal law has no value
+MIN_PROBABILITY = 2.0**-53
 
 
 def designs_of(

@@ -18,7 +18,7 @@ from typing import Any
 from distributed import Future, KilledWorker, get_worker
 
 from loads import FileError, read_regular, sent_files
-from pinstress.analysis.cache.store import REQUIRED_PACKAGES
+from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
 from pinstress.explore.sweep.cluster import (
     Cluster,

@@ -12,15 +12,8 @@ from collections.abc import Iterator, Sequence
 from importlib import metadata, util
 from pathlib import Path
 
-OWN_PACKAGES = (
-    "pinstress",
-    "pinbase",
-    "loads",
-    "geometry",
-    "fea",
-    "assess",
-    "reports",
-)  # whose source makes numbers and outcomes
+# Whose source makes numbers and outcomes
+OWN_PACKAGES = "pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports"
 MISSING_VERSION = "missing"
 SOURCE_HASH_DIGITS = 8  # digits of the hash of a source
 

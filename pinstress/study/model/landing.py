@@ -33,9 +33,8 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase, StrutTable, TyreTable
 
-UNSPRUNG_MASS_TOLERANCE = (
-    0.1  # of the mechanism's unsprung mass, which changes by as much along a stroke
-)
+# Of the mechanism's unsprung mass, which changes by as much along a stroke
+UNSPRUNG_MASS_TOLERANCE = 0.1
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:

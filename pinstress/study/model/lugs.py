@@ -15,9 +15,8 @@ from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import LugRangeTable, LugTable, PinTable
 
 EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
-CLAMP_DISTANCE_RATIO = (
-    0.8  # of the outer diameter: distance from the bore's centre to where the link clamps the eye
-)
+# Of the outer diameter: distance from the bore's centre to where the link clamps the eye
+CLAMP_DISTANCE_RATIO = 0.8
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import ValidationError
 
-from loads import MB, FileError, TableError, read_regular
-from pinstress.study.reading.cases_of_tables import with_cases_of_tables
+from loads import MB, FileError, TableError, read_regular, table_cases
 from pinstress.study.reading.counted_twice import counted_twice
 from pinstress.study.reading.errors import InputError, Wrong, study_error
 from pinstress.study.reading.file_names import same_files
@@ -22,9 +21,10 @@ from pinstress.study.reading.plausible import questions
 from pinstress.study.reading.references import cross_references
 from pinstress.study.reading.toml_text import read_toml
 from pinstress.study.reading.validation import explain
+from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
 from pinstress.study.schema.tables import StudyTable
-from pinstress.study.schema.types import PROVENANCE_KINDS
+from pinstress.study.schema.types import ANY_CASE, PROVENANCE_KINDS, usable_name
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
 MAX_STUDY_SIZE = 16 * MB
@@ -71,11 +71,6 @@ class Study:
     def system(self) -> UnitSystem:
         """The study's unit system."""
         return UNIT_SYSTEMS[self.table.units]
-
-    @property
-    def meshes(self) -> Literal["own", "moved"]:
-        """Of sections: each shape's own, or those of near shapes with their nodes moved."""
-        return self.table.analysis.meshes or ("moved" if self.table.vary else "own")
 
     @property
     def name(self) -> str:
@@ -216,7 +211,7 @@ def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -
         table = StudyTable.model_validate(raw, context={"system": _system(raw)})
     except ValidationError as error:
         raise study_error(path, lines, wrong + explain(error)) from None
-    table = with_cases_of_tables(table, path.parent, wrong)
+    table = _with_cases_of_tables(table, path.parent, wrong)
     wrong += cross_references(table)
     return table
 
@@ -263,3 +258,48 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
     ]  # fmt: skip
     inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= MAX_KEY_LENGTH}
     return {k: unwrapped(node[k], place, found, long) for k, place in inner.items()}
+
+
+def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:
+    """The study with a case for every name in the column `case` of the table of a section whose
+    name has a *, which that name replaces. folder: of the tables. wrong: where errors go.
+
+    Raises: InputError for an unusable table.
+    """
+    if not any(ANY_CASE in name for name in table.case):
+        return table
+    cases = {name: case for name, case in table.case.items() if ANY_CASE not in name}
+    for section, case in table.case.items():
+        if ANY_CASE not in section:
+            continue
+        key = f"case.{section}"
+        assert isinstance(case, GivenCase)
+        assert case.table is not None
+        if section.count(ANY_CASE) > 1:
+            wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
+        elif case.table_case is not None:
+            text = f"{key}.table_case: the name with a * already stands for every case of the table"
+            wrong.append(Wrong(text, code="give-one"))
+        else:
+            for name in _table_case_names(folder / case.table, case):
+                ours = section.replace(ANY_CASE, name)
+                wrong += _table_case_mistakes(key, ours, case.table, ours in cases)
+                cases[ours] = case.model_copy(update={"table_case": name})
+    return table.model_copy(update={"case": cases})
+
+
+def _table_case_names(path: Path, case: GivenCase) -> list[str]:
+    try:
+        return table_cases(path, case.columns)
+    except TableError as error:
+        raise InputError(str(error), code=error.code) from None
+
+
+def _table_case_mistakes(key: str, name: str, table: str, known: bool) -> Iterator[Wrong]:
+    if known:
+        text = f"{key}: case {name!r} of {table} exists already; rename one, or this section"
+        yield Wrong(text, code="duplicate-case")
+    try:
+        usable_name(name)
+    except ValueError as error:
+        yield Wrong(f"{key}: case {name!r} of {table}: {error}", code=getattr(error, "code", ""))

@@ -9,9 +9,8 @@ from typing import Any
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.schema.tables import StudyTable
 
-CONTROL_CHARACTER_PATTERN = re.compile(
-    r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]"
-)  # all but tab and line ends
+# All but tab and line ends
+CONTROL_CHARACTER_PATTERN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]")
 
 MAX_PINS = MAX_CASES = 1000
 MAX_PIN_PARTS = 1000  # of a pin: a profile of so many segments takes half a minute

@@ -44,10 +44,6 @@ class AnalysisTable(StrictTable):
     excluded_distance: Annotated[Number, Field(ge=0.01, le=0.5)] = 0.1
     """Distance from a stress singularity within which stress is not evaluated, as a fraction of the
     local diameter."""
-    meshes: Literal["own", "moved"] | None = None
-    """Whether each section of a pin has its "own" mesh, or that of the nearest of a series of
-    shapes with its nodes "moved", which is quicker for many designs of almost the same shape.
-    Default: "moved" in a study with [vary], otherwise "own"."""
     limit_load: LimitLoads = "auto"
     """For which rows the load is found at which the pin collapses: those that yield, by a beam
     where that decides whether they carry their loads, otherwise by an elastic-plastic solid

@@ -37,11 +37,8 @@ DIMENSION_EXPONENTS: dict[str, tuple[tuple[int, int, int], str]] = {
     "angular acceleration": ((0, 0, -2), "3 rad/s^2"),
 }
 
-DIMENSIONS_NEEDING_UNIT = (
-    "angle",
-    "angular velocity",
-    "angular acceleration",
-)  # degrees or radians?
+# Degrees or radians?
+DIMENSIONS_NEEDING_UNIT = "angle", "angular velocity", "angular acceleration"
 
 
 MINUS_SIGN = "\N{MINUS SIGN}"  # which reports print

@@ -18,7 +18,7 @@ COLUMNS = (
     *("max_von_mises_same_mesh", "max_von_mises_calculix", "max_von_mises", "error_estimate"),
     *("calculix_over_answer", "agrees", "unit", "note"),
     *("bending_moment", "bending_moment_calculix", "load_elsewhere", "mesh_change"),
-    *("force_unit", "length_unit", "load_factor_same_mesh", "load_factor_calculix"),
+    *("force_unit", "length_unit"),
 )
 OPINION_LOAD_COLUMNS = (
     *("pin", "case", "connection", "z_start", "z_end", "line_load", "line_load_calculix"),
@@ -43,7 +43,7 @@ def opinion_json(opinion: Opinion | None) -> dict[str, Any] | None:
     """As results.json has it."""
     if opinion is None:
         return None
-    contact, limit = opinion.contact, opinion.limit
+    contact = opinion.contact
     return {
         "unknowns": opinion.unknowns,
         "displacement_difference": finite(opinion.displacement),
@@ -60,12 +60,6 @@ def opinion_json(opinion: Opinion | None) -> dict[str, Any] | None:
             "mesh_change": finite(contact.stress_change),
             "bands": [asdict(band) for band in contact.bands],
         },
-        "limit_load": limit
-        and {
-            "unknowns": limit.unknowns,
-            "factor_same_mesh": finite(limit.ours),
-            "factor_calculix": finite(limit.theirs),
-        },
     }
 
 
@@ -80,7 +74,6 @@ def _rows(results: Results) -> Iterator[list[Cell]]:
         yield [
             *(o.pin, o.case, o.unknowns or None, o.displacement, o.stress, o.ours, o.theirs),
             *(o.answer, o.error, ratio, not o.complaint, u.stress, o.complaint, *own),
-            *((o.limit.ours, o.limit.theirs) if o.limit else (None, None)),
         ]
 
 

@@ -24,7 +24,7 @@ from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import Pin, Segment
-from geometry.mesh.moved.outline_motion import OtherShapeError, OutlineNodes, Reach
+from geometry.mesh.outline_motion import OtherShapeError, OutlineNodes, Reach
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.shape.dimensions import dimensions
 from tests.support.each import each, sampled

@@ -7,10 +7,10 @@ import pytest
 
 from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
 from assess.fatigue.critical_plane import findley_k, worst_plane
+from assess.fatigue.critical_points import signed_von_mises
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from assess.fatigue.flight import Flight, case_by_case, flight, rainflow, turning_points
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
-from assess.fatigue.signed_stress import signed_von_mises
 from assess.fatigue.sn_curve import MeanStress, SnCurve
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError

@@ -37,7 +37,7 @@ def test_the_beam_is_statics(check: BeamCheck) -> None:
 
 
 def test_the_constants_are_michells(check: BeamCheck) -> None:
-    """assess.opinion.michell: (2 + n) / (6 (1 + n)) and (1 + n + n^2) / (3 (1 - n^2)) at n =
+    """assess.opinion.cantilever: (2 + n) / (6 (1 + n)) and (1 + n + n^2) / (3 (1 - n^2)) at n =
     0.3.
     """
     scale = 500.0 / LENGTH / (math.pi * RADIUS)

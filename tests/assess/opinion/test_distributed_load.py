@@ -1,7 +1,7 @@
 """Michell's constant term: the stress fields behind it satisfy elasticity, and the solid has it.
 
 Reference: J. H. Michell, Quart. J. Math. 32 (1901) 28; the fields for these two loads are worked
-out in assess/opinion/michell.py. Tolerances: of the fields' derivatives what differences of step
+out in assess/opinion/cantilever.py. Tolerances: of the fields' derivatives what differences of step
 leave, of closed forms rounding, of the solid the error of its nodal stresses, as measured there.
 The fields are for radius 1 and 1 N/m along x; M is zero at z = LENGTH.
 """
@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from assess.opinion.michell import axis_load_term, constant_stress, surface_load_term
+from assess.opinion.cantilever import axis_load_term, constant_stress, surface_load_term
 from fea.core.material import Material
 from fea.solid.model import SolidModel, UnitFields
 from geometry import Pin, Segment

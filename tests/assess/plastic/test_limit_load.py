@@ -8,11 +8,10 @@ import pytest
 from assess.plastic import path
 from assess.plastic.body import FlowingBody, untied
 from assess.plastic.flow import FlowRule
-from assess.plastic.flow_field import flow_field
 from assess.plastic.limit_load import bracket, limit_on_mesh
 from assess.plastic.mechanism import isochoric, upper_bound, work_of_flow
 from assess.plastic.pin_body import acting_at, hexahedral, pin_body, plane_of, refine
-from assess.plastic.solve import TETRAHEDRA_NOTE, body_on, limit_load
+from assess.plastic.solve import TETRAHEDRA_NOTE, body_on, flow_field, limit_load
 from fea.core.material import Material
 from fea.core.pin_loads import LoadAmounts, PinLoads, UnitLoad
 from fea.core.tractions import tractions_of

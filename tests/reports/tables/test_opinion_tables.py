@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from assess.opinion.opinions import BandOpinion, ContactOpinion, LimitOpinion, Opinion
+from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion
 from reports.data.results import Results
 from reports.page.page import render
 from reports.page.second_opinion import opinion_part
@@ -26,9 +26,6 @@ BANDS = (
 CONTACT = ContactOpinion(BANDS, 100.0, 103.0, 9000, 0.02, 0.08)
 PRESSED = Opinion(*MADE_UP, 1000.0, 20.0, 20000, theirs=1050.0, contact=CONTACT)
 SAME = Opinion(*MADE_UP, 100.0, 5.0, 900, 1e-7, 1e-5, 95.0, 95.0)
-
-
-LIMIT = LimitOpinion(800, 1.377, 1.387)
 
 
 @pytest.fixture
@@ -59,28 +56,6 @@ def test_tables_and_json_have_the_same_numbers(opined: Results) -> None:
     assert [row[3:7] for row in loads.rows][:2] == [[0.0, 1.0, 9.0, 8.0], [1.0, 2.0, 4.0, 4.0]]
     assert len(loads.rows) == 5
     assert opinion_json(None) is None
-
-
-def test_limit_loads_are_compared_too(opined: Results) -> None:
-    """A difference beyond its limit is a complaint of the row, next to those of its stress."""
-    assert not replace(SAME, limit=LIMIT).complaint
-    far = replace(SAME, limit=replace(LIMIT, theirs=1.2))
-    assert "limit load is -12.9%" in far.complaint
-    lost = replace(SAME, stress=1.0, limit=LimitOpinion(800, failure="limit load: ccx failed"))
-    assert "von Mises stresses" in lost.complaint
-    assert lost.complaint.endswith("ccx failed")
-    pin = opined.pins[0]
-    first = replace(pin, second_opinion=replace(far, pin=pin.pin, case=pin.case))
-    with_one = replace(opined, pins=(first, *opined.pins[1:]))
-    rows, _ = opinion_tables(with_one)
-    row = dict(zip(rows.columns, rows.rows[0], strict=True))
-    assert (row["load_factor_same_mesh"], row["load_factor_calculix"]) == (1.377, 1.2)
-    found = opinion_json(far)
-    assert found is not None
-    assert found["limit_load"]["factor_calculix"] == 1.2
-    text = StringIO()
-    print_second_opinion(with_one, Console(file=text, width=200))
-    assert "CalculiX carries 1.200 times the loads, we 1.377 (-12.9 %)" in text.getvalue()
 
 
 def test_a_prescribed_joint_is_compared_on_the_same_mesh(opined: Results) -> None:

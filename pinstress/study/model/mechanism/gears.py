@@ -8,9 +8,8 @@ from loads import Gear, LinkageError, Rack, Slider, Teeth, gear_pair, rack_and_p
 from pinstress.study.model.mechanism.drawing import Drawing
 from pinstress.study.schema.gears import GearTable, RackTable
 
-CENTRE_DISTANCE_TOLERANCE = (
-    1e-3  # of the distance of the centres: by so much pitch radii may miss each other
-)
+# Of the distance of the centres: by so much pitch radii may miss each other
+CENTRE_DISTANCE_TOLERANCE = 1e-3
 NAME_JOINT_REMEDY = "name the joint about which it turns"
 
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from fea.core.peak import Maximum, Refinement
-from pinstress.analysis.cache import serialise as packing
-from pinstress.analysis.cache import store as cache_module
-from pinstress.analysis.cache.store import Cache, user_cache
+from pinstress.analysis import cache as cache_module
+from pinstress.analysis import serialise as packing
+from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.stored import Entry, PinOutcome
 from reports.data.results import Field
 from tests.support.each import each
@@ -44,10 +44,10 @@ def test_a_damaged_entry_is_none_and_is_replaced(
 def test_a_change_in_the_source_is_another_program(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "pinstress" / "cache").mkdir(parents=True)
+    (tmp_path / "pinstress" / "analysis").mkdir(parents=True)
     (tmp_path / "fea" / "core").mkdir(parents=True)
-    store = tmp_path / "pinstress" / "cache" / "store.py"
-    monkeypatch.setattr(cache_module, "__file__", str(store))
+    module = tmp_path / "pinstress" / "analysis" / "cache.py"
+    monkeypatch.setattr(cache_module, "__file__", str(module))
     seen = set()
     for source in ("x = 1", "x = 2"):
         (tmp_path / "fea" / "core" / "stress.py").write_text(source)

@@ -14,7 +14,8 @@ import pinstress
 from fea.support.support import Solution
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import prepare
-from pinstress.analysis.remedies.sensitivities import by_length
+from pinstress.analysis.remedies.joint_parameters import joint_parameters
+from pinstress.analysis.remedies.sensitivities import differentiated_in_lugs
 from pinstress.analysis.solve import solutions, solve_tasks
 from pinstress.cli.commands import run_command_line
 from reports.data.results import PinSensitivities
@@ -143,7 +144,7 @@ def test_of_a_beam_they_are_relative_to_its_maximum() -> None:
 def test_in_contact_by_all_of_the_joint() -> None:
     """Where asked; else how to get them. Eyes without an outer diameter grow with the pin, and the
     stiffness against tilt with that of their material: so all lengths together and all moduli obey
-    the rules of sums, and differences of other studies agree. `by_length` gives those asked for.
+    the rules of sums, and differences of other studies agree. Some can be asked for alone.
     """
     study = pinstress.study_from(CLEVIS)
     plan = replace(prepare(study), sensitive=True)
@@ -166,8 +167,10 @@ def test_in_contact_by_all_of_the_joint() -> None:
     assert isinstance(joined, Solution)
     lengths = {row.key: row.stress for row in found.rows if row.kind == "length"}
     some = [key for key in lengths if key.endswith("diameter")]
-    ours = by_length(study, task, joined, some)
-    assert ours is not None
+    asked = [x.of_joint for x in joint_parameters(study, task) if x.of_joint.key in some]
+    alone = differentiated_in_lugs(joined, task, asked, alone=True)
+    assert alone is not None
+    ours = alone.by_parameter
     assert set(ours) == set(some)
     stress, length = study.system.factor("stress"), study.system.factor("length")
     for key in some:

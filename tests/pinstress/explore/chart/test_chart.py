@@ -5,25 +5,18 @@ from __future__ import annotations
 import csv
 import math
 import time
-import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
 from fea.core.mesh_result import MeshMaximum
-from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.single_mesh import Rung
-from geometry import Pin, Segment
-from pinstress import load_study, study_from
+from pinstress import load_study
 from pinstress.cli.chart import _report_missed
 from pinstress.explore.chart.chart import ChartPlan, chart, plan_chart
 from pinstress.explore.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
-from pinstress.explore.chart.single_limit import LimitFound, LimitProblem, LimitRung, limit_found_on
-from pinstress.study.reading.file import Study
 from reports.data.chart import Chart, ChartPoint
 from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
@@ -31,7 +24,6 @@ from reports.tables.chart import write_chart_csv
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
 from tests.conftest import ROOT
 from tests.support.each import each
-from tests.support.exact.plastic import STEEL, D
 from tests.support.programs.command_line import ONE_PIN
 
 STUDY = ROOT / "studies" / "one_pin.toml"
@@ -54,10 +46,6 @@ class MadeUp:
 
     def __call__(self, job: MeasureJob) -> Measured:
         rung = job.rung
-        if isinstance(rung, LimitRung):
-            lower = round(0.8 + 0.05 * rung.meshes, 2)
-            found = LimitFound(lower, 1.0, rung.meshes == 3, 1000 * rung.meshes)
-            return Measured(None, 1.0 + rung.meshes, 10.0, 100.0, limit=found)
         if reason := self.fails.get((rung.model, rung.element if rung.model == "solid" else "")):
             return Measured(None, failed=reason, over="limit" in reason)
         part = {"linear": 4.0, "straight": 2.0, "curved": 1.0}[rung.element]
@@ -102,54 +90,6 @@ def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart)
     beam = made_up.points[0]
     assert beam.error == pytest.approx(0.3, abs=2 * true)
     assert "Reference: harmonic model" in reference_line(made_up)
-
-
-def yielding(**analysis: Any) -> Study:
-    """The pin of the study under 120 times its load."""
-    text = STUDY.read_text().replace("-988.86", "-120000.0")
-    table = tomllib.loads(text)
-    table["analysis"] = {**table["analysis"], **analysis}
-    return study_from(table)
-
-
-def test_models_of_the_limit_load_are_charted_where_a_run_computes_it(
-    plan: ChartPlan, tmp_path: Path
-) -> None:
-    """With half of the bracket as the error; they are no candidates for the cheapest model."""
-    assert plan.limit is None  # it does not yield
-    assert plan_chart(yielding(limit_load="never"), "B", "landing").limit is None
-    beyond = plan_chart(yielding(), "B", "landing")
-    assert beyond.limit is not None
-    found = chart(beyond, MadeUp({}))
-    assert [p.model for p in found.points][-3:] == ["hinges", *2 * ["elastic-plastic"]]
-    assert [p.chosen for p in found.points][-3:] == [False, False, True]
-    assert [p.error for p in found.points][-3:] == pytest.approx([1 / 9, 1 / 19, 1 / 39])
-    assert "Limit load: 0.9500 to 1.000 times the loads" in summary(found)
-    assert "Cheapest within 5 %: harmonic" in summary(found)
-    drawn = chart_plot(found).spec
-    names = drawn["hconcat"][0]["layer"][2]["encoding"]["color"]["scale"]["domain"]
-    assert names[-2:] == ["limit load: hinges", "limit load: elastic-plastic"]
-    write_chart_csv(found, tmp_path)
-    *_, last = csv.DictReader((tmp_path / "chart.csv").read_text().splitlines())
-    assert (last["load_factor_lower"], last["load_factor_upper"]) == ("0.95", "1.0")
-    assert last["max_von_mises"] == ""
-
-
-def test_rungs_of_a_limit_load() -> None:
-    """Of a cantilever: the solid on two meshes is within the hinges' bracket, and narrower."""
-    pin = Pin("p", (Segment(2 * D, D), Segment(0.5 * D, D, connection="a")))
-    loads = PinLoads("c", ("a",), np.array([[[11e3, 0.0, 0.0]]]))
-    problem = LimitProblem(pin, STEEL, ("start",), loads)
-    hinges, solid = (
-        limit_found_on(problem, rung)
-        for rung in (LimitRung("hinges"), LimitRung("elastic-plastic", 2))
-    )
-    assert hinges.lower < solid.lower < solid.upper < hinges.upper
-    assert solid.error < 0.05 < hinges.error
-    assert solid.unknowns > 1000
-    light = replace(problem, loads=replace(loads, forces=0.1 * loads.forces))
-    assert limit_found_on(light, LimitRung("hinges")).ends
-    assert not hinges.ends
 
 
 def test_the_mesh_on_which_auto_ends_is_marked(plan: ChartPlan) -> None:

@@ -14,6 +14,7 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import binom, norm
 
 from benchmarks.runs.reliability import assessed, cases
+from pinstress.explore.reliability.designs import NormalSpace
 from pinstress.explore.reliability.form import (
     NOISY_CLOSENESS,
     design_point,
@@ -27,7 +28,6 @@ from pinstress.explore.reliability.sampling import (
     probability,
     quantile,
 )
-from pinstress.explore.reliability.space import NormalSpace
 
 Array = NDArray[np.float64]
 

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
 import pytest
 
 import pinstress
 from fea.harmonic.kept_fields import EveryMesh
-from geometry import Pin
-from geometry.mesh.moved import near_mesh
-from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
 from pinstress.explore.sweep.evaluate import Evaluator, Memo
 from pinstress.explore.sweep.number import number_at
 from pinstress.study.model.cases import case_loads
-from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, varied
+from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH
 
-VARIED = varied(f'"{DIAMETER}" = {{ from = 1.5, to = 3.0 }}')
 MODULUS = "material.AISI 4340.youngs_modulus"
 
 
@@ -29,14 +23,9 @@ def _evaluator(study: Study, *keys: str) -> tuple[Evaluator, list[float]]:
     return Evaluator(study, numbers), [number.nominal for number in numbers]
 
 
-@pytest.mark.parametrize("text", [ONE_PIN, VARIED], ids=["own meshes", "moved meshes"])
-def test_rows_are_those_of_a_run_of_the_changed_study(
-    text: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """To the last bit: a dimension, a load and a strength, one after the other and together. The
-    run has no mesh of another design.
-    """
-    study = study_from(text)
+def test_rows_are_those_of_a_run_of_the_changed_study() -> None:
+    """To the last bit: a dimension, a load and a strength, one after the other and together."""
+    study = study_from(ONE_PIN)
     evaluator, at = _evaluator(study, DIAMETER, FORCE, STRENGTH)
     stress = study.system.factor("stress")
     for scales in [(1.0, 1.0, 1.0), (1.1, 1.0, 1.0), (1.1, 1.3, 1.0), (1.1, 1.3, 0.9)]:
@@ -45,9 +34,7 @@ def test_rows_are_those_of_a_run_of_the_changed_study(
         changes = {
             n.key: n.in_study(v / n.factor) for n, v in zip(evaluator.numbers, values, strict=True)
         }
-        with monkeypatch.context() as patch:
-            patch.setattr(near_mesh, "_KEPT_MESHES", near_mesh._Kept())
-            found = pinstress.run(changed_study(study, changes)).pins[0]
+        found = pinstress.run(changed_study(study, changes)).pins[0]
         assert row.max_von_mises is not None
         assert row.max_von_mises / stress == found.max_von_mises
         assert row.error_estimate is not None
@@ -55,40 +42,6 @@ def test_rows_are_those_of_a_run_of_the_changed_study(
         assert row.safety_factor == found.safety_factor
         assert (row.pin, row.case, row.verdict) == ("B", "landing", found.verdict)
         assert (row.reason, row.code, row.governing_time) == ("", "", None)
-
-
-def test_moved_meshes_are_as_good_as_own_ones() -> None:
-    """Their maxima are as far apart as the errors of both say, and shapes share their meshes."""
-    study = study_from(VARIED)
-    own = changed_study(study, {"analysis.meshes": "own"})
-    assert (study.meshes, own.meshes, study_from(ONE_PIN).meshes) == ("moved", "own", "own")
-    (moved, _), (direct, _) = (_evaluator(s, DIAMETER) for s in (study, own))
-    for diameter in np.linspace(0.04, 0.07, 7):
-        a, b = (each.rows([diameter])[0] for each in (moved, direct))
-        assert a.max_von_mises is not None
-        assert b.max_von_mises is not None
-        assert a.error_estimate is not None
-        assert b.error_estimate is not None
-        assert a.max_von_mises != b.max_von_mises
-        apart = abs(a.max_von_mises - b.max_von_mises)
-        assert apart < a.error_estimate + b.error_estimate
-        assert (a.verdict, b.verdict) == ("converged", "converged")
-
-
-def test_near_designs_share_their_meshes(monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[Pin] = []
-
-    def counted(pin: Pin, *more: Any) -> MeridianMesh:
-        made.append(pin)
-        return meridian_mesh(pin, *more)
-
-    monkeypatch.setattr(near_mesh, "_KEPT_MESHES", near_mesh._Kept())
-    monkeypatch.setattr(near_mesh, "meridian_mesh", counted)
-    evaluator, _ = _evaluator(study_from(VARIED), DIAMETER)
-    for diameter in np.linspace(0.0505, 0.0510, 6):
-        assert evaluator.rows([diameter])[0].verdict == "converged"
-    assert evaluator.meshes.solved == 18
-    assert len(made) < 9
 
 
 def test_loads_and_strength_alone_mesh_nothing_again() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import Counter
 from functools import partial
-from itertools import pairwise
 from multiprocessing import resource_tracker
 from pathlib import Path
 
@@ -17,8 +16,7 @@ from pyarrow import parquet
 from rich.console import Console
 
 import pinstress
-from geometry.mesh.moved.near_mesh import step
-from pinstress import InputError, load_study, shipped_studies
+from pinstress import InputError
 from pinstress.explore.sweep.batches import (
     BATCH_OVERHEAD_SECONDS,
     MAX_BATCH_DESIGNS,
@@ -28,7 +26,6 @@ from pinstress.explore.sweep.batches import (
     DesignProblem,
     SolvedBatch,
     aim_of,
-    ordered,
     solve_batch,
 )
 from pinstress.explore.sweep.number import number_at
@@ -174,18 +171,6 @@ def test_designs_of_the_same_shape_follow_each_other_in_a_batch() -> None:
         order += list(batch.designs)
     assert sorted(order) == sorted(set(range(40)) - {5, 6})
     assert (np.diff(values[order, 0]) >= 0.0).all()
-
-
-def test_designs_whose_rounded_shapes_are_the_same_follow_each_other() -> None:
-    """Of two dimensions that vary together: else two designs of a class of the second one would be
-    as far apart as the first has values.
-    """
-    study = load_study(shipped_studies()["one_pin"])
-    numbers = [number_at(study, f"pin.B.profile[{k}].diameter") for k in (1, 2)]
-    values = np.random.default_rng(2).uniform(0.03, 0.05, (300, 2))
-    classes = [tuple(map(step, values[i])) for i in ordered(numbers, values)]
-    changes = sum(a != b for a, b in pairwise(classes))
-    assert changes == len(set(classes)) - 1 < 150
 
 
 def test_batches_are_as_long_as_they_should_be() -> None:

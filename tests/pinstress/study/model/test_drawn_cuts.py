@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from geometry import CutPin, Flat, Hole, Passage, Pin, Segment, Slot
-from pinstress.study.model.drawn_cuts import cut_shapes
+from pinstress.analysis.gather.gather import cut_shapes
 from pinstress.study.model.pins import outline
 from reports.data.in_units import in_units
 from reports.data.results import PinShape

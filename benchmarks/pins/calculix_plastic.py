@@ -4,7 +4,6 @@ until it finds no equilibrium; the load factor that it reached is a lower bound 
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,36 +11,14 @@ import numpy as np
 
 from assess.opinion.calculix import CALCULIX_COMMAND, JOB_NAME, CalculixError, attempt, end
 from assess.opinion.calculix_deck import mesh_lines, real
-from assess.opinion.opinions import LimitOpinion
 from assess.plastic.body import Ties
-from assess.plastic.flow import FlowRule
-from assess.plastic.limit_load import limit_on_mesh
-from assess.plastic.pin_body import PinBody, refine
-from assess.plastic.solve import MESH_SIZES, body_on
-from fea.core.linear_solver import SolveError
+from assess.plastic.pin_body import PinBody
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads
-from geometry import Pin
 from geometry.mesh.hexahedra import twenty
 from pinbase.arrays import Floats
 
 MIN_INCREMENT = 1e-3  # increment of the loads, of the largest
 MAX_INCREMENT = 0.04
-MAX_LOAD_RATIO = 1.05  # of our factor: so far CalculiX is asked to load the pin
-
-
-def limit_opinion(
-    pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
-) -> LimitOpinion:
-    """On the first mesh of assess.plastic.solve, under the loads of one instant."""
-    made = body_on(pin, FlowRule(material), clamps, loads, MESH_SIZES[0])
-    try:
-        ours = limit_on_mesh(made.body, made.forces, refine(made.body.elements)).reached
-        with tempfile.TemporaryDirectory(prefix="pinstress-") as folder:
-            theirs = factor_reached(made, MAX_LOAD_RATIO * ours, Path(folder))
-    except (CalculixError, SolveError) as error:
-        return LimitOpinion(made.body.size, failure=f"limit load: {error}")
-    return LimitOpinion(made.body.size, ours, theirs)
 
 
 def factor_reached(pin: PinBody, most: float, folder: Path) -> float:

@@ -2,7 +2,7 @@
 named by the SHA-256 of everything its answer depends on.
 
 A file is a line with our name, the hash of its own name and its content, and the content
-(pinstress.analysis.cache.serialise). One that is damaged, renamed or of another type is as good as
+(pinstress.analysis.serialise). One that is damaged, renamed or of another type is as good as
 none, and so is a folder that cannot be written. Other programs, too, name files by hashes: only
 what has our line is ever removed.
 """
@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from pinbase.platform import portable
-from pinstress.analysis.cache.serialise import pack, unpack
+from pinstress.analysis.serialise import pack, unpack
 
 T = TypeVar("T")
 
@@ -58,7 +58,7 @@ class Cache:
     limit: int = MAX_CACHE_SIZE
 
     def key(self, asked: object) -> str:
-        """The name of the answer to what is asked (of what pinstress.analysis.cache.serialise
+        """The name of the answer to what is asked (of what pinstress.analysis.serialise
         takes).
         """
         return hashlib.sha256(self.program.encode() + pack(asked)).hexdigest()
@@ -148,7 +148,7 @@ def program() -> str:
     """
     made_by = [(name, _version(name)) for name in REQUIRED_PACKAGES], portable()
     found = hashlib.sha256(repr(made_by).encode())
-    root = Path(__file__).parents[3]
+    root = Path(__file__).parents[2]
     for room in SOURCE_PACKAGES:
         for path in sorted((root / room).rglob("*.py")):
             name = path.relative_to(root).as_posix()

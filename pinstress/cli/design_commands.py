@@ -47,7 +47,7 @@ def sweep(
     quiet: bool,
 ) -> int:
     loaded = read_study(study)
-    from pinstress.cli.designs.sweep import Way, sweep_and_write
+    from pinstress.cli.sweep import Way, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
     way = Way(jobs, scheduler, resume, opens, quiet)
@@ -78,7 +78,7 @@ def reliability(
     quiet: bool,
 ) -> int:
     loaded = read_study(study)
-    from pinstress.cli.designs.reliability import reliability_and_write
+    from pinstress.cli.reliability import reliability_and_write
 
     directory = out or Path("out") / f"{loaded.name}-reliability"
     return reliability_and_write(loaded, directory, pins, cases, jobs, quiet)

@@ -12,7 +12,7 @@ import click
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
-from pinstress.cli.sizing.size import OTHER_FILE_REMEDY, close, target_of, why_missed
+from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of, why_missed
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
 from pinstress.explore.size.counted import low_factor

@@ -10,7 +10,7 @@ the same edges; the rate is by differences of fourth order, to 1e-10.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,18 +80,12 @@ class OutlineNodes:
         self.rows: Ints = np.concatenate(rows)
         self._places = places
 
-    def at(self, pin: Pin, reach: Mapping[RZ, float] | None = None) -> Floats:
-        """Where they are, (B, 2) in m, on a pin with the same edges. reach: the distances of cuts
-        there over the radius, by the vertices of the mesh's own pin; as on that by default.
-
-        Raises: OtherShapeError.
-        """
-        outline, reach = meridian(pin), self._reach if reach is None else reach
+    def at(self, pin: Pin) -> Floats:
+        """Where they are, (B, 2) in m, on a pin with the same edges. Raises: OtherShapeError."""
+        outline = meridian(pin)
         if _shape(outline) != self._shape:
             raise OtherShapeError
-        return np.concatenate(
-            [p.at(outline[p.edge], _cuts_of(p, outline, reach)) for p in self._places]
-        )
+        return np.concatenate([p.at(outline[p.edge]) for p in self._places])
 
     def motion(self, dimension: Dimension) -> NodeMotion:
         """Of every node with a dimension.
@@ -114,39 +108,32 @@ class OutlineNodes:
         return NodeMotion(key, rate_of([self.at(pin) for pin in pins], step), pins, step)
 
     def _cuts(self, edge: Edge) -> list[tuple[int, float]]:
-        """The end from which each cut is measured and its fraction of the edge, by fraction."""
+        """The cuts of a straight edge, in their order along it: the end (0, 1) from which each is
+        measured, and its distance from there over the radius there.
+        """
         if isinstance(edge, Arc):
             return []
-        length = math.dist(edge.start, edge.end)
-        found = [
-            (end, part if end == 0 else 1.0 - part)
-            for end, at in enumerate((edge.start, edge.end))
-            if (ratio := self._reach.get(at)) and (part := ratio * at[0] / length)
-        ]
-        found = sorted(
-            (x for x in found if MIN_CUT_POSITION < x[1] < MAX_CUT_POSITION), key=lambda x: x[1]
-        )
-        return (
-            found if len(found) < 2 or found[1][1] - found[0][1] > MIN_CUT_POSITION else found[:1]
-        )
+        along = []
+        for end, at in enumerate((edge.start, edge.end)):
+            if ratio := self._reach.get(at):
+                along.append((_cut_at(edge, end, ratio), end, ratio))
+        along = sorted(cut for cut in along if MIN_CUT_POSITION < cut[0] < MAX_CUT_POSITION)
+        if len(along) > 1 and along[1][0] - along[0][0] <= MIN_CUT_POSITION:
+            along = along[:1]
+        return [(end, ratio) for _, end, ratio in along]
 
 
-def _cuts_of(place: _Place, outline: tuple[Edge, ...], reach: Mapping[RZ, float]) -> list[float]:
-    """The fractions at which the edge of a place is cut now."""
-    edge = outline[place.edge]
-    length = math.dist(edge.start, edge.end)
-    out = []
-    for (end, _), ratio in zip(place.cuts, place.ratios(reach), strict=True):
-        part = ratio * (edge.end if end else edge.start)[0] / length
-        out.append(1.0 - part if end else part)
-    return out
+def _cut_at(edge: Edge, end: int, ratio: float) -> float:
+    """The fraction of a straight edge at which it is cut."""
+    part = ratio * (edge.end if end else edge.start)[0] / math.dist(edge.start, edge.end)
+    return 1.0 - part if end else part
 
 
 class _Place:
     """Nodes on one edge of the outline, by its number."""
 
     def __init__(self, edge: int, cuts: list[tuple[int, float]], on: Edge, nodes: Floats) -> None:
-        self.edge, self.cuts, self._ends = edge, cuts, (on.start, on.end)
+        self.edge, self._cuts = edge, cuts
         if isinstance(on, Arc):
             a, b = np.array(on.start) - on.centre, nodes - on.centre
             angle = np.arctan2(a[0] * b[:, 1] - a[1] * b[:, 0], b @ a)
@@ -154,23 +141,23 @@ class _Place:
             return
         along = np.array(on.end) - np.array(on.start)
         part = (nodes - np.array(on.start)) @ along / (along @ along)
-        knots = np.array([0.0, *(x for _, x in cuts), 1.0])
+        knots = self._knots(on)
         self._between = np.clip(np.searchsorted(knots, part) - 1, 0, len(knots) - 2)
         low, high = knots[self._between], knots[self._between + 1]
         self._part = (part - low) / (high - low)
 
-    def ratios(self, reach: Mapping[RZ, float]) -> list[float]:
-        """Of the cuts' distances to the radius where they are measured from."""
-        return [reach[self._ends[end]] for end, _ in self.cuts]
+    def _knots(self, edge: Edge) -> Floats:
+        """The fractions of the edge at its ends and cuts."""
+        return np.array([0.0, *(_cut_at(edge, end, ratio) for end, ratio in self._cuts), 1.0])
 
-    def at(self, edge: Edge, cuts: list[float]) -> Floats:
-        """Where the nodes are on the edge now, which is cut there, (.., 2)."""
+    def at(self, edge: Edge) -> Floats:
+        """Where the nodes are on the edge of another shape, (.., 2)."""
         start = np.array(edge.start)
         if isinstance(edge, Arc):
             angle, (x, y) = self._part * edge.turn, start - edge.centre
             c, s = np.cos(angle), np.sin(angle)
             return np.asarray(np.stack([c * x - s * y, s * x + c * y], axis=1) + edge.centre)
-        knots = np.array([0.0, *cuts, 1.0])
+        knots = self._knots(edge)
         low, high = knots[self._between], knots[self._between + 1]
         part = low + self._part * (high - low)
         return np.asarray(start + part[:, None] * (np.array(edge.end) - start))

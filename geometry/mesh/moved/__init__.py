@@ -1,1 +1,0 @@
-"""Meshes of near shapes, with their nodes moved."""

@@ -1,1 +1,0 @@
-"""Answers and drawings of earlier runs, found by what they depend on."""

@@ -1,1 +1,0 @@
-"""The command `size`: by scaling, or to the least weight."""
