@@ -17,8 +17,8 @@ from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.support.records import JointForces
 from fea.support.lugs.lug import Lug
+from fea.support.records import JointForces
 from geometry import ArgumentError, Pin
 from pinbase.arrays import Floats
 

@@ -14,8 +14,8 @@ from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, wit
 from assess.strength.bending_arms import BendingArms, bending_arms
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.support.records import JointResult
 from fea.support.lugs.fit import on_structure
+from fea.support.records import JointResult
 from geometry import CutPin, Pin
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
