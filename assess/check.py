@@ -3,7 +3,7 @@
     @check("mean shear", "Shigley, 8-12", kind="hand", takes="section forces")
     def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
         stress = s.forces.mean_shear()
-        return text.at_levels(s, stress.stress, Place(stress.at, stress.z, stress.time), ...)
+        return text.at_levels(s, stress.stress, WorstPlace(stress.at, stress.z, stress.time), ...)
 
 A check is one file here or in assess.strength, its line in assess.checks, and its test.
 """
@@ -58,7 +58,7 @@ class Check(Protocol):
 
 
 @dataclass(frozen=True)
-class Place:
+class WorstPlace:
     """Where and when a demand is largest: a band or segment, z there (m), and time (s)."""
 
     at: str = ""
@@ -66,10 +66,10 @@ class Place:
     time: float | None = None
 
     @staticmethod
-    def at_band(band: Band, loads: PinLoads, instant: int) -> Place:
+    def at_band(band: Band, loads: PinLoads, instant: int) -> WorstPlace:
         """The middle of a band, at an instant of loads."""
         times = loads.times
-        return Place(band.name, band.middle, None if times is None else float(times[instant]))
+        return WorstPlace(band.name, band.middle, None if times is None else float(times[instant]))
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class CheckText:
         self,
         s: Situation,
         stress: float,
-        place: Place,
+        place: WorstPlace,
         material: Material,
         strength: float | None,
         ruptures: Rupture | None = None,

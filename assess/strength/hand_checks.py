@@ -27,7 +27,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from assess.check import CheckText, Place, check
+from assess.check import CheckText, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import ForcesKind, NominalStress, Situation
 from fea.beam.line_load import acting, shares
@@ -94,7 +94,7 @@ def double_shear(text: CheckText, s: Situation) -> list[Margin]:
         t = int(load.argmax())
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= MAX_HALF_DIFFERENCE * load[t]:
             area = min(forces.sections[i].area for i in adjacent)
-            place = Place.at_band(band, loads, t)
+            place = WorstPlace.at_band(band, loads, t)
             stress, of = float(load[t]) / (2.0 * area), s.material
             margins += text.at_levels(s, stress, place, of, shear_yield(of), "shear", "F / (2 A)")
     return margins
@@ -110,7 +110,7 @@ def bearing(text: CheckText, s: Situation) -> list[Margin]:
         t = int(size.argmax())
         if size[t] > 0.0:
             pressure = float(size[t]) / (2.0 * band.radius * band.length)
-            place = Place.at_band(band, loads, t)
+            place = WorstPlace.at_band(band, loads, t)
             margins += text.at_levels(
                 s, pressure, place, of, of.yield_strength, "bearing", "F / (d L)"
             )
@@ -127,5 +127,5 @@ def bending(text: CheckText, s: Situation) -> list[Margin]:
     )
 
 
-def _place(stress: NominalStress) -> Place:
-    return Place(stress.at, stress.z, stress.time)
+def _place(stress: NominalStress) -> WorstPlace:
+    return WorstPlace(stress.at, stress.z, stress.time)

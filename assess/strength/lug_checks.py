@@ -24,7 +24,7 @@ import math
 
 import numpy as np
 
-from assess.check import CheckText, Place, check
+from assess.check import CheckText, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import Situation
 from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
@@ -84,7 +84,7 @@ def _of_lug(s: Situation, lug: Lug) -> list[Margin]:
     # The pin bears on the bushing, if there is one, and that on the bore of the lug.
     inside = 2.0 * (band.radius + (lug.bushing.thickness if lug.bushing else 0.0))
     bore = inside if lug.bushing else inside + lug.clearance
-    of, place = lug.material, Place.at_band(band, s.loads, t)
+    of, place = lug.material, WorstPlace.at_band(band, s.loads, t)
     net = net_section_stress(force, W, bore, thickness)
     out = shear_out_stress(force, W, bore, thickness)
     pressure, yields = bearing_stress(force, inside, thickness), of.yield_strength

@@ -8,8 +8,8 @@ from math import inf
 
 from assess.fatigue.records import PointHistory
 from assess.opinion.opinions import Opinion
+from assess.opinion.records import BeamCheck
 from assess.plastic.records import LimitLoad
-from assess.strength.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Maximum
 from fea.solve.refine import count_loads, sequence_of

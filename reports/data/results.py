@@ -11,9 +11,9 @@ from typing import Annotated, Literal, Self
 from assess.fatigue.records import PointFatigue, PointHistory
 from assess.margin import Margin, PinMargin
 from assess.opinion.opinions import Opinion
+from assess.opinion.records import BeamCheck
 from assess.plastic.records import LimitLoad
 from assess.strength.bending_arms import BendingArms
-from assess.strength.records import BeamCheck
 from fea.core.peak import Refinement, SingularZone
 from fea.core.places import Places
 from fea.support.records import JointResult

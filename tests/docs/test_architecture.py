@@ -25,7 +25,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "assess/opinion/calculix_deck.py",
     "assess/opinion/calculix_joint_deck.py",
     "assess/opinion/calculix_joint_mesh.py",
-    "assess/strength/records.py",
+    "assess/opinion/records.py",
     "geometry/shape/chords.py",
     "fea/core/sparsity.py",
     "assess/derivatives/records.py",

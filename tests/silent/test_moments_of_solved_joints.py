@@ -239,6 +239,6 @@ def test_a_cone_is_as_thin_as_it_is_at_the_moment() -> None:
     found = {check.method: check for check in margins_of(replace(s, joint=along))}
     d = 0.0225
     bent, sheared = found["bending, joint model"], found["single shear, mean"]
-    assert bent.stress == pytest.approx(32.0 * 100.0 / (math.pi * d**3))
-    assert sheared.stress == pytest.approx(4.0 * 4000.0 / (math.pi * d**2))
+    assert bent.demand == pytest.approx(32.0 * 100.0 / (math.pi * d**3))
+    assert sheared.demand == pytest.approx(4.0 * 4000.0 / (math.pi * d**2))
     assert (bent.at, bent.z) == ("segment 2", 0.05)

@@ -43,7 +43,7 @@ tolerance = 0.5
 NEW_FILE = '''
 """The force of a pin's links over its whole shadow, against a thousandth of yield."""
 
-from assess.check import CheckText, Place, check
+from assess.check import CheckText, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import Situation
 
@@ -55,7 +55,7 @@ def shadow_pressure(text: CheckText, s: Situation) -> list[Margin]:
     strength = s.material.yield_strength
     allowable = strength and 1e-3 * strength
     stress = float(s.across.sum(axis=1).max()) / shadow
-    return text.at_levels(s, stress, Place("root"), s.material, allowable, formula="F / (d L)")
+    return text.at_levels(s, stress, WorstPlace("root"), s.material, allowable, formula="F / (d L)")
 '''
 
 

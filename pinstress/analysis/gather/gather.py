@@ -8,7 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from assess.strength.records import BeamCheck
+from assess.opinion.records import BeamCheck
 from fea.core.peak import Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
