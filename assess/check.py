@@ -163,33 +163,17 @@ class CheckText:
 Make = Callable[[CheckText, Situation], Sequence[Margin]]
 
 
-@dataclass(frozen=True)
-class FunctionCheck:
-    """A check that is a function of its text and of a situation. It is a `Check`."""
+@dataclass(frozen=True, kw_only=True)
+class FunctionCheck(CheckText):
+    """A check that is a function of its own text and of a situation. It is a `Check`."""
 
-    text: CheckText
     takes: Takes
     scope: Scope
     make: Make
 
-    @property
-    def method(self) -> str:
-        """The check, as printed."""
-        return self.text.method
-
-    @property
-    def clause(self) -> str:
-        """Where the check is printed."""
-        return self.text.clause
-
-    @property
-    def kind(self) -> Kind:
-        """Of what the check is made."""
-        return self.text.kind
-
     def __call__(self, s: Situation) -> Sequence[Margin]:
         """The margins in a situation, as `Check`."""
-        return self.make(self.text, s)
+        return self.make(self, s)
 
 
 def check(
@@ -203,5 +187,6 @@ def check(
     scope: Scope = "case",
 ) -> Callable[[Make], FunctionCheck]:
     """A decorator that makes a check of a function; arguments as in `Check` and `CheckText`."""
-    text = CheckText(method, clause, kind, level, dimension)
-    return lambda make: FunctionCheck(text, takes, scope, make)
+    return lambda make: FunctionCheck(
+        method, clause, kind, level, dimension, takes=takes, scope=scope, make=make
+    )

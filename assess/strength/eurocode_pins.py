@@ -21,6 +21,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -33,6 +34,8 @@ GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors
 
 _CLAUSE = "EN 1993-1-8, 3.13"
 _TABLE = f"{_CLAUSE}.2, table 3.10"
+_by_forces = partial(check, clause=_TABLE, kind="clause", takes="section forces")
+_by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics")
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:
@@ -77,8 +80,7 @@ def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
     return np.asarray(0.591 * np.sqrt(at.modulus * force * play / area))
 
 
-@check("EN 1993 shear", _TABLE, kind="clause", takes="section forces", level="ultimate",
-       dimension="force")  # fmt: skip
+@_by_forces("EN 1993 shear", level="ultimate", dimension="force")
 def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The pin in shear."""
     fu = s.material.ultimate_strength
@@ -89,15 +91,13 @@ def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
     return [text.along(s, s.forces.shear, _sheared(s.forces, fu))]
 
 
-@check("EN 1993 bending", _TABLE, kind="clause", takes="section forces", level="ultimate",
-       dimension="moment")  # fmt: skip
+@_by_forces("EN 1993 bending", level="ultimate", dimension="moment")
 def eurocode_bending(text: CheckText, s: Situation) -> list[Margin]:
     """The pin in bending."""
     return _bending(text, s)
 
 
-@check("EN 1993 shear and bending", _TABLE, kind="clause", takes="section forces",
-       level="ultimate", dimension=RATIO_DIMENSION)  # fmt: skip
+@_by_forces("EN 1993 shear and bending", level="ultimate", dimension=RATIO_DIMENSION)
 def eurocode_shear_and_bending(text: CheckText, s: Situation) -> list[Margin]:
     """The pin in shear and bending together."""
     forces, fu, fy = s.forces, s.material.ultimate_strength, s.material.yield_strength
@@ -113,21 +113,19 @@ def eurocode_shear_and_bending(text: CheckText, s: Situation) -> list[Margin]:
     return [text.along(s, used[:, None], np.ones(1), note)]
 
 
-@check("EN 1993 bending, replaceable", _TABLE, kind="clause", takes="section forces",
-       dimension="moment")  # fmt: skip
+@_by_forces("EN 1993 bending, replaceable", dimension="moment")
 def eurocode_bending_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     """A replaceable pin in bending."""
     return _bending(text, s, replaceable=True) if s.replaceable else []
 
 
-@check("EN 1993 bearing", _TABLE, kind="clause", takes="statics", level="ultimate",
-       dimension="force")  # fmt: skip
+@_by_bands("EN 1993 bearing", level="ultimate", dimension="force")
 def eurocode_bearing(text: CheckText, s: Situation) -> list[Margin]:
     """The pin and its lugs in bearing."""
     return _bearing(text, s)
 
 
-@check("EN 1993 bearing, replaceable", _TABLE, kind="clause", takes="statics", dimension="force")
+@_by_bands("EN 1993 bearing, replaceable", dimension="force")
 def eurocode_bearing_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     """A replaceable pin and its lugs in bearing."""
     return _bearing(text, s, replaceable=True) if s.replaceable else []

@@ -61,7 +61,11 @@ def bearing_by_eurocode(found: Results, case: str = "pull") -> tuple[float | Non
 
 def of_lugs(found: Results, case: str) -> dict[tuple[str, str], float]:
     """Stresses of the checks of lugs, MPa."""
-    return {(c.method, c.at): c.demand for c in found[("P", case)].hand_checks if "lug" in c.method}
+    return {
+        (c.method, c.at): c.demand or 0.0
+        for c in found[("P", case)].hand_checks
+        if "lug" in c.method
+    }
 
 
 @pytest.mark.parametrize(

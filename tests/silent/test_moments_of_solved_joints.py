@@ -116,7 +116,7 @@ def test_the_couple_of_the_guided_lug_is_in_bending(joints: str, bore: float) ->
     assert stress > at_the_edge * per_moment
     for name in BESIDE:
         assert not own[name].governs
-        assert own[name].demand < 0.75 * at_the_edge * per_moment
+        assert (own[name].demand or math.inf) < 0.75 * at_the_edge * per_moment
     assert "bending" not in own
     shear = own["single shear, mean"]
     assert shear.demand == pytest.approx(4.0 * F / (math.pi * (D**2 - bore**2)), rel=1e-3)
