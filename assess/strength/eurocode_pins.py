@@ -82,7 +82,7 @@ def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
 
 @_by_forces("EN 1993 shear", level="ultimate", dimension="force")
 def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
-    """The pin in shear."""
+    """The shear force against F_v,Rd."""
     fu = s.material.ultimate_strength
     if s.forces.kind == "concentrated":
         return []
@@ -93,13 +93,13 @@ def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
 
 @_by_forces("EN 1993 bending", level="ultimate", dimension="moment")
 def eurocode_bending(text: CheckText, s: Situation) -> list[Margin]:
-    """The pin in bending."""
+    """The bending moment against M_Rd."""
     return _bending(text, s)
 
 
 @_by_forces("EN 1993 shear and bending", level="ultimate", dimension=RATIO_DIMENSION)
 def eurocode_shear_and_bending(text: CheckText, s: Situation) -> list[Margin]:
-    """The pin in shear and bending together."""
+    """The largest moment and the largest shear force of an instant together, against 1."""
     forces, fu, fy = s.forces, s.material.ultimate_strength, s.material.yield_strength
     if forces.kind == "concentrated":
         return []
@@ -115,25 +115,25 @@ def eurocode_shear_and_bending(text: CheckText, s: Situation) -> list[Margin]:
 
 @_by_forces("EN 1993 bending, replaceable", dimension="moment")
 def eurocode_bending_replaceable(text: CheckText, s: Situation) -> list[Margin]:
-    """A replaceable pin in bending."""
+    """The bending moment of a replaceable pin against M_Rd,ser."""
     return _bending(text, s, replaceable=True) if s.replaceable else []
 
 
 @_by_bands("EN 1993 bearing", level="ultimate", dimension="force")
 def eurocode_bearing(text: CheckText, s: Situation) -> list[Margin]:
-    """The pin and its lugs in bearing."""
+    """The force on each band against F_b,Rd of pin and lug."""
     return _bearing(text, s)
 
 
 @_by_bands("EN 1993 bearing, replaceable", dimension="force")
 def eurocode_bearing_replaceable(text: CheckText, s: Situation) -> list[Margin]:
-    """A replaceable pin and its lugs in bearing."""
+    """The force on each band of a replaceable pin against F_b,Rd,ser of pin and lug."""
     return _bearing(text, s, replaceable=True) if s.replaceable else []
 
 
 @check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", kind="clause", takes="statics")
 def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
-    """The contact stress of a replaceable pin in lugs with a clearance."""
+    """The contact stress of a replaceable pin in lugs with a clearance, against 2.5 f_y."""
     if not s.replaceable:
         return []
     strengths, lacking = _lower_strengths(s)

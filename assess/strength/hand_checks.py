@@ -27,7 +27,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from assess.check import CheckText, WorstPlace, check
+from assess.check import CheckText, Rupture, WorstPlace, check
 from assess.margin import Margin
 from assess.situation import ForcesKind, NominalStress, Situation
 from fea.beam.line_load import acting, shares
@@ -55,10 +55,8 @@ def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The mean shear stress V / A of the section where it is largest."""
     if not s.chosen:
         return []
-    of, stress = s.material, s.forces.mean_shear()
-    return text.at_levels(
-        s, stress.stress, _place(stress), of, shear_yield(of), "shear", "V / A", s.forces.basis
-    )
+    stress = s.forces.mean_shear()
+    return _along(text, s, stress, shear_yield(s.material), "V / A", "shear")
 
 
 @check("single shear, at the neutral axis", f"{SHIGLEY}, 3-11", kind="hand", takes="section forces")
@@ -66,11 +64,9 @@ def neutral_axis_shear(text: CheckText, s: Situation) -> list[Margin]:
     """The shear stress at the neutral axis, V Q / (I t), which is 4 V / (3 A) of a solid pin."""
     if not s.chosen:
         return []
-    of, stress = s.material, s.forces.neutral_axis_shear()
+    stress = s.forces.neutral_axis_shear()
     formula = "V Q / (I t)" if stress.section.inner else "4 V / (3 A)"
-    return text.at_levels(
-        s, stress.stress, _place(stress), of, shear_yield(of), None, formula, s.forces.basis
-    )
+    return _along(text, s, stress, shear_yield(s.material), formula)
 
 
 @check("double shear, mean", SHIGLEY_JOINTS, kind="hand", takes="statics")
@@ -95,15 +91,17 @@ def double_shear(text: CheckText, s: Situation) -> list[Margin]:
         if load[t] > 0.0 and np.linalg.norm(V[0, t] + V[1, t]) <= MAX_HALF_DIFFERENCE * load[t]:
             area = min(forces.sections[i].area for i in adjacent)
             place = WorstPlace.at_band(band, loads, t)
-            stress, of = float(load[t]) / (2.0 * area), s.material
-            margins += text.at_levels(s, stress, place, of, shear_yield(of), "shear", "F / (2 A)")
+            stress, material = float(load[t]) / (2.0 * area), s.material
+            margins += text.at_levels(
+                s, stress, place, material, shear_yield(material), "shear", "F / (2 A)"
+            )
     return margins
 
 
 @check("bearing", BEARING_SOURCE, kind="hand", takes="statics")
 def bearing(text: CheckText, s: Situation) -> list[Margin]:
     """The force across every loaded band over its projected area, F / (d L)."""
-    loads, of, margins = s.on_bands, s.material, list[Margin]()
+    loads, material, margins = s.on_bands, s.material, list[Margin]()
     for i, name in enumerate(loads.surfaces):
         band = s.pin.band(name)
         size = np.hypot(loads.forces[:, i, 0], loads.forces[:, i, 1])
@@ -112,7 +110,7 @@ def bearing(text: CheckText, s: Situation) -> list[Margin]:
             pressure = float(size[t]) / (2.0 * band.radius * band.length)
             place = WorstPlace.at_band(band, loads, t)
             margins += text.at_levels(
-                s, pressure, place, of, of.yield_strength, "bearing", "F / (d L)"
+                s, pressure, place, material, material.yield_strength, "bearing", "F / (d L)"
             )
     return margins
 
@@ -121,11 +119,18 @@ def bearing(text: CheckText, s: Situation) -> list[Margin]:
 def bending(text: CheckText, s: Situation) -> list[Margin]:
     """The elastic bending stress M c / I, with each kind of section forces."""
     method, clause = BENDING_TEXTS[s.forces.kind]
-    of, stress = s.material, s.forces.bending()
-    return replace(text, method=method, clause=clause).at_levels(
-        s, stress.stress, _place(stress), of, of.yield_strength, None, "M c / I", s.forces.basis
-    )
+    named = replace(text, method=method, clause=clause)
+    return _along(named, s, s.forces.bending(), s.material.yield_strength, "M c / I")
 
 
-def _place(stress: NominalStress) -> WorstPlace:
-    return WorstPlace(stress.at, stress.z, stress.time)
+def _along(
+    text: CheckText,
+    s: Situation,
+    stress: NominalStress,
+    strength: float | None,
+    formula: str,
+    ruptures: Rupture | None = None,
+) -> list[Margin]:
+    """The margins of a stress that follows from the section forces."""
+    place, basis = WorstPlace(stress.at, stress.z, stress.time), s.forces.basis
+    return text.at_levels(s, stress.stress, place, s.material, strength, ruptures, formula, basis)

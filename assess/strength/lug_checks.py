@@ -84,14 +84,16 @@ def _of_lug(s: Situation, lug: Lug) -> list[Margin]:
     # The pin bears on the bushing, if there is one, and that on the bore of the lug.
     inside = 2.0 * (band.radius + (lug.bushing.thickness if lug.bushing else 0.0))
     bore = inside if lug.bushing else inside + lug.clearance
-    of, place = lug.material, WorstPlace.at_band(band, s.loads, t)
+    material, place = lug.material, WorstPlace.at_band(band, s.loads, t)
     net = net_section_stress(force, W, bore, thickness)
     out = shear_out_stress(force, W, bore, thickness)
-    pressure, yields = bearing_stress(force, inside, thickness), of.yield_strength
+    pressure, yields = bearing_stress(force, inside, thickness), material.yield_strength
     return [
-        *NET_SECTION.at_levels(s, net, place, of, yields, "ultimate", NET_SECTION_FORMULA),
-        *SHEAR_OUT.at_levels(s, out, place, of, shear_yield(of), "shear", SHEAR_OUT_FORMULA),
-        *BEARING.at_levels(s, pressure, place, of, yields, "bearing", BEARING_FORMULA),
+        *NET_SECTION.at_levels(s, net, place, material, yields, "ultimate", NET_SECTION_FORMULA),
+        *SHEAR_OUT.at_levels(
+            s, out, place, material, shear_yield(material), "shear", SHEAR_OUT_FORMULA
+        ),
+        *BEARING.at_levels(s, pressure, place, material, yields, "bearing", BEARING_FORMULA),
     ]
 
 
