@@ -16,6 +16,7 @@ from pinstress.analysis.results import solve
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import Study
 from tests.conftest import LBF, ROOT
+from tests.support.each import each
 
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 NAMED = sorted(set(re.findall(r"`([\w/]+\.py)(?:: ([\w.]+))?`", PAGE)))
@@ -81,7 +82,7 @@ def test_much_is_named() -> None:
     }
 
 
-@pytest.mark.parametrize(("path", "name"), NAMED, ids=str)
+@each(("path", "name"), NAMED)
 def test_what_is_named_exists(path: str, name: str) -> None:
     text = (ROOT / path).read_text(encoding="utf-8")
     assert not name or name in defined(ast.parse(text))

@@ -14,6 +14,7 @@ from geometry.mesh import gmsh_tetrahedra as tetrahedra
 from geometry.mesh.elements import with_element
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.solid_mesh import MeshError, MeshSize, solid_mesh
+from tests.support.each import each
 from tests.support.errors import raises
 
 PINS = {
@@ -33,7 +34,7 @@ PINS = {
 }
 
 
-@pytest.mark.parametrize("name", PINS)
+@each("name", PINS)
 def test_volume_area_names_and_elements(name: str) -> None:
     pin = PINS[name]
     solid = solid_mesh(pin, MeshSize(), (pin.band("B").z0, pin.band("B").z1))

@@ -27,6 +27,7 @@ import pinstress.cli.plots as plots_command
 import pinstress.cli.view as view_command
 import reports.vtk.render as render
 from pinbase.processes.apart import Failed
+from tests.support.each import sampled
 from tests.support.programs.command_line import pinstress, run_here
 from tests.support.results.mutants import (
     DEEP,
@@ -139,6 +140,7 @@ def test_damaged_files_are_said(name: str, folder: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", DAMAGE)
 @pytest.mark.usefixtures("engineless")
 def test_many_damaged_files_are_said(name: str, folder: Path) -> None:
@@ -147,7 +149,7 @@ def test_many_damaged_files_are_said(name: str, folder: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "seed"), [(RESULTS, 500), (RESULTS, 501), (VTU, 502), (PAGE, 503)]
+    ("name", "seed"), sampled([(RESULTS, 500), (RESULTS, 501), (VTU, 502), (PAGE, 503)], every=2)
 )
 def test_damaged_files_are_said_by_the_program(name: str, seed: int, folder: Path) -> None:
     """With all its engines, in a process of its own."""

@@ -26,6 +26,7 @@ import pinstress.cli.plots as plots_command
 from pinbase.processes.apart import Failed, apart
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable
+from tests.support.each import sampled
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.results.small_folder import small_folder
 
@@ -48,7 +49,7 @@ def entries(folder: Path) -> set[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kilobytes", LIMITS)
+@pytest.mark.parametrize("kilobytes", sampled(LIMITS, every=2))
 def test_a_memory_limit_costs_pictures_alone(kilobytes: int, tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(QUICK, encoding="utf-8")
     solved = limited(kilobytes, cwd=tmp_path)

@@ -15,6 +15,7 @@ import pytest
 
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel, processes
 from pinstress.study.reading.errors import InputError
+from tests.support.each import each
 
 
 def child_processes() -> list[int]:
@@ -37,7 +38,7 @@ def square(x: float, tell: Tell) -> float:
     return x * x
 
 
-@pytest.mark.parametrize("most", [1, 2, 5])
+@each("most", [1, 2, 5])
 def test_answers_come_in_the_order_of_the_jobs(most: int) -> None:
     told: list[tuple[str, float]] = []
     work = [Job(f"{x}", partial(square, x)) for x in (0.0, 1.0, 2.0, 3.0)]
@@ -128,6 +129,7 @@ def test_an_interrupt_ends_processes_that_do_not_listen() -> None:
     assert child_processes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.linux
 def test_a_child_that_is_ended_as_it_starts_does_nothing_of_its_parents() -> None:
     """Under the parent's handlers, which raise, it would go on where the parent is."""

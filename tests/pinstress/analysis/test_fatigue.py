@@ -14,6 +14,7 @@ from fea.core.requirement import Model
 from fea.core.voigt import von_mises
 from pinstress.study.reading.errors import InputError
 from tests.pinstress.test_import import loaded_by
+from tests.support.each import each
 
 PIN = """
 title = "A pin"
@@ -122,7 +123,7 @@ def test_files_of_a_run(write: Write, tmp_path: Path) -> None:
     assert not (out / "fatigue.csv").exists()
 
 
-@pytest.mark.parametrize("method", ["signed-von-mises", "critical-plane", "fkm-p-ram"])
+@each("method", ["signed-von-mises", "critical-plane", "fkm-p-ram"])
 def test_every_method_has_an_answer(write: Write, method: str) -> None:
     more = FATIGUE.replace("life = 1000", f'method = "{method}"')
     more += '[material.steel.fkm]\ngroup = "Steel"\nroughness = "6 um"\nplastic_factor = 1.7\n'
@@ -137,7 +138,7 @@ def test_every_method_has_an_answer(write: Write, method: str) -> None:
         assert 0.0 < (early or 0.0) < (middle or 0.0) < (late or 0.0)
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "code"),
     [
         ("slope = 5\n", "", "missing-key"),

@@ -21,6 +21,7 @@ from pinstress.cli import manifest
 from pinstress.cli.output_folder import replacing
 from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.process_group import alive, started
 
 WRITER = """
@@ -348,7 +349,7 @@ def test_a_list_that_names_files_elsewhere_removes_none_of_them(tmp_path: Path) 
     assert names(tmp_path) == ["home", "out"]
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"schema": 1, "files": []}', "\0", '{"schema'])
+@each("text", ["", "[]", "{}", '{"schema": 1, "files": []}', "\0", '{"schema'])
 def test_a_list_that_is_none_makes_nothing_ours(text: str, tmp_path: Path) -> None:
     (tmp_path / "results.json").write_text("{}")
     (tmp_path / manifest.MANIFEST_FILE).write_text(text)

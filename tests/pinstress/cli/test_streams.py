@@ -85,6 +85,7 @@ def ended(commands: Iterable[str], *ends: str) -> list[Any]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "to", "told"), ended(TABLES, *ENDS))
 def test_a_table_that_cannot_be_printed_changes_no_status(
     tmp_path: Path, command: str, to: str, told: str
@@ -99,6 +100,7 @@ def test_a_table_that_cannot_be_printed_changes_no_status(
     assert "Exception ignored" not in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "to", "told"), ended(DATA, "full", "closed"))
 def test_data_that_cannot_be_printed_are_lost(
     tmp_path: Path, command: str, to: str, told: str
@@ -154,6 +156,7 @@ ASCII: list[Any] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("environment", ASCII)
 def test_a_terminal_that_knows_ascii_alone(tmp_path: Path, environment: dict[str, str]) -> None:
     text = SHARP.replace("[pin.B]", '[pin."Bügel ±"]').replace('"One pin', '"Bügel–β')

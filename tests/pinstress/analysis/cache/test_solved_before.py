@@ -273,6 +273,7 @@ def key_of(study: Path) -> str:
     return Cache(study.parent, "").key(cache_key(plan, plan.tasks[0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "changes"), [("vtk", "pin.vtk"), ("ele", "pin.node")])
 def test_a_mesh_is_known_by_its_bytes_and_by_what_lies_beside(
     tmp_path: Path, form: str, changes: str

@@ -16,6 +16,7 @@ import pytest
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
 from tests.pinstress.explore.chart.test_chart import CONTRACT, CURVED, LINEAR, STRAIGHT, STUDY
+from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, pinstress
 from tests.support.programs.process_group import started
 
@@ -26,7 +27,7 @@ profile = [{ length = 2.0, diameter = 2.0, connection = "C" }]
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "change", "message"),
     [
         (["--pin", "Q", "--case", "landing"], ("", ""), "--pin: the study has no pin 'Q'"),
