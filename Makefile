@@ -4,7 +4,7 @@ LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
 .PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable coverage mutants check types \
-	bench docs lock clean
+	bench docs wheel lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -15,7 +15,7 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 	@sh scripts/setup.sh
 
 PORTABLE = tests/pinbase/processes/test_workers.py \
-	$(addprefix tests/pinstress/,cli/test_output.py model/test_read_body.py test_import.py) \
+	$(addprefix tests/pinstress/,cli/test_output.py study/model/test_read_body.py test_import.py) \
 	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/tables/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
@@ -77,13 +77,17 @@ bench: setup ## run all benchmarks and write their tables into docs/measured (ab
 docs: setup ## build the documentation into build/docs; a warning is an error
 	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going -b html docs build/docs
 
+wheel: setup ## build the wheel into dist/
+	$(BIN)/python -m hatchling build -t wheel -d dist
+
 COMPILE = $(LOCKBIN)/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-emit-index-url --no-annotate --custom-compile-command "make lock" $(LOCKFLAGS)
 
 # The second file has the additional packages of the benchmarks, in versions compatible with the first.
 lock: ## bring the lock files up to pyproject.toml; LOCKFLAGS=--upgrade takes the newest of all
 	@test -x $(LOCKBIN)/uv || { python3 -m venv .venv-lock && $(LOCKBIN)/pip install --quiet uv; }
-	$(COMPILE) --extra dev --output-file requirements.lock pyproject.toml
+	$(COMPILE) --extra cluster --extra fatigue --extra pdf --extra dev \
+		--output-file requirements.lock pyproject.toml
 	$(COMPILE) --extra bench --constraint requirements.lock --output-file requirements-bench.lock \
 		pyproject.toml
 

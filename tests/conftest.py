@@ -23,7 +23,7 @@ hold_threads()  # as the command does, whose numbers are compared
 from fea.core.material import Material
 from geometry import Pin, Segment
 from loads import Linkage
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 from pinstress import load_study
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.file import Study

@@ -85,7 +85,7 @@ def test_bad_elements_are_repaired(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Discretisation(solid.mesh).weights.min() > 0.0
     assert Discretisation(solid.mesh).weights.sum() == pytest.approx(pin.volume, rel=1e-3)
     monkeypatch.setattr(tetrahedra, "MAX_REPAIRS", 0)
-    monkeypatch.setattr("geometry.mesh.solid_mesh.SMALLEST_JACOBIAN", 1.5)  # more than any has
+    monkeypatch.setattr("geometry.mesh.solid_mesh.MIN_JACOBIAN_RATIO", 1.5)  # more than any has
     with raises(MeshError, "bad-elements"):
         solid_mesh(pin, MeshSize(across=2.5).finer(2.0**0.5), edges)
 

@@ -13,9 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from pinbase.platform import offered
+from pinbase.platform import offered, portable
 from pinbase.platform import portable as portable_numerics
-from pinbase.processes.system import portable
 from tests.conftest import ROOT
 from tests.pinstress.cli.test_output import ROOM, SLOW, names
 from tests.support.programs.process_group import alive, started

@@ -130,7 +130,7 @@ def require_alone() -> None:
 def test_an_engine_that_hangs_is_stopped() -> None:
     """The kernel's timer of processor time is sent at once."""
     (found,) = apart([("endless", partial(ends, int(signal.SIGPROF)))], 60)
-    assert found == Failed("it was stopped after 60 s of processor time")
+    assert found == Failed("it exceeded the limit of 60 s of processor time")
 
 
 def test_a_picture_that_fails_leaves_the_others(

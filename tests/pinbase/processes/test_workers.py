@@ -137,7 +137,7 @@ def test_a_child_that_is_ended_as_it_starts_does_nothing_of_its_parents() -> Non
 import os
 from functools import partial
 from pinbase.processes import interrupts
-from pinbase.processes.pool import Job, side_by_side
+from pinbase.processes.pool import Job, in_parallel
 from tests.pinbase.processes.test_workers import sleep, wrong
 from pinstress import InputError
 
@@ -145,7 +145,7 @@ own = os.getpid()
 interrupts.listen()
 for _ in range(200):
     try:
-        side_by_side([Job("long", sleep), Job("pin Q", wrong)], 2)
+        in_parallel([Job("long", sleep), Job("pin Q", wrong)], 2)
     except InputError:
         continue
     finally:

@@ -177,14 +177,3 @@ def test_the_first_point_has_the_largest_range_not_the_largest_stress(write: Wri
     assert top.case == "side"
     assert top.location is not None
     assert abs(top.location[1]) == pytest.approx(10.0)
-
-
-def test_without_pylife_histories_are_all_there_is(
-    write: Write, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("pinstress.analysis.gather.gather_fatigue.find_spec", lambda _: None)
-    results = pinstress.run(pinstress.load_study(write(PIN + FATIGUE)))
-    assert results.histories
-    assert results.fatigue is not None
-    assert results.fatigue.points == ()
-    assert results.fatigue.not_decided == {"P": "pylife is not installed"}

@@ -16,8 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from pinbase.processes import exchange
-from pinstress.cli import manifest
+from pinstress.cli import manifest, output_folder
 from pinstress.cli.output_folder import replacing
 from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
@@ -203,7 +202,7 @@ def test_a_full_disk_is_told_and_nothing_is_written(earlier: Path, jobs: str) ->
 def test_without_an_exchange_in_one_step_there_are_two(
     earlier: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(exchange, "RENAME_EXCHANGE", 1 << 20)  # which no file system knows
+    monkeypatch.setattr(output_folder, "RENAME_EXCHANGE", 1 << 20)  # which no file system knows
     with replacing(earlier) as staging:
         (staging / "results.json").write_text("next")
     assert (earlier / "results.json").read_text() == "next"

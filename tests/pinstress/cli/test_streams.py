@@ -16,7 +16,7 @@ import click
 import pytest
 
 from fea.core.linear_solver import SolveError
-from fea.solve.solve import solve_pin
+from fea.solve.solve import solve
 from pinbase.processes import interrupts
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line
@@ -254,10 +254,10 @@ def test_an_interrupt_that_is_dropped_comes_back(
     def dropping(*arguments: Any) -> Any:
         with suppress(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
-        return solve_pin(*arguments)
+        return solve(*arguments)
 
     (tmp_path / "study.toml").write_text(QUICK)
-    monkeypatch.setattr("pinstress.analysis.solve.solve_pin", dropping)
+    monkeypatch.setattr("pinstress.analysis.solve.solve", dropping)
     monkeypatch.chdir(tmp_path)
     with signals_heard():
         assert run_command_line([*RUN, "--jobs", "1"]) == 130

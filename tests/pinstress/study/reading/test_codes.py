@@ -25,7 +25,9 @@ def uncoded(path: Path) -> list[str]:
     return found
 
 
-@each("folder", ["analysis", "chart", "cli", "model", "study"])
+@each(
+    "folder", ["analysis", "cli", "explore/chart", "explore/sweep", "study/model", "study/reading"]
+)
 def test_every_error_has_a_code(folder: str) -> None:
     files = sorted((ROOT / "pinstress" / folder).glob("*.py"))
     assert files
