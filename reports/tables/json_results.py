@@ -7,12 +7,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from assess.margin import Margin
 from reports.data.decision import DEPENDS, outcome
 from reports.data.headline import headline_json
 from reports.data.results import (
     Dependence,
     DropRecord,
-    HandCheck,
     PinResult,
     ReactionTable,
     Results,
@@ -197,16 +197,16 @@ def _zone(zone: SingularZone) -> dict[str, Any]:
     }
 
 
-def _check(check: HandCheck) -> dict[str, Any]:
+def _check(check: Margin) -> dict[str, Any]:
     return {
-        "name": check.name,
+        "name": check.method,
         "at": check.at,
         "time": finite(check.time),
-        "stress": finite(check.stress),
-        "strength": finite(check.strength),
-        "factor": finite(check.factor),
+        "stress": finite(check.demand),
+        "strength": finite(check.allowable),
+        "factor": finite(check.safety_factor),
         "formula": check.formula,
-        "source": check.source,
+        "source": check.clause,
         "basis": check.basis,
         "governs": check.governs,
     }

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from assess.strength.margin import Margin, PinMargin
+from assess.margin import Margin, PinMargin
 from fea.support.records import JointRange, JointResult, Variation
 from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
@@ -204,7 +204,7 @@ def made_safe() -> PinResult:
 
 def test_the_headline_is_the_worst_of_all_checks() -> None:
     """FoS 4.462 of 1.5 beside 4.525 times the allowable fatigue damage: 1 / 4.525 - 1 = -0.779."""
-    fatigue = Margin("fatigue life", "critical plane", "limit", 4.525e-6, 1e-6, 1.0, "1")
+    fatigue = Margin("fatigue life", "critical plane", "fatigue", "limit", 1.0, 4.525e-6, 1e-6, "1")
     results = replace(only(made_safe()), margins=(PinMargin("A", "", fatigue),))
     assert headline(results) == "Pin A fails: fatigue life, margin of safety −0.779."
     assert "0 of 1 pin is safe in all cases (required factor 1.5); fails: A (fatigue life)." in (
@@ -220,8 +220,8 @@ def test_the_headline_is_the_worst_of_all_checks() -> None:
 
 
 def test_comparisons_and_checks_without_data_do_not_count() -> None:
-    weak = Margin("bending, for comparison", "", "limit", 2.0, 1.0, 1.0, governs=False)
-    open_ = Margin("bearing", "", "limit", None, None, 1.0, needs="bearing_strength")
+    weak = Margin("bending, for comparison", "", "hand", "limit", 1.0, 2.0, 1.0, governs=False)
+    open_ = Margin("bearing", "", "hand", "limit", 1.0, None, None, needs="bearing_strength")
     results = replace(
         only(made_safe()), margins=(PinMargin("A", "x", weak), PinMargin("A", "x", open_))
     )
@@ -230,7 +230,7 @@ def test_comparisons_and_checks_without_data_do_not_count() -> None:
 
 def test_rupture_within_the_error_is_not_decided() -> None:
     """The margin takes the upper end of the maximum; the lower end meets it: 1.004 / 1.01 < 1."""
-    rupture = Margin("von Mises stress, rupture", "", "ultimate", 1.004, 1.5, 1.5)
+    rupture = Margin("von Mises stress, rupture", "", "model", "ultimate", 1.5, 1.004, 1.5)
     results = replace(only(made_safe()), margins=(PinMargin("A", "x", rupture),))
     assert worst_checks(results)["A"].outcome == "not decided"
     sure = replace(rupture, demand=1.02)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from reports.data.results import HandCheck, PinResult, Results, Units
+from assess.margin import Margin
+from reports.data.results import PinResult, Results, Units
 from reports.format.files import markdown
 from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, components, engineering, short
@@ -13,7 +14,16 @@ from reports.format.ranges import factor_range
 from reports.format.words import verdict_words
 from reports.tables.table import Table
 
-CHECK_FIELDS = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
+CHECK_FIELDS = {  # heading -> attribute of a margin
+    "name": "method",
+    "at": "at",
+    "time": "time",
+    "stress": "demand",
+    "strength": "allowable",
+    "factor": "safety_factor",
+    "formula": "formula",
+    "source": "clause",
+}
 # The model's result for the same pin, with its verdict.
 MODEL_FIELDS = ("model", "max_von_mises", "safety_factor", "verdict")
 NUMERIC_CHECK_COLUMNS = ("stress", "strength", "factor", "time")
@@ -33,7 +43,7 @@ COLUMNS = (
     "pin",
     "case",
     "check",
-    *CHECK_FIELDS[1:],
+    *list(CHECK_FIELDS)[1:],
     *MODEL_FIELDS,
     "stress_unit",
     "time_unit",
@@ -103,16 +113,16 @@ def _model(pin: PinResult, units: Units) -> dict[str, str]:
     }
 
 
-def _check(check: HandCheck) -> dict[str, str]:
+def _check(check: Margin) -> dict[str, str]:
     return {
         "name": check.shown,
         "at": check.at,
         "time": DASH if check.time is None else short(check.time),
-        "stress": engineering(check.stress),
-        "strength": engineering(check.strength),
-        "factor": engineering(check.factor),
+        "stress": engineering(check.demand),
+        "strength": engineering(check.allowable),
+        "factor": engineering(check.safety_factor),
         "formula": check.formula,
-        "source": check.source,
+        "source": check.clause,
     }
 
 
@@ -120,7 +130,7 @@ def _rows(checked: list[PinResult], units: Units) -> Iterator[list[Cell]]:
     for pin in checked:
         model = [getattr(pin, name) for name in MODEL_FIELDS]
         for check in pin.hand_checks:
-            own = [getattr(check, name) for name in CHECK_FIELDS]
+            own = [getattr(check, name) for name in CHECK_FIELDS.values()]
             ends = pin.safety_factor_interval or (None, None)
             added = [getattr(check, name) for name in LATER_CHECK_FIELDS]
             yield [pin.pin, pin.case, *own, *model, units.stress, units.time, *ends, *added]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from assess.strength.margin import RATIO_DIMENSION, PinMargin
+from assess.margin import RATIO_DIMENSION, PinMargin
 from reports.data.governing import governing, skipped
 from reports.data.results import Results
 from reports.format.grid import Grid

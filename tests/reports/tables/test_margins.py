@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from assess.strength.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
+from assess.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
 from reports.data.results import Results, Units
 from reports.page.paper import document
 from reports.tables.strength.margins import (
@@ -18,11 +18,11 @@ from reports.tables.strength.margins import (
 )
 
 CHECKS = (
-    Margin("von Mises", "", "limit", 100e6, 250e6, 1.0),
-    Margin("shear", "", "ultimate", 5000.0, 30000.0, 1.5, "force", at="eye", time=2.0),
-    Margin("bending", "", "ultimate", 27.0, 120.0, 1.5, "moment"),
-    Margin("interaction", "", "ultimate", 0.2, 1.0, 1.5, RATIO_DIMENSION),
-    skipped("rupture", "", "ultimate", 1.5, "material.steel.ultimate_strength"),
+    Margin("von Mises", "", "model", "limit", 1.0, 100e6, 250e6),
+    Margin("shear", "", "clause", "ultimate", 1.5, 5000.0, 30000.0, "force", at="eye", time=2.0),
+    Margin("bending", "", "clause", "ultimate", 1.5, 27.0, 120.0, "moment"),
+    Margin("interaction", "", "clause", "ultimate", 1.5, 0.2, 1.0, RATIO_DIMENSION),
+    skipped("rupture", "", "model", "ultimate", 1.5, "material.steel.ultimate_strength"),
 )
 
 
@@ -63,7 +63,7 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
     """Of two pins in two cases; what was not made governs nothing and is named with its check."""
 
     def used(method: str, demand: float) -> Margin:
-        return Margin(method, "", "limit", demand, 100.0, 1.0)
+        return Margin(method, "", "hand", "limit", 1.0, demand, 100.0)
 
     margins = (
         PinMargin("A", "one", used("shear", 10.0)),
