@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from reports.data.results import PinResult, ReactionTable, Results, Units
-from reports.format.grid import Grid
+from reports.data.results import GoverningLoad, PinResult, ReactionTable, Results, Units
 from reports.format.numbers import DASH, components, engineering
 from reports.plots.loads.reactions import NO_PIN_NAME
+from reports.tables.column import Column, Grid, Table, grid_of, read_only
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
-
-TIMING_TEXT_COLUMNS = (True, True, True, False, False, False)
 
 
 @dataclass(frozen=True)
@@ -84,42 +83,35 @@ def loads_at(pin: PinResult, units: Units) -> Grid | None:
     """Force of every body on a pin at the governing instant, world axes; None without loads."""
     if not pin.loads:
         return None
+
+    def part(name: str, k: int) -> Callable[[GoverningLoad], str]:
+        largest = max(float(np.abs(getattr(load, name)).max()) for load in pin.loads)
+        return lambda load: components(getattr(load, name).tolist(), largest)[k]
+
+    couple = f" [{units.force}·{units.length}]"
     turns = any(load.moment.any() for load in pin.loads)
-    head = ["connection", "body", "force", "Fx", "Fy", "Fz"]
-    head[2] += f" [{units.force}]"
-    if turns:
-        head += [f"{m} [{units.force}·{units.length}]" for m in ("Mx", "My", "Mz")]
-    force, moment = (
-        max(float(np.abs(getattr(load, name)).max()) for load in pin.loads)
-        for name in ("force", "moment")
-    )
-    body = []
-    for load in pin.loads:
-        row = [load.connection, load.body or DASH]
-        row += [engineering(float(np.linalg.norm(load.force)))]
-        row += components(load.force.tolist(), force)
-        if turns:
-            row += components(load.moment.tolist(), moment)
-        body.append(row)
-    return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
+    columns: list[Column[GoverningLoad]] = [
+        read_only("connection", lambda load: load.connection, numeric=False),
+        read_only("body", lambda load: load.body or DASH, numeric=False),
+        read_only("force", lambda load: float(np.linalg.norm(load.force)), "force"),
+        *(read_only(f"F{x}", part("force", k)) for k, x in enumerate("xyz")),
+        *(read_only(f"M{x}{couple}", part("moment", k)) for k, x in enumerate("xyz") if turns),
+    ]
+    return Table("loads", columns, pin.loads).grid(units)
+
+
+TIMING_COLUMNS: list[Column[PinResult]] = [
+    read_only("pin", lambda p: p.pin, numeric=False),
+    read_only("case", lambda p: p.case, numeric=False),
+    read_only("model", lambda p: p.model, numeric=False),
+    read_only("meshes", lambda p: str(len(p.history)) if p.dofs else DASH),
+    read_only("unknowns, finest mesh", lambda p: f"{p.dofs:,}" if p.dofs else DASH),
+    read_only("seconds", lambda p: engineering(p.seconds, 2)),
+]
 
 
 def timings(results: Results) -> Grid | None:
-    """Meshes, unknowns and seconds of every row; None without rows."""
-    if not results.pins:
-        return None
-    body = [
-        [
-            p.pin,
-            p.case,
-            p.model,
-            str(len(p.history)) if p.dofs else DASH,
-            f"{p.dofs:,}" if p.dofs else DASH,
-            engineering(p.seconds, 2),
-        ]
-        for p in results.pins
-    ]
-    total = sum(p.seconds for p in results.pins)
-    body.append(["all", "", "", "", "", engineering(total, 2)])
-    head = ["pin", "case", "model", "meshes", "unknowns, finest mesh", "seconds"]
-    return Grid(head, body, [not text for text in TIMING_TEXT_COLUMNS])
+    """Meshes, unknowns and seconds of every row, and all seconds; None without rows."""
+    grid = grid_of(Table("timings", TIMING_COLUMNS, results.pins), results.units)
+    total = engineering(sum(p.seconds for p in results.pins), 2)
+    return grid and replace(grid, body=[*grid.body, ["all", "", "", "", "", total]])

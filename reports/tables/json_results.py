@@ -13,16 +13,17 @@ from reports.data.results import (
     Dependence,
     DropRecord,
     HandCheck,
-    PinResult,
     ReactionTable,
     Results,
     SingularZone,
 )
 from reports.format.numbers import finite
 from reports.format.words import headline
+from reports.tables.column import Table, json_of
 from reports.tables.strength.fatigue import fatigue_json
 from reports.tables.strength.limit_load import limit_load_json
-from reports.tables.strength.margins import margins_json
+from reports.tables.strength.margins import margins_table
+from reports.tables.strength.safety_factors import FactorRow, safety_factors_table
 from reports.tables.strength.sensitivities import sensitivities_json
 from reports.tables.stress.calculix import opinion_json
 from reports.tables.stress.joint import joint_json
@@ -33,6 +34,7 @@ RESULTS_SCHEMA = "pinstress-results/2"
 
 def to_json(results: Results) -> dict[str, Any]:
     """The results as plain JSON values; missing numbers are null."""
+    factors = safety_factors_table(results)
     return {
         "schema": RESULTS_SCHEMA,
         "title": results.title,
@@ -43,8 +45,8 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "headline": _headline(results),
-        "pins": [_pin(pin) for pin in results.pins],
-        "margins": margins_json(results),
+        "pins": [_pin(row, factors) for row in factors.rows],
+        "margins": margins_table(results).json(),
         "changes": [asdict(change) for change in results.changes],
         "sensitivities": sensitivities_json(results),
         "fatigue": fatigue_json(results.fatigue),
@@ -112,26 +114,17 @@ def _drop(d: DropRecord) -> dict[str, Any]:
     }
 
 
-def _pin(pin: PinResult) -> dict[str, Any]:
+def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
+    """A pin in a case: the columns of the safety factors that say so, and what no table has."""
+    row, pin = json_of([c for c in table.columns if c.in_json], of), of.pin
     return {
-        "pin": pin.pin,
-        "case": pin.case,
-        "model": pin.model,
-        "max_von_mises": finite(pin.max_von_mises),
+        **row,
         "max_von_mises_interval": _interval(pin.max_von_mises_interval),
-        "error_estimate": finite(pin.error_estimate),
         "error_parts": {part: finite(value) for part, value in pin.error_parts.items()},
-        "verdict": pin.verdict,
-        "note": pin.note,
         "why": pin.why,
         "location": None if pin.location is None else [finite(x) for x in pin.location],
-        "time": finite(pin.time),
-        "safety_factor": finite(pin.safety_factor),
         "safety_factor_interval": _interval(pin.safety_factor_interval),
         **places_json(pin),
-        "yields": _truth(pin.yields),
-        "meets_required": _truth(pin.meets_required),
-        "outcome": outcome(pin),
         "depends_on": [_dependence(d) for d in pin.depends_on if outcome(pin) == DEPENDS],
         "safe_within": [_dependence(d) for d in pin.depends_on if outcome(pin) != DEPENDS],
         "dofs": int(pin.dofs),
@@ -210,8 +203,3 @@ def _check(check: HandCheck) -> dict[str, Any]:
         "basis": check.basis,
         "governs": check.governs,
     }
-
-
-def _truth(value: bool | None) -> bool | None:
-    # JSON cannot represent a numpy bool.
-    return None if value is None else bool(value)
