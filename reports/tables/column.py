@@ -23,6 +23,7 @@ from reports.format.units import unit_name
 MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
 
 R = TypeVar("R")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -140,9 +141,9 @@ class Table(Generic[R]):
         (write_parquet if large else write_csv)(path, self.keys, self.cells())
         return path
 
-    def json(self) -> list[dict[str, Any]]:
-        """The rows as JSON objects; what is not finite is null."""
-        return [json_of(self.filed, row) for row in self.rows]
+    def records(self) -> list[dict[str, Any]]:
+        """The rows as plain values by the keys of the columns; what is not finite is None."""
+        return [dict(zip(self.keys, map(plain, row), strict=True)) for row in self.cells()]
 
     def for_people(self) -> list[tuple[Column[R], list[str]]]:
         """The columns that people see, with their texts."""
@@ -199,9 +200,6 @@ def plain(value: Cell) -> Cell:
     if isinstance(value, bool | np.bool_):
         return bool(value)
     return finite(value) if isinstance(value, float) else value
-
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)

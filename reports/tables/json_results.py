@@ -46,7 +46,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "headline": _headline(results),
         "pins": [_pin(row, factors) for row in factors.rows],
-        "margins": margins_table(results).json(),
+        "margins": margins_table(results).records(),
         "changes": [asdict(change) for change in results.changes],
         "sensitivities": sensitivities_json(results),
         "fatigue": fatigue_json(results.fatigue),

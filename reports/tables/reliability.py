@@ -47,9 +47,8 @@ def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
     def end(name: str) -> Callable[[R], float | None]:
         return lambda row: finite(getattr(spread(row), name, None))
 
-    return [
-        Column(key, end("value")), Column(f"{key}_low", end("low")), Column(f"{key}_high", end("high"))
-    ]  # fmt: skip
+    ends = {key: "value", f"{key}_low": "low", f"{key}_high": "high"}
+    return [Column(name, end(part)) for name, part in ends.items()]
 
 
 def _form(key: str, name: str) -> Column[RiskRow]:

@@ -46,7 +46,7 @@ def opined(results: Results) -> Results:
 
 def test_tables_and_json_have_the_same_numbers(opined: Results) -> None:
     rows, loads = opinion_tables(opined)
-    pressed, same, refused = (dict(zip(rows.columns, row, strict=True)) for row in rows.rows)
+    pressed, same, refused = rows.records()
     found = opinion_json(opined.pins[0].second_opinion)
     assert found is not None
     for name in ("bending_moment", "bending_moment_calculix", "load_elsewhere", "mesh_change"):
@@ -56,8 +56,8 @@ def test_tables_and_json_have_the_same_numbers(opined: Results) -> None:
     assert pressed["calculix_over_answer"] == pytest.approx(1.05)
     assert [row["agrees"] for row in (pressed, same, refused)] == [True, True, False]
     assert refused["max_von_mises_calculix"] is None
-    assert [row[3:7] for row in loads.rows][:2] == [[0.0, 1.0, 9.0, 8.0], [1.0, 2.0, 4.0, 4.0]]
-    assert len(loads.rows) == 5
+    assert [row[3:7] for row in loads.cells()][:2] == [[0.0, 1.0, 9.0, 8.0], [1.0, 2.0, 4.0, 4.0]]
+    assert len(loads) == 5
     assert opinion_json(None) is None
 
 
@@ -73,7 +73,7 @@ def test_limit_loads_are_compared_too(opined: Results) -> None:
     first = replace(pin, second_opinion=replace(far, pin=pin.pin, case=pin.case))
     with_one = replace(opined, pins=(first, *opined.pins[1:]))
     rows, _ = opinion_tables(with_one)
-    row = dict(zip(rows.columns, rows.rows[0], strict=True))
+    row = rows.records()[0]
     assert (row["load_factor_same_mesh"], row["load_factor_calculix"]) == (1.377, 1.2)
     found = opinion_json(far)
     assert found is not None
