@@ -19,12 +19,12 @@ from assess.derivatives.reading_point import (
     on_skin,
 )
 from assess.derivatives.records import SolvedCase
+from fea.core.zone import Zone
 from fea.harmonic.assembly import Section
 from fea.harmonic.free_surface import surface_points
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, jumps
 from fea.harmonic.surface_stress import EDGE_STATIONS
-from fea.singular.singularities import Zone
 from pinbase.arrays import Floats
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.zone import Zone
 from fea.harmonic.evaluate import HarmonicSolution
-from fea.singular.singularities import Zone
 from geometry import Pin
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from assess.derivatives.records import SolvedCase
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import StressField
+from fea.core.zone import Zone
 from fea.harmonic.evaluate import HarmonicField, high_places
 from fea.harmonic.superposition import Circumference, Crest
-from fea.singular.singularities import Zone
 
 
 def competing_places(

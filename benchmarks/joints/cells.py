@@ -13,11 +13,10 @@ from benchmarks.joints.random_pins import PinTrial, pin_trials
 from benchmarks.timing import table
 from fea.core.pin_loads import Floats
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.evaluate import SECTION_MESHES, HarmonicField
 from fea.section.place import FLEXIBILITY_ERROR
 from fea.section.section_stress import SectionField
 from fea.solve.solve_pin import Requirement, solve_pin
-from fea.solve.verdict import FIRST_MESH_SCATTER
 from fea.support.contact.pressure_loads import resultants
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import compare
@@ -53,7 +52,7 @@ def cells() -> str:
     meshes = [x.mesh for x in found if x.mesh]
     soft = [x.flexibilities for x in found if x.flexibilities is not None]
     off = np.array([m[1] for m in meshes])
-    estimate = np.maximum([m[0] for m in meshes], FIRST_MESH_SCATTER["harmonic"] / 4.0)
+    estimate = np.maximum([m[0] for m in meshes], SECTION_MESHES.scatter / 4.0)
     more = [
         ("surface, second mesh", str(len(off)), *_spread(off), f"{np.mean(off <= estimate):.0%}"),
         ("section, meshes of flexibilities", str(len(soft)), *_spread(np.array(soft)),
@@ -64,7 +63,7 @@ def cells() -> str:
 
 def _row(found: list[CellError], k: int) -> tuple[str, ...]:
     off, told = (np.array([getattr(x, name)[k] for x in found]) for name in ("off", "estimate"))
-    meshes = FLEXIBILITY_ERROR if PLACES[k] == "section" else FIRST_MESH_SCATTER["harmonic"] / 4.0
+    meshes = FLEXIBILITY_ERROR if PLACES[k] == "section" else SECTION_MESHES.scatter / 4.0
     covered = [f"{np.mean(off <= told + x):.0%}" for x in (1e-4, meshes)]
     return str(len(off)), *_spread(off), *covered, f"{(off / (told + meshes)).max():.2f}"
 

@@ -17,7 +17,8 @@ from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import ErrorParts, Maximum, Reason, Refinement, accuracy
 from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
 from fea.core.solution import Picture
-from fea.singular.singularities import Zone, outside
+from fea.core.zone import Zone
+from fea.singular.singularities import outside
 from geometry import Pin
 from pinbase.arrays import Floats
 

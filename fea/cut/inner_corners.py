@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from fea.core.zone import Zone
 from fea.cut.local_model import LocalModel
 from fea.cut.parity import AXIS_NAMES
-from fea.singular.singularities import Zone
 from fea.singular.williams import antiplane_exponent, plane_exponent
 from fea.solid.boundary import MIN_SMOOTH_COSINE
 from fea.solid.sharp_edges import turned_edges

@@ -12,6 +12,7 @@ from fea.core.material import Material
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, Point, ZoneMaximum
 from fea.core.pin_loads import Loads, require_solved
 from fea.core.pressed import PressedArcs, Rings
+from fea.core.zone import Zone
 from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
 from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
 from fea.cut.inner_corners import InnerCorner, inner_corners
@@ -21,7 +22,7 @@ from fea.cut.movement import displacement, rigid
 from fea.cut.region import zone
 from fea.harmonic.beneath import Steps, stairs
 from fea.harmonic.fields import MeridianFields
-from fea.singular.singularities import Zone, outside
+from fea.singular.singularities import outside
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh

@@ -8,8 +8,8 @@ from functools import cached_property
 from itertools import combinations
 
 from fea.core.peak import Reason
+from fea.core.zone import Zone
 from fea.cut.inside import crosses_end, is_inside
-from fea.singular.singularities import Zone
 from geometry import Cut, CutPin, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 

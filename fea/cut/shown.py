@@ -141,8 +141,8 @@ def _revolved(
     tensor = np.einsum(
         "sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR_TO_VOIGT], turn, optimize=True
     )
-    along = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
-    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), along], axis=2)
+    heights = np.broadcast_to(z[:, None], (len(z), CUT_VIEW_SECTORS))
+    points = np.stack([r[:, None] * np.cos(angle), r[:, None] * np.sin(angle), heights], axis=2)
     i = CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None] + np.arange(CUT_VIEW_SECTORS)
     j = (
         CUT_VIEW_SECTORS * 2 * np.arange(len(keep_rows))[:, None]

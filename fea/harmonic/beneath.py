@@ -15,9 +15,10 @@ from fea.core.pin_loads import Loads, PinLoads
 from fea.core.places import BENEATH_DISTANCE
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
 from fea.core.voigt import von_mises
+from fea.core.zone import Zone
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
-from fea.singular.singularities import Zone, outside
+from fea.singular.singularities import outside
 from geometry import Pin
 from pinbase.arrays import Floats, Ints, Mask
 

@@ -10,8 +10,10 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, MeshMaximum, Point
+from fea.core.model import MeshBefore, MeshProblem, MeshSequence
 from fea.core.pin_loads import Loads, PinLoads, UnitLoad
 from fea.core.solution import Picture
+from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.beneath import just_beneath
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import reader
@@ -23,8 +25,8 @@ from fea.harmonic.revolve import revolve
 from fea.harmonic.stress_recovery import NO_POINTS
 from fea.harmonic.superposition import Circumference, Crest
 from fea.singular.probes import rim
-from fea.singular.singularities import DISTANCE_VARIATIONS, Zone, smooth_edges
-from geometry import Pin
+from fea.singular.singularities import smooth_edges
+from geometry import ArgumentError, Pin
 from geometry.mesh.moved.near_mesh import near_mesh
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
@@ -44,6 +46,13 @@ REFINE_ABOVE, MIN_SPACING, MAX_PLACES = (
     3,
 )  # places where they are: of the maximum, of r apart, so many
 RING_END_ELEMENT = 0.25  # of a ring of contact pressure: the elements at its ends
+# The scatter was measured on random shoulders (benchmarks coverage). Nodes lie on the edges of
+# zones, so that the maximum outside converges at least linearly.
+SECTION_MESHES = MeshSequence(
+    ratio=2.0**0.5, growth=2.0, max_meshes=7, max_unknowns=400_000, scatter=0.026, min_order=1.0
+)
+# The first mesh resolves the rings of a contact pressure, so that two are enough.
+PRESSED_SECTION_MESHES = replace(SECTION_MESHES, ratio=2.0, min_meshes=2)
 PATCH_ELEMENTS = 2.0  # elements of the first mesh about such a place, in which all are refined
 
 
@@ -254,6 +263,63 @@ def _matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
     return any(
         result.singularities[singularity].felt >= MIN_ZONE_STRESS * result.maximum
         for result in before
+    )
+
+
+@dataclass(frozen=True)
+class HarmonicMesh:
+    """A mesh solved by the harmonic model (fea.core.model.MeshSolution)."""
+
+    problem: MeshProblem
+    solution: HarmonicSolution
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """Those of the problem."""
+        return self.problem.zones
+
+    def field(self, case: str) -> HarmonicField:
+        """Stress as one case sees it."""
+        return HarmonicField(self.solution, self.problem.zones_of(case))
+
+    def maximum(self, loads: PinLoads) -> MeshMaximum:
+        """The maximum of a case."""
+        return harmonic_result(
+            self.solution, self.problem.zones, loads, self.problem.zones_of(loads.case)
+        )
+
+
+class Harmonic:
+    """Any body of revolution (fea.core.model.Model). first: what was solved on the first mesh
+    before. pressed: whether pressures of contact act; near: as of SectionProblem.
+    """
+
+    name = "harmonic"
+
+    def __init__(
+        self, first: FirstMesh | None = None, pressed: bool = False, near: bool = False
+    ) -> None:
+        self.meshes = PRESSED_SECTION_MESHES if pressed else SECTION_MESHES
+        self._first, self._near = first or FirstMesh(), near
+
+    def solve(
+        self, problem: MeshProblem, level: int, before: MeshBefore | None = None
+    ) -> HarmonicMesh:
+        """As of every model."""
+        posed = section_problem(problem, self._first, self._near)
+        results = () if before is None else before.results
+        return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
+
+
+def section_problem(
+    problem: MeshProblem, first: FirstMesh | None = None, near: bool = False
+) -> SectionProblem:
+    """A problem as its sections are solved. Raises: ArgumentError for what is not turned."""
+    pin = problem.pin
+    if not isinstance(pin, Pin):
+        raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
+    return SectionProblem(
+        pin, problem.material, problem.clamps, problem.cases, problem.zones, first, near=near
     )
 
 

@@ -12,7 +12,8 @@ import scipy.sparse as sp
 
 from fea.core.pin_loads import UnitLoad
 from fea.core.strain_energy import StrainEnergy
-from fea.singular.singularities import Zone, outside
+from fea.core.zone import Zone
+from fea.singular.singularities import outside
 from geometry.mesh.section_mesh import MeridianMesh
 from pinbase.arrays import Floats, Ints, Mask
 

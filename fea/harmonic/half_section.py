@@ -11,9 +11,10 @@ from scipy.spatial import Delaunay, cKDTree
 
 from fea.core.pin_loads import Loads
 from fea.core.voigt import von_mises
+from fea.core.zone import Zone
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
-from fea.singular.singularities import Zone, outside
+from fea.singular.singularities import outside
 from pinbase.arrays import Floats, Mask
 
 MIN_OUTLINE_RISE = 1e-9  # of the length: a smaller rise of the outline is round-off

@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, SingularIntensity, ZoneMaximum
+from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
 from fea.singular.fit_exponent import growth_exponent, strength
-from fea.singular.singularities import DISTANCE_VARIATIONS, Zone
 from fea.singular.williams import notch_factor
 from pinbase.arrays import Floats, Mask
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
+from fea.core.zone import Zone
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import reader
-from fea.singular.singularities import Zone
 from geometry import Pin
 from geometry.shape.polygon import Rounding
 

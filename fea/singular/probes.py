@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 from skfem import Element, ElementTetP1, ElementTetP2
 
-from fea.singular.singularities import Zone
+from fea.core.zone import Zone
 from geometry import Pin
 from pinbase.arrays import Floats, Ints
 

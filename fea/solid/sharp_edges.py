@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.singular.singularities import CLAMP_ADVICE, Kind, Zone
+from fea.core.zone import Kind, Zone
+from fea.singular.singularities import CLAMP_ADVICE
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints, Mask

@@ -71,7 +71,7 @@ def accurate_enough(asked: Requirement, material: Material, seen: MeshHistory) -
     """Whether these meshes are accurate enough, or decide the required factor. Fewer never tell
     how large a maximum is, for they can agree by chance.
     """
-    if len(seen.results) < seen.fewest:
+    if len(seen.results) < seen.meshes.min_meshes:
         return False
     return (
         seen.known(asked.left(seen.case))

@@ -7,24 +7,23 @@ at that level.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal
 
 from fea.beam.model import BeamField
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
+from fea.core.model import MeshBefore, MeshProblem, Model
 from fea.core.pin_loads import PinLoads
-from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.region import loaded_bands, pieces
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.singular.singularities import Zone
-from fea.solid.evaluate import solid_solution
-from fea.solid.superposition import envelope
-from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, singularities_of
+from fea.core.zone import Zone
+from fea.cut.evaluate import LocalSolids
+from fea.cut.region import loaded_bands
+from fea.harmonic.evaluate import Harmonic
+from fea.solid.evaluate import Solid
+from fea.solve.refine import singularities_of
 from geometry import ArgumentError, CutPin, Pin, PinLike
 from geometry.mesh.elements import Element
-from geometry.mesh.solid_mesh import MeshSize
 
 
 @dataclass(frozen=True)
@@ -64,42 +63,29 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshMaximum, ...] = ()
     Raises: MeshError, SolveError; ValueError for a beam or section of a pin that is not a body of
     revolution and for loads that a beam cannot take.
     """
-    pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
-    if rung.model == "solid":
-        return _solid_result(problem, rung)
-    if rung.model == LOCAL_MODEL:
-        return _local_result(problem, rung.level, before)
-    if not isinstance(pin, Pin):
-        raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
-    singularities = problem.singularities
+    pin, loads = problem.pin, problem.loads
     if rung.model == "beam":
-        return BeamField(pin, material, clamps, loads).result(singularities)
-    posed = SectionProblem(pin, material, clamps, (loads,), singularities)
-    section = harmonic_solution(posed, rung.level, MESH_RATIO, before)
-    return harmonic_result(section, singularities, loads)
+        if not isinstance(pin, Pin):
+            raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
+        beam = BeamField(pin, problem.material, problem.clamps, loads)
+        return beam.result(problem.singularities)
+    model, posed = _posed(problem, rung)
+    below = MeshBefore(None, {str(k): result for k, result in enumerate(before)})
+    return model.solve(posed, rung.level, below).maximum(loads)
 
 
-def _local_result(problem: Problem, level: int, before: tuple[MeshMaximum, ...]) -> MeshMaximum:
+def _posed(problem: Problem, rung: Rung) -> tuple[Model, MeshProblem]:
+    """A model, and the problem as it takes it."""
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
+    posed = MeshProblem(
+        pin, material, clamps, (loads,), problem.singularities, distance=problem.distance
+    )
+    if rung.model == "solid":
+        return Solid(element=rung.element), posed
+    if rung.model == "harmonic":
+        return Harmonic(), posed
     if not isinstance(pin, CutPin):
         raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
     found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
-    posed = SectionProblem(pin.profile, material, clamps, (loads,), found)
     bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
-    local = pieces(pin, clamps, bands=bands)
-    cut = cut_solution(posed, local, level, before, bands, problem.distance)
-    return cut_result(cut, found, loads)
-
-
-def _solid_result(problem: Problem, rung: Rung) -> MeshMaximum:
-    size = MeshSize().finer(MESH_RATIO**rung.level)
-    solution = solid_solution(
-        problem.pin, problem.material, problem.clamps, (problem.loads,), problem.singularities,
-        size, problem.distance, rung.element,
-    )  # fmt: skip
-    fields = solution.fields
-    top = envelope(fields, problem.loads, solution.outside)
-    return MeshMaximum(
-        fields.space.unknowns, top.maximum, top.instant, top.location, scatter=top.scatter,
-        energy=fields.energy,
-    )  # fmt: skip
+    return LocalSolids(pin, bands), replace(posed, pin=pin.profile, zones=found)

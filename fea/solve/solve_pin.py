@@ -22,24 +22,24 @@ from fea.core.material import Material
 from fea.core.over_time import Between, rise_between, through_time
 from fea.core.peak import NO_REASON, Maximum, Reason
 from fea.core.pin_loads import PinLoads
+from fea.cut.evaluate import LocalSolids
 from fea.cut.region import RingedCutPin, corner_refusal, loaded_bands, refusal, unringed
+from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.kept_fields import FirstMesh
 from fea.section.place import found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
+from fea.solid.evaluate import Solid
 from fea.solve.refine import (
-    LOCAL_MODEL,
     NO_MOTION,
-    MeshedModel,
     PinJob,
     Progress,
     Solution,
     count_loads,
     job_singularities,
-    ratio_of,
     refined,
+    sequence_of,
     singularities_of,
-    unknowns_after,
     with_reason,
 )
 from fea.solve.requirement import DECIDED_TEXT, Goal, Model, Requirement, accurate_enough, decided
@@ -56,10 +56,9 @@ __all__ = [
     "count_loads",
     "decided",
     "imbalance",
-    "ratio_of",
+    "sequence_of",
     "singularities_of",
     "solve_pin",
-    "unknowns_after",
 ]  # fmt: skip
 
 DEFAULT_REQUIREMENT = Requirement()
@@ -110,9 +109,10 @@ def solve_pin(
         out |= _beam(job, pin, live, notes)
         live = tuple(c for c in live if c.case not in out)
     if live:
-        model: MeshedModel = (
-            "solid" if asked.model == "solid" or not isinstance(pin, Pin) else "harmonic"
-        )
+        model: Harmonic | Solid = Solid(pin.meshed)
+        if asked.model != "solid" and isinstance(pin, Pin):
+            pressed = any(case.pressed is not None for case in live)
+            model = Harmonic(job.first, pressed, asked.near)
         try:
             out |= refined(job, model, live, notes)
         except (MeshError, SolveError) as error:
@@ -209,8 +209,9 @@ def _with_local_solids(
     why = why or corner_refusal(whole, job_singularities(local, cases))
     if why is None:
         try:
-            local = replace(local, cut=whole, bands=loaded_bands(whole, loaded))
-            return refined(local, LOCAL_MODEL, cases, notes), job
+            near = job.asked.near
+            model = LocalSolids(whole, loaded_bands(whole, loaded), job.first, near)
+            return refined(replace(local, cut=whole), model, cases, notes), job
         except (MeshError, SolveError, GeometryError) as error:
             if job.asked.model == "harmonic":
                 raise

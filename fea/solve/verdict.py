@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshMaximum
+from fea.core.model import MeshSequence
 from fea.core.peak import (
     NO_REASON,
     ErrorParts,
@@ -19,15 +20,7 @@ from fea.core.peak import (
     discretisation_error,
 )
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Zone
-
-MIN_ORDER = {"harmonic": 1.0}  # meshes of sections have nodes on the edges of excluded zones
-# Scatter of the maximum on the first mesh with the positions of nodes, relative; ~ h^2. Sections:
-# measured on random shoulders; solids: on fillets with and without a bore, 0.07 to 0.13; local
-# solids: on holes under superposed tension, bending and torsion (`benchmarks cut-scatter`), where
-# 95 % of maxima are off by less.
-FIRST_MESH_SCATTER = {"harmonic": 0.026, "solid": 0.13, "harmonic+local": 0.05}
-MIN_MESHES = 3  # meshes before a maximum can be converged: two can agree by chance
+from fea.core.zone import Zone
 
 KIND_ARTICLES = {
     "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"
@@ -36,9 +29,8 @@ KIND_ARTICLES = {
 
 @dataclass(frozen=True)
 class MeshHistory:
-    """The meshes of one case so far, coarse to fine, each `ratio` times finer than the one before;
-    seconds: the time of each. first: how many meshes of a run are coarser than the first of these.
-    fewest: before the maximum can be converged.
+    """The meshes of one case so far, coarse to fine. seconds: the time of each. meshes: how they
+    are refined. first: how many meshes of a run are coarser than the first of these.
     """
 
     pin: str
@@ -46,11 +38,10 @@ class MeshHistory:
     model: str
     results: tuple[MeshMaximum, ...]
     seconds: tuple[float, ...]
-    ratio: float
+    meshes: MeshSequence
     first: int = 0
-    fewest: int = MIN_MESHES
 
-    def then(self, result: MeshMaximum, spent: float) -> MeshHistory:
+    def appended(self, result: MeshMaximum, spent: float) -> MeshHistory:
         """With one more mesh, on which s were spent."""
         return replace(self, results=(*self.results, result), seconds=(*self.seconds, spent))
 
@@ -86,11 +77,9 @@ class MeshHistory:
         return ErrorParts(mesh, last.between, last.left_out, truncation=last.truncated)
 
     def _of_mesh(self, last: MeshMaximum) -> float:
-        least = MIN_ORDER.get(self.model, 0.5)
-        finer = self.ratio ** (self.first + len(self.results) - 1)
-        noise = FIRST_MESH_SCATTER.get(self.model, 0.0) * last.maximum / finer**2
-        scatter = max(last.scatter, noise)
-        return discretisation_error(self.history, self.ratio, scatter, least)
+        finer = self.meshes.ratio ** (self.first + len(self.results) - 1)
+        scatter = max(last.scatter, self.meshes.scatter * last.maximum / finer**2)
+        return discretisation_error(self.history, self.meshes.ratio, scatter, self.meshes.min_order)
 
     @property
     def relative(self) -> float:
@@ -116,7 +105,7 @@ class MeshHistory:
 
     def known(self, tolerance: float) -> bool:
         """Whether the error is within `tolerance`."""
-        return len(self.results) >= self.fewest and self.relative <= tolerance
+        return len(self.results) >= self.meshes.min_meshes and self.relative <= tolerance
 
 
 def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZone, ...]:
@@ -157,7 +146,7 @@ def judge(
     known = seen.known(tolerance)
     verdict: Verdict = "converged" if known else "unconverged"
     own = accuracy(seen.relative, tolerance, known)
-    if len(seen.results) < seen.fewest and not known:
+    if len(seen.results) < seen.meshes.min_meshes and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
         own = Reason(text, ("too-few-meshes",))

@@ -13,7 +13,7 @@ from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
 from fea.harmonic.kept_fields import FirstMesh
-from fea.solve.refine import MAX_UNKNOWNS
+from fea.solid.evaluate import SOLID_MESHES
 from fea.solve.solve_pin import Requirement, Solution, solve_pin
 from fea.support.contact.records import JointResult
 from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
@@ -93,7 +93,7 @@ def _together(plan: Plan, jobs: int) -> int:
     """So many of the jobs as there is memory for, if they are solids as large as they may get."""
     if not any(_effort(plan, task)[0] for task in plan.tasks):
         return jobs
-    room = allowed_memory(plan.asked.memory) / solid_memory(MAX_UNKNOWNS["solid"])
+    room = allowed_memory(plan.asked.memory) / solid_memory(SOLID_MESHES.max_unknowns)
     return max(1, min(jobs, int(room)))
 
 

@@ -12,8 +12,7 @@ from assess.plastic.records import LimitLoad
 from assess.strength.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Maximum
-from fea.solve.refine import MAX_MESHES, MAX_UNKNOWNS
-from fea.solve.solve_pin import count_loads, unknowns_after
+from fea.solve.solve_pin import count_loads, sequence_of
 from fea.support.contact.records import JointResult
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
@@ -124,15 +123,16 @@ def independent_of_memory(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) ->
     open_ = [
         p
         for p in peaks
-        if p.model in MAX_MESHES
+        if sequence_of(task.pin, p.model).max_unknowns
         and p.max_von_mises is not None
         and (p.own_error or inf) > plan.asked.tolerance * p.max_von_mises
     ]
     if not open_:
         return True
     model = open_[0].model
-    if len(open_[0].history) >= (plan.asked.meshes or MAX_MESHES[model]):
+    meshes = sequence_of(task.pin, model)
+    if len(open_[0].history) >= (plan.asked.meshes or meshes.max_meshes):
         return True
-    finer = unknowns_after(task.pin, model, max(p.dofs for p in open_))
+    finer = meshes.unknowns_after(max(p.dofs for p in open_))
     loads = count_loads(task.loads) if model == "harmonic" else 0
-    return finer > MAX_UNKNOWNS[model] or not too_much(finer, plan.asked.memory, loads)
+    return finer > meshes.max_unknowns or not too_much(finer, plan.asked.memory, loads)

@@ -22,7 +22,8 @@ from fea.beam.stress import TZ, ZZ, notch_stress, section_stress
 from fea.beam.stress_concentration import Notch, notches
 from fea.beam.timoshenko import AXIAL, MOMENT
 from fea.core.pin_loads import Floats
-from fea.singular.singularities import Zone, find_singularities, outside
+from fea.core.zone import Zone
+from fea.singular.singularities import find_singularities, outside
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from geometry import Pin
 

@@ -7,9 +7,11 @@ from dataclasses import dataclass, field, replace
 
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshMaximum
-from fea.solve.refine import LOCAL_MODEL, MAX_MESHES, MAX_UNKNOWNS, MESH_RATIO
+from fea.cut.evaluate import LOCAL_MESHES
+from fea.harmonic.evaluate import SECTION_MESHES
+from fea.solve.refine import LOCAL_MODEL, MESH_RATIO
 from fea.solve.single_mesh import Problem, Rung
-from fea.solve.solve_pin import Requirement, accurate_enough, ratio_of
+from fea.solve.solve_pin import Requirement, accurate_enough, sequence_of
 from fea.solve.verdict import MeshHistory
 from geometry import Pin
 from geometry.mesh.elements import Element
@@ -79,9 +81,9 @@ class Climb:
 
     def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
         """Successive meshes as a run sees them."""
-        ratio = ratio_of(self.problem.pin, model)
+        meshes = sequence_of(self.problem.pin, model)
         name, case = self.problem.pin.name, self.problem.loads.case
-        return MeshHistory(name, case, model, results, (0.0,) * len(results), ratio, first)
+        return MeshHistory(name, case, model, results, (0.0,) * len(results), meshes, first)
 
 
 def climb_harmonic(climb: Climb) -> None:
@@ -92,8 +94,8 @@ def climb_harmonic(climb: Climb) -> None:
     while (
         climb.auto == "harmonic"
         and found.result is not None
-        and level + 1 < MAX_MESHES["harmonic"]
-        and found.result.unknowns * MESH_RATIO**2 <= MAX_UNKNOWNS["harmonic"]
+        and level + 1 < SECTION_MESHES.max_meshes
+        and found.result.unknowns * MESH_RATIO**2 <= SECTION_MESHES.max_unknowns
         and not climb.enough("harmonic", climb.results(Rung("harmonic")))
     ):
         level += 1
@@ -102,7 +104,7 @@ def climb_harmonic(climb: Climb) -> None:
 
 def climb_local(climb: Climb) -> None:
     """All meshes that a run may make."""
-    for level in range(MAX_MESHES[LOCAL_MODEL]):
+    for level in range(LOCAL_MESHES.max_meshes):
         climb.to(Rung(LOCAL_MODEL, level=level))
 
 

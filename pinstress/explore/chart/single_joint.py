@@ -25,9 +25,10 @@ from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import Distribution, PinLoads
 from fea.core.pressed import PressedArcs
 from fea.core.voigt import von_mises
+from fea.core.zone import Zone
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.section.section_stress import AtSection, SectionField
-from fea.singular.singularities import Zone, outside
+from fea.singular.singularities import outside
 from fea.solve.refine import MESH_RATIO, singularities_of
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.foundation.foundation_model import FoundationModel

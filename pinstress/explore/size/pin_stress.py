@@ -28,8 +28,8 @@ from fea.beam.error_model import CLAMPED_SPAN_ERROR
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.zone import DISTANCE_VARIATIONS
 from fea.harmonic.evaluate import HarmonicField
-from fea.singular.singularities import DISTANCE_VARIATIONS
 from fea.solve.requirement import Requirement
 from fea.solve.solve_pin import Solution
 from fea.support.contact.solve_in_lugs import LugSolution

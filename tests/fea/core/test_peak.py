@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fea.core.peak import Maximum, Refinement, discretisation_error
-from fea.solve.verdict import MIN_MESHES
+from fea.harmonic.evaluate import SECTION_MESHES
 
 
 def sequence(*values: float) -> tuple[Refinement, ...]:
@@ -38,11 +38,11 @@ def test_a_singular_sequence_is_not_taken_for_a_converging_one(p: float, r: floa
 
 def test_agreement_by_chance_does_not_stay_unnoticed() -> None:
     """Values of a real fillet (MPa): the first two agree to 0.03 % and are 4 % below the last. Two
-    meshes are therefore never enough (fea.solve.verdict.MIN_MESHES); from three on the estimate
+    meshes are therefore never enough (fea.core.model.MeshSequence); from three on the estimate
     must hold.
     """
     seen = (34.10, 34.09, 34.8, 35.5, 35.49)
-    assert MIN_MESHES == 3
+    assert SECTION_MESHES.min_meshes == 3
     for n in (3, 4, 5):
         assert discretisation_error(sequence(*seen[:n]), 2.0**0.5) >= abs(seen[n - 1] - seen[-1])
     assert discretisation_error(sequence(*seen), 2.0**0.5) > 0.1

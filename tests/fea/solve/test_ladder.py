@@ -11,7 +11,7 @@ from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.solve import refine as ladder
+from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.solve_pin import Requirement, solve_pin
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from tests.support.errors import raises
@@ -191,7 +191,7 @@ def test_a_harmonic_mesh_decides_before_it_is_exact(steel: Material) -> None:
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
     assert (found.peak.model, found.peak.verdict) == ("harmonic", "unconverged")
     assert "mesh-decides" in found.peak.reasons
-    assert len(found.peak.history) < ladder.MAX_MESHES["harmonic"]
+    assert len(found.peak.history) < SECTION_MESHES.max_meshes
 
 
 def test_no_beam_where_a_fillet_has_no_factor(steel: Material) -> None:
@@ -226,7 +226,8 @@ def test_unknowns_and_memory_have_a_limit(steel: Material, monkeypatch: pytest.M
     assert [h.dofs for h in stopped.peak.history] == [first.peak.dofs]
     assert {"memory-limit", "mesh-limit"} <= set(stopped.peak.reasons)
     fine = Requirement(model="harmonic", tolerance=1e-6)
-    monkeypatch.setitem(ladder.MAX_UNKNOWNS, "harmonic", 6000)
+    coarse = replace(SECTION_MESHES, max_unknowns=6000)
+    monkeypatch.setattr("fea.harmonic.evaluate.SECTION_MESHES", coarse)
     (found,) = solve_pin(BAR, steel, (), (BALANCED,), fine)
-    assert 1 < len(found.peak.history) < ladder.MAX_MESHES["harmonic"]
+    assert 1 < len(found.peak.history) < SECTION_MESHES.max_meshes
     assert found.peak.dofs <= 6000 < 2.0 * found.peak.dofs

@@ -10,9 +10,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import Zone
+from fea.core.zone import Zone
+from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.requirement import Requirement, accurate_enough, reasons
-from fea.solve.verdict import MIN_MESHES, MeshHistory, judge
+from fea.solve.verdict import MeshHistory, judge
 from fea.support.contact.pressed_cases import Compared
 from fea.support.contact.variations import AtPlaces, ResolutionComparison
 
@@ -28,9 +29,10 @@ def mesh(maximum: float, felt: float, interval: tuple[float, float] | None = Non
     return MeshMaximum(1000, maximum * 1e6, 0, (0.0, 0.0, 0.0), (edge,), interval=ends)
 
 
-def seen(*results: MeshMaximum, fewest: int = MIN_MESHES) -> MeshHistory:
+def seen(*results: MeshMaximum, fewest: int = 3) -> MeshHistory:
     times = (0.1,) * len(results)
-    return MeshHistory("P", "c", "harmonic", results, times, 2.0**0.5, fewest=fewest)
+    meshes = replace(SECTION_MESHES, min_meshes=fewest)
+    return MeshHistory("P", "c", "harmonic", results, times, meshes)
 
 
 @pytest.mark.parametrize(

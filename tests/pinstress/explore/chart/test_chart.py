@@ -15,8 +15,8 @@ import pytest
 
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.single_mesh import Rung
-from fea.solve.verdict import FIRST_MESH_SCATTER
 from geometry import Pin, Segment
 from pinstress import load_study, study_from
 from pinstress.cli.chart import _report_missed
@@ -97,9 +97,7 @@ def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart)
     charted = max(p.dofs or 0 for p in made_up.points if p.model == "harmonic")
     assert made_up.reference.dofs >= 10 * charted
     true = 0.02 * 1000 / made_up.reference.dofs
-    assert made_up.reference.error == pytest.approx(
-        FIRST_MESH_SCATTER["harmonic"] / 0.02 * true, rel=1e-2
-    )
+    assert made_up.reference.error == pytest.approx(SECTION_MESHES.scatter / 0.02 * true, rel=1e-2)
     beam = made_up.points[0]
     assert beam.error == pytest.approx(0.3, abs=2 * true)
     assert "Reference: harmonic model" in reference_line(made_up)
