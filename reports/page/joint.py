@@ -8,7 +8,7 @@ from fea.support.contact.records import BandContact, JointResult, Variation
 from reports.data.results import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import END_DIGITS, joint_range, part_words
-from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only
+from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only, texts
 from reports.tables.stress.joint import BAND_COLUMNS
 
 JOINT_TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
@@ -72,7 +72,7 @@ def _range(joint: JointResult, units: Units) -> Grid | None:
         return None
     last = "beneath contact" if over.model == "contact" else "with error"
     columns: list[Column[Variation]] = [
-        read_only("changed", lambda v: v.what, numeric=False),
+        *texts("changed=what"),
         read_only("to", lambda v: value_words(v, units), numeric=False),
         read_only("max von Mises", lambda v: v.max_von_mises, "stress"),
         read_only(last, _beside),

@@ -11,7 +11,7 @@ import numpy as np
 from reports.data.results import GoverningLoad, PinResult, ReactionTable, Results, Units
 from reports.format.numbers import DASH, components, engineering
 from reports.plots.loads.reactions import NO_PIN_NAME
-from reports.tables.column import Column, Grid, Table, grid_of, read_only
+from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
@@ -91,7 +91,7 @@ def loads_at(pin: PinResult, units: Units) -> Grid | None:
     couple = f" [{units.force}·{units.length}]"
     turns = any(load.moment.any() for load in pin.loads)
     columns: list[Column[GoverningLoad]] = [
-        read_only("connection", lambda load: load.connection, numeric=False),
+        *texts("connection"),
         read_only("body", lambda load: load.body or DASH, numeric=False),
         read_only("force", lambda load: float(np.linalg.norm(load.force)), "force"),
         *(read_only(f"F{x}", part("force", k)) for k, x in enumerate("xyz")),
@@ -101,9 +101,7 @@ def loads_at(pin: PinResult, units: Units) -> Grid | None:
 
 
 TIMING_COLUMNS: list[Column[PinResult]] = [
-    read_only("pin", lambda p: p.pin, numeric=False),
-    read_only("case", lambda p: p.case, numeric=False),
-    read_only("model", lambda p: p.model, numeric=False),
+    *texts("pin case model"),
     read_only("meshes", lambda p: str(len(p.history)) if p.dofs else DASH),
     read_only("unknowns, finest mesh", lambda p: f"{p.dofs:,}" if p.dofs else DASH),
     read_only("seconds", lambda p: engineering(p.seconds, 2)),

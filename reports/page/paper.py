@@ -16,7 +16,7 @@ from reports.format.file_names import plot_name
 from reports.format.words import headline
 from reports.page.joint import joint_part
 from reports.page.places import places_part
-from reports.tables.column import Column, Grid, Table, grid_of, read_only
+from reports.tables.column import Column, Grid, Table, grid_of, texts
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_table
 from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, matrix
@@ -156,10 +156,7 @@ def _case(pin: PinResult, results: Results) -> Content:
 
 
 PROVENANCE_COLUMNS: list[Column[Provenance]] = [
-    read_only("input", lambda entry: entry.key, numeric=False),
-    read_only("value", lambda entry: entry.value, numeric=False),
-    read_only("source", lambda entry: entry.kind, numeric=False),
-    read_only("note", lambda entry: entry.note, numeric=False),
+    *texts("input=key value source=kind note"),
 ]
 
 

@@ -8,7 +8,7 @@ from fea.core.places import BENEATH_DISTANCE, ContactEdge, ContactPlace, Section
 from reports.data.results import PinResult, Units
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_text
-from reports.tables.column import Column, Grid, Table, read_only
+from reports.tables.column import Column, Grid, Table, read_only, texts
 from reports.tables.stress.places import PlaceRow, place_rows
 
 MIN_RELATIVE_DISTANCE = 1e-6  # of the place of the largest stress: no distance is smaller
@@ -131,8 +131,7 @@ def _edges(edges: tuple[ContactEdge, ...], units: Units, least: float) -> Grid:
         read_only("von Mises under it", lambda edge: engineering(edge.max_von_mises, 3), "stress"),
     ]
     columns: list[Column[ContactEdge]] = [
-        read_only("lug", lambda edge: edge.band, numeric=False),
-        read_only("edge", lambda edge: edge.end, numeric=False),
+        *texts("lug=band edge=end"),
         read_only(
             f"K [{units.stress}·{units.length}^exponent]", lambda edge: engineering(edge.K, 3)
         ),

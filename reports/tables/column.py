@@ -5,7 +5,7 @@ terminal, page, PDF.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 from operator import attrgetter
 from pathlib import Path
@@ -84,6 +84,12 @@ def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
         Column(key or name.rpartition(".")[2], attrgetter(name), dimension, **same)
         for key, _, name in pairs
     ]
+
+
+def texts(names: str, **same: Any) -> list[Column[Any]]:
+    """The same of texts that people read under the key."""
+    columns = fields(names, numeric=False, **same)
+    return [replace(column, heading=column.key) for column in columns]
 
 
 def unit_columns(names: str) -> list[Column[Any]]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from reports.data.comparison import NOT_SOLVED, UNCHANGED, RowPair, RunComparison, Side, ValuePair
 from reports.format.numbers import DASH, engineering
-from reports.tables.column import Column, Table, read_only
+from reports.tables.column import Column, Table, read_only, texts
 
 MAX_SHOWN_FORCES = 30  # forces shown
 CHANGE_DIGITS = 3  # digits
@@ -19,8 +19,7 @@ def rows_table(found: RunComparison) -> Table[RowPair]:
         return lambda row: _from_to(*(DASH if s is None else text(s) for s in _sides(row)))
 
     columns: list[Column[RowPair]] = [
-        read_only("pin", lambda row: row.pin, numeric=False),
-        read_only("case", lambda row: row.case, numeric=False),
+        *texts("pin case"),
         read_only(f"max von Mises A [{found.stress}]", lambda row: _range(row.first), rank=4),
         read_only(f"max von Mises B [{found.stress}]", lambda row: _range(row.second), rank=3),
         read_only("change", lambda row: per_cent(row.change)),

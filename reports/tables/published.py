@@ -9,7 +9,7 @@ from reports.data.results import PinResult, PublishedValue, ReactionTable, Resul
 from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import factor_range
-from reports.tables.column import Column, Table, fields, read_only
+from reports.tables.column import Column, Table, fields, read_only, texts
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,7 @@ def published_reactions_table(results: Results) -> Table[PublishedReaction]:
     """The same as a table."""
     force = f" [{results.units.force}]"  # for people only
     columns: list[Column[PublishedReaction]] = [
-        Column("case", lambda row: row.case, heading="case", numeric=False),
-        Column("connection", lambda row: row.connection, heading="connection", numeric=False),
+        *texts("case connection"),
         Column("ours", lambda row: row.ours, heading=f"ours{force}"),
         Column("published", lambda row: row.published, heading=f"published{force}"),
         Column("ratio", lambda row: row.ratio, heading="ours / published"),
@@ -64,7 +63,7 @@ def write_published_reactions(results: Results, directory: Path) -> None:
 
 
 VALUE_COLUMNS: list[Column[PublishedValue]] = [
-    Column("case", lambda v: v.case, heading="case", numeric=False),
+    *texts("case"),
     *fields("time", "time"),
     Column("quantity", lambda v: v.quantity, "", "quantity",
            lambda v: f"{v.quantity.replace('_', ' ')} [{v.unit}]", numeric=False),
@@ -75,7 +74,7 @@ VALUE_COLUMNS: list[Column[PublishedValue]] = [
     Column("ratio", lambda v: ratio(v.ours, v.published), "", "ours / published",
            lambda v: engineering(ratio(v.ours, v.published), 5)),
     *fields("unit"),
-    Column("reason", lambda v: v.reason, heading="reason", numeric=False),
+    *texts("reason"),
 ]  # fmt: skip
 
 
@@ -95,8 +94,7 @@ def write_published_values(results: Results, directory: Path) -> None:
 
 
 MAXIMUM_COLUMNS: list[Column[PinResult]] = [
-    read_only("pin", lambda pin: pin.pin, numeric=False),
-    read_only("case", lambda pin: pin.case, numeric=False),
+    *texts("pin case"),
     read_only("published max", lambda pin: pin.published_max_von_mises, "stress"),
     read_only("ours", lambda pin: pin.max_von_mises, "stress"),
     read_only(

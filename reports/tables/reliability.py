@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from reports.data.reliability import ByErrors, Driver, Reliability, Risk, Spread
 from reports.format.numbers import DASH, engineering, finite
-from reports.tables.column import Column, Table, fields, read_only
+from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"
 PROBABILITY_DIGITS = 3
@@ -91,9 +91,7 @@ COLUMNS: list[Column[RiskRow]] = [
     Column("remark", lambda row: remark(row.risk)),
 ]
 DRIVER_COLUMNS: list[Column[DriverRow]] = [
-    Column("pin", lambda row: row.risk.pin, heading="pin", numeric=False),
-    Column("case", lambda row: row.risk.case, heading="case", numeric=False),
-    Column("parameter", lambda row: row.driver.parameter, heading="parameter", numeric=False),
+    *texts("risk.pin risk.case driver.parameter"),
     Column("form_importance", lambda row: row.driver.importance, "", "importance (FORM)",
            lambda row: _per_cent(row.driver.importance)),
     *_ends("sobol_first", lambda row: row.driver.first),
@@ -177,8 +175,7 @@ def risks_table(found: Reliability) -> Table[Risk]:
         read_only(OR_BENEATH_CONTACT, lambda risk: chance_range(risk.beneath or risk.probability))
     ]
     columns: list[Column[Risk]] = [
-        read_only("pin", lambda risk: risk.pin, numeric=False),
-        read_only("case", lambda risk: risk.case, numeric=False),
+        *texts("pin case"),
         read_only("result", lambda risk: risk.result(found.probability), numeric=False),
         read_only("FoS", lambda risk: risk.factor, rank=1),
         read_only(
@@ -201,8 +198,7 @@ def ways_table(found: Reliability) -> Table[Risk]:
         return lambda risk: text(getattr(risk.form, name)) if risk.form else DASH
 
     columns: list[Column[Risk]] = [
-        read_only("pin", lambda risk: risk.pin, numeric=False),
-        read_only("case", lambda risk: risk.case, numeric=False),
+        *texts("pin case"),
         read_only(f"plain sampling ({per_cent})", lambda risk: chance_range(risk.sampled)),
         read_only("failures", lambda risk: f"{risk.failures:,} of {found.samples:,}"),
         read_only(f"importance sampling ({per_cent})", lambda risk: chance_range(risk.weighted)),

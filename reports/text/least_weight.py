@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from reports.format.numbers import DASH, engineering, short
-from reports.tables.column import Column, Table, read_only
+from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ def print_light(
 def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
     """A row per pin. weight: its heading, with the unit."""
     columns: list[Column[LightRow]] = [
-        read_only("Pin", lambda row: row.pin, numeric=False),
+        *texts("Pin=pin"),
         read_only("Result", lambda row: "not decided" if row.why else "safe", numeric=False),
         read_only("FoS", lambda row: row.factor),
         read_only("FoS at p", lambda row: row.at, drop_if_empty=True),

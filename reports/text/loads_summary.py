@@ -8,7 +8,7 @@ from pathlib import Path
 from reports.data.results import DriveTable, LinkageMotion, PeakReaction, ReactionTable, Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
-from reports.tables.column import Column, Grid, Table, read_only
+from reports.tables.column import Column, Grid, Table, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.text.loads import unresolved
 
@@ -89,7 +89,7 @@ def _drives(drives: list[DriveTable], results: Results) -> Grid:
 
     power = f"power [{force}·{length}/{time}]"
     columns: list[Column[DriveTable]] = [
-        read_only("drive", lambda d: d.name, numeric=False),
+        *texts("drive=name"),
         read_only("quantity", quantity, numeric=False),
     ]
     if drives[0].time is not None:

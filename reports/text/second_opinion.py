@@ -18,7 +18,7 @@ from assess.opinion.opinions import (
 )
 from reports.data.results import Results, Units
 from reports.format.numbers import DASH, engineering
-from reports.tables.column import Column, Table, read_only
+from reports.tables.column import Column, Table, read_only, texts
 from reports.tables.stress.calculix import opinions_of, over_answer
 from reports.text.chart_summary import percent
 from reports.text.fitted_table import fitted_table
@@ -148,8 +148,7 @@ def _in_contact(text: Callable[[ContactOpinion], str]) -> Callable[[Opinion], st
 
 
 NAMES: list[Column[Opinion]] = [
-    read_only("Pin", lambda o: o.pin, numeric=False),
-    read_only("Case", lambda o: o.case, numeric=False),
+    *texts("Pin=pin Case=case"),
 ]
 WORD: Column[Opinion] = read_only(" ", lambda o: outcome_of(o))
 STRESSES: list[Column[Opinion]] = [

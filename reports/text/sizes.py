@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from reports.data.results import Units
 from reports.format.numbers import DASH, engineering, short
-from reports.tables.column import Column, Table, read_only
+from reports.tables.column import Column, Table, read_only, texts
 from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:
@@ -74,8 +74,7 @@ def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
 def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
     """A row per pin."""
     columns: list[Column[SizeRow]] = [
-        read_only("Pin", lambda row: row.pin, numeric=False),
-        read_only("Result", lambda row: row.result, numeric=False),
+        *texts("Pin=pin Result=result"),
         read_only("FoS", lambda row: row.factor),
         read_only("new", lambda row: _joined(row.after) or "unchanged", "length", numeric=False),
         read_only("before", lambda row: _joined(row.before), "length", rank=4, numeric=False),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from reports.data.drop import DropPeak, DropRecord
 from reports.data.results import Results
 from reports.format.numbers import engineering
-from reports.tables.column import ArrayTable, Column, Grid, Table, fields, read_only
+from reports.tables.column import ArrayTable, Column, Grid, Table, fields, read_only, texts
 
 COLUMNS: list[Column[DropRecord]] = [  # of landing.csv
     *fields("case"),
@@ -30,7 +30,7 @@ def peak_grid(d: DropRecord, results: Results) -> Grid:
     """Largest values of a drop with their times."""
     units = {"force": results.units.force, "length": results.units.length}
     columns: list[Column[DropPeak]] = [
-        read_only("largest", lambda p: p.name, numeric=False),
+        *texts("largest=name"),
         read_only("unit", lambda p: units[p.dimension], numeric=False),
         read_only("value", lambda p: p.value),
         read_only("time", lambda p: engineering(p.time), "time"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from reports.data.changes import Remedy
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
-from reports.tables.column import Column, Table, read_only
+from reports.tables.column import Column, Table, read_only, texts
 
 REMEDIES_NOTE = (
     "Each of these alone brings the pin to the required factor in the worst of its cases, if "
@@ -28,8 +28,7 @@ SINGULARITY_REMEDIES = {
 
 
 COLUMNS: tuple[Column[Remedy], ...] = (
-    read_only("pin", lambda c: c.pin, numeric=False),
-    read_only("case", lambda c: c.case, numeric=False),
+    *texts("pin case"),
     read_only("× diameters", lambda c: engineering(c.diameter_factor, 3), drop_if_empty=True),
     read_only("yield strength", lambda c: c.yield_strength, "stress", drop_if_empty=True),
     read_only("× loads", lambda c: _loads(c), drop_if_empty=True),

@@ -11,7 +11,7 @@ from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Fatigue, Results
 from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, engineering, finite
-from reports.tables.column import ArrayTable, Column, Table, fields, read_only
+from reports.tables.column import ArrayTable, Column, Table, fields, read_only, texts
 
 LIFE_PROBABILITIES = ("10 %", "50 %", "90 %")
 METHOD_NAMES = {
@@ -119,7 +119,7 @@ def shown_fatigue(results: Results) -> Table[PointFatigue] | None:
 
     scattered = any(p.lives for p in fatigue.points)
     columns = [
-        read_only("Pin", lambda p: p.pin, numeric=False),
+        *texts("Pin=pin"),
         read_only("point", lambda p: str(p.point)),
         read_only("z", lambda p: engineering(p.location[2], 3), "length"),
         read_only(f"damage per {unit}", damage),

@@ -8,7 +8,7 @@ from pathlib import Path
 from reports.data.results import LandingRange, Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, short
-from reports.tables.column import Column, Grid, Table, fields, read_only
+from reports.tables.column import Column, Grid, Table, fields, read_only, texts
 
 LANDING_NOTE = (
     "An unconverged row decides nothing. Factors of a singular row are those outside the excluded "
@@ -103,8 +103,7 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
         for speed, pulse in dict.fromkeys(points):
             here = [i for i, point in enumerate(points) if point == (speed, pulse)]
             columns = [
-                read_only("pin", lambda r: r.pin, numeric=False),
-                read_only("verdict", lambda r: r.verdict, numeric=False),
+                *texts("pin verdict"),
                 *(_at(i, f"{short(first.impulse_time[i])} {units.time}") for i in here),
             ]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"

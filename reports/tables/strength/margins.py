@@ -12,7 +12,7 @@ from reports.data.governing import governing, skipped
 from reports.data.results import Results, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
-from reports.tables.column import Column, Table, fields, in_order, read_only
+from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
 DISPLAY_ORDER = ("pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand",
                  "allowable", "clause")  # fmt: skip
@@ -65,7 +65,7 @@ def _dimension(row: MarginRow) -> str:
 
 
 COLUMNS: list[Column[MarginRow]] = [
-    Column("pin", lambda row: row.pin, heading="pin", numeric=False),
+    *texts("pin"),
     Column("case", lambda row: row.case, "", "case", lambda row: row.case or DASH, numeric=False),
     Column("method", lambda row: row.margin.method, "", "check",
            lambda row: row.margin.shown, numeric=False),
@@ -91,10 +91,9 @@ COLUMNS: list[Column[MarginRow]] = [
     *fields("margin.governs"),
 ]  # fmt: skip
 ARM_COLUMNS: list[Column[ArmsRow]] = [
-    Column("pin", lambda row: row.arms.pin, heading="pin", numeric=False),
-    Column("case", lambda row: row.arms.case, heading="case", numeric=False),
+    *texts("arms.pin arms.case"),
     *fields("arms.time", "time"),
-    Column("layout", lambda row: row.arms.layout, heading="layout", numeric=False),
+    *texts("arms.layout"),
     Column("moment_even", lambda row: row.arms.even, "moment", "even"),
     Column("moment_concentrated", lambda row: row.arms.concentrated, "moment", "concentrated"),
     Column("moment_joint", lambda row: row.arms.joint, "moment", "joint model"),

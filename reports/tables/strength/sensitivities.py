@@ -8,7 +8,7 @@ from typing import Any
 from reports.data.results import PinSensitivities, Results, Sensitivity, Units
 from reports.format.numbers import DASH, engineering, finite, short
 from reports.format.units import unit_name
-from reports.tables.column import Column, Table, fields, in_order, json_of, read_only
+from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts
 
 PARAMETER_KEYS = (  # of results.json
     *("key", "unit", "value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step"),
@@ -93,9 +93,7 @@ def sensitivities_json(results: Results) -> list[dict[str, Any]]:
 def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[SensitivityRow]:
     """A row for each dimension that matters, the largest effects of each pin first, for people."""
     columns: list[Column[SensitivityRow]] = [
-        read_only("pin", lambda row: row.of.pin, numeric=False),
-        read_only("case", lambda row: row.of.case, numeric=False),
-        read_only("dimension", lambda row: row.by.key, numeric=False),
+        *texts("of.pin of.case dimension=by.key"),
         read_only("now", lambda row: short(row.by.value), "length"),
         read_only("more by", lambda row: f"+{short(row.by.step)}", "length"),
         read_only(

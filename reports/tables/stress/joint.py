@@ -9,7 +9,7 @@ from typing import Any
 from fea.support.contact.records import BandContact, JointRange, JointResult, Variation
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, finite, short
-from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
+from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, texts, unit_columns
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ def _range(row: PinRow[Variation]) -> JointRange:
 
 BAND_COLUMNS: list[Column[PinRow[BandContact]]] = [
     *PIN_AND_CASE,
-    Column("connection", lambda row: row.of.name, heading="connection", numeric=False),
+    *texts("connection=of.name"),
     Column("force", lambda row: row.of.force, "force", "force"),
     Column("contact_angle", lambda row: row.of.contact_angle, "degrees", "half contact angle",
            lambda row: engineering(row.of.contact_angle, 3)),

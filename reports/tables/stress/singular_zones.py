@@ -15,6 +15,7 @@ from reports.tables.column import (
     fields,
     in_order,
     read_only,
+    texts,
     unit_columns,
 )
 
@@ -103,12 +104,12 @@ COLUMNS: list[Column[ZoneRow]] = [
     Column("y", _at(1), "length"),
     Column("between", lambda row: row.zone.between, "", "between",
            lambda row: row.zone.between or DASH, numeric=False),
-    Column("kind", lambda row: row.zone.found.kind, heading="kind", numeric=False),
+    *texts("zone.found.kind"),
     Column("exponent", lambda row: row.zone.found.exponent, "", "exponent",
            lambda row: row.zone.exponents),
     *fields("zone.found.exponent_theory"),
     Column("excluded_radius", lambda row: row.zone.found.excluded, "length", "excluded distance"),
-    Column("governs", lambda row: row.zone.found.governs, heading="governs", numeric=False),
+    *texts("zone.found.governs"),
     Column("max_von_mises", lambda row: row.zone.found.max_von_mises, "stress", "maximum inside"),
     Column("advice", lambda row: row.zone.found.advice, heading="remedy", numeric=False),
     *fields("pin.verdict"),
