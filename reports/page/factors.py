@@ -9,8 +9,9 @@ from reports.data.changes import command
 from reports.data.decision import limit, outcome, utilisation
 from reports.data.results import PinResult, Results
 from reports.format.files.csv import Cell
+from reports.format.plain import plain
 from reports.format.words import OUTCOME_MEANINGS
-from reports.tables.column import grid_of, plain
+from reports.tables.column import grid_of
 from reports.tables.published import published_maxima
 from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_table
 from reports.tables.strength.limit_load import LEFT_OUT_NOTE, limit_notes, limits_table

@@ -17,7 +17,8 @@ from reports.data.results import Floats, PinResult, Units
 from reports.format.files import markdown
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
-from reports.format.numbers import DASH, engineering, finite, short
+from reports.format.numbers import DASH, engineering, short
+from reports.format.plain import plain
 from reports.format.units import unit_name
 
 MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
@@ -197,15 +198,8 @@ def _listed(cells: Floats | list[Cell] | Cell, count: int) -> Iterable[Cell]:
 
 
 def json_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
-    """A row as JSON: what is not finite is null, a NumPy truth an ordinary one."""
+    """A row as JSON, with the keys of the columns."""
     return {column.key: plain(column.cell(row)) for column in columns}
-
-
-def plain(value: Cell) -> Cell:
-    """A cell as JSON has it."""
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    return finite(value) if isinstance(value, float) else value
 
 
 @dataclass(frozen=True)

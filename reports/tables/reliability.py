@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, is_dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from reports.data.reliability import ByErrors, Driver, Reliability, Risk, Spread
 from reports.format.numbers import DASH, engineering, finite
+from reports.format.plain import plain
 from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"
@@ -106,23 +107,12 @@ def write_reliability(found: Reliability, directory: Path) -> None:
     Table("reliability", COLUMNS, [RiskRow(risk, found) for risk in found.risks]).write(directory)
     drivers = [DriverRow(risk, driver) for risk in found.risks for driver in risk.drivers]
     Table("drivers", DRIVER_COLUMNS, drivers).write(directory)
-    content = {"schema": RELIABILITY_SCHEMA, **_plain(found)}
+    content = {"schema": RELIABILITY_SCHEMA, **plain(found)}
     for risk, made in zip(found.risks, content["risks"], strict=True):
         made |= {"result": risk.result(found.probability), "by_weights": risk.by_weights}
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     path = directory / "reliability.json"
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
-
-
-def _plain(value: Any) -> Any:
-    """As JSON: what is not finite is null."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    return finite(value) if isinstance(value, float) else value
 
 
 def remark(risk: Risk) -> str:

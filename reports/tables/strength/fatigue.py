@@ -10,8 +10,8 @@ from typing import Any
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Fatigue, Results
 from reports.format.files.csv import Cell
-from reports.format.numbers import DASH, engineering, finite
-from reports.tables.column import ArrayTable, Column, Table, fields, read_only, texts
+from reports.format.numbers import DASH, engineering
+from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only, texts
 
 LIFE_PROBABILITIES = ("10 %", "50 %", "90 %")
 METHOD_NAMES = {
@@ -197,36 +197,19 @@ def _so_far(pin: str, fatigue: Fatigue) -> str:
     return f"; the design life uses at least {_per_cent(worst.utilisation)}"
 
 
+# The keys of results.json.
+FATIGUE = fields(
+    "unit occurrences method failure_probability=probability design_life=life left_out not_decided"
+)
+POINT: list[Column[PointFatigue]] = [
+    *fields("pin point location cases method damage life utilisation amplitude mean note"),
+    *fields("plane_normal=normal"),
+    Column("life_at_probability", lambda p: dict(zip(("10", "50", "90"), p.lives, strict=False))),
+]
+
+
 def fatigue_json(fatigue: Fatigue | None) -> dict[str, Any] | None:
     """As in results.json."""
     if fatigue is None:
         return None
-    return {
-        "unit": fatigue.unit,
-        "occurrences": fatigue.occurrences,
-        "method": fatigue.method,
-        "failure_probability": finite(fatigue.probability),
-        "design_life": finite(fatigue.life),
-        "points": [_point(p) for p in fatigue.points],
-        "left_out": list(fatigue.left_out),
-        "not_decided": dict(fatigue.not_decided),
-    }
-
-
-def _point(p: PointFatigue) -> dict[str, Any]:
-    lives = {name: finite(x) for name, x in zip(("10", "50", "90"), p.lives, strict=False)}
-    return {
-        "pin": p.pin,
-        "point": p.point,
-        "location": [finite(x) for x in p.location],
-        "cases": list(p.cases),
-        "method": p.method,
-        "damage": finite(p.damage),
-        "life": finite(p.life),
-        "life_at_probability": lives,
-        "utilisation": finite(p.utilisation),
-        "amplitude": finite(p.amplitude),
-        "mean": finite(p.mean),
-        "note": p.note,
-        "plane_normal": None if p.normal is None else [finite(x) for x in p.normal],
-    }
+    return {**json_of(FATIGUE, fatigue), "points": [json_of(POINT, p) for p in fatigue.points]}

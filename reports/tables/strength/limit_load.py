@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
 from assess.plastic.records import LimitLoad, LoadCurve
 from reports.data.results import PinResult, Results
-from reports.format.numbers import DASH, engineering, finite
-from reports.tables.column import ArrayTable, Column, Table, read_only
+from reports.format.numbers import DASH, engineering
+from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only
 
 LIMIT_LOAD_NOTE = (
     "A pin whose safety factor is below one yields somewhere, which need not matter. It collapses "
@@ -35,6 +34,11 @@ LIMIT_COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
     read_only("permanent set", lambda row: engineering(row[1].permanent_set, 3), "length", rank=1),
     read_only("after × loads", lambda row: engineering(row[1].permanent_at, 3), rank=2),
 ]
+
+LIMIT_LOAD = fields(  # the keys of results.json
+    "lower upper method carries permanent_set permanent_set_factor=permanent_at hardening seconds "
+    "meshes note"
+)
 
 
 def limit_rows(results: Results) -> list[tuple[PinResult, LimitLoad]]:
@@ -87,17 +91,4 @@ def _curve(limit: LimitLoad) -> LoadCurve:
 
 def limit_load_json(limit: LimitLoad | None) -> dict[str, Any] | None:
     """For results.json; the curve is in limit_load.csv."""
-    if limit is None:
-        return None
-    return {
-        "lower": finite(limit.lower),
-        "upper": finite(limit.upper),
-        "method": limit.method,
-        "carries": None if limit.carries is None else bool(limit.carries),
-        "permanent_set": finite(limit.permanent_set),
-        "permanent_set_factor": finite(limit.permanent_at),
-        "hardening": bool(limit.hardening),
-        "seconds": finite(limit.seconds),
-        "meshes": [asdict(mesh) for mesh in limit.meshes],
-        "note": limit.note,
-    }
+    return limit and json_of(LIMIT_LOAD, limit)

@@ -6,12 +6,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from reports.data.results import PinSensitivities, Results, Sensitivity, Units
-from reports.format.numbers import DASH, engineering, finite, short
+from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts
 
 PARAMETER_KEYS = (  # of results.json
     *("key", "unit", "value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step"),
+)
+PIN_SENSITIVITIES = fields(
+    "pin case max_von_mises=maximum safety_factor=factor tied_places tied_times changing note"
 )
 MAX_SHOWN_ROWS = 8  # rows of a pin that are shown
 MAX_BRIEF_ROWS = 3
@@ -73,18 +76,11 @@ def sensitivities_json(results: Results) -> list[dict[str, Any]]:
     parameters = in_order([c for c in COLUMNS if c.key in PARAMETER_KEYS], PARAMETER_KEYS)
     return [
         {
-            "pin": found.pin,
-            "case": found.case,
-            "max_von_mises": finite(found.maximum),
-            "safety_factor": finite(found.factor),
+            **json_of(PIN_SENSITIVITIES, found),
             "parameters": [
                 json_of(parameters, SensitivityRow(found, by, results.units)) for by in found.rows
             ],
-            "tied_places": [list(place) for place in found.tied_places],
-            "tied_times": list(found.tied_times),
             "without": dict(found.without),
-            "changing": found.changing,
-            "note": found.note,
         }
         for found in results.sensitivities
     ]

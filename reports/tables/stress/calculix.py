@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 from assess.opinion.opinions import ContactOpinion, Opinion
 from reports.data.results import Results, Units
 from reports.format.files.csv import Cell
-from reports.format.numbers import finite
-from reports.tables.column import Column, Table, fields, unit_columns
+from reports.tables.column import Column, Table, fields, json_of, unit_columns
 
 
 def opinions_of(results: Results) -> list[Opinion]:
@@ -78,6 +77,18 @@ OPINION_LOAD_COLUMNS: list[Column[LoadRow]] = [
 ]
 
 
+# The keys of results.json.
+OPINION = fields(
+    "unknowns displacement_difference=displacement von_mises_difference=stress "
+    "max_von_mises_same_mesh=ours max_von_mises_calculix=theirs note=complaint"
+)
+CONTACT = fields(
+    "bending_moment=our_moment bending_moment_calculix=moment load_elsewhere=elsewhere "
+    "mesh_change=stress_change bands"
+)
+LIMIT = fields("unknowns factor_same_mesh=ours factor_calculix=theirs")
+
+
 def over_answer(opinion: Opinion) -> float | None:
     """CalculiX's stress over ours."""
     return None if opinion.deviation is None else 1.0 + opinion.deviation
@@ -104,25 +115,8 @@ def opinion_json(opinion: Opinion | None) -> dict[str, Any] | None:
         return None
     contact, limit = opinion.contact, opinion.limit
     return {
-        "unknowns": opinion.unknowns,
-        "displacement_difference": finite(opinion.displacement),
-        "von_mises_difference": finite(opinion.stress),
-        "max_von_mises_same_mesh": finite(opinion.ours),
-        "max_von_mises_calculix": finite(opinion.theirs),
+        **json_of(OPINION, opinion),
         "agrees": not opinion.complaint,
-        "note": opinion.complaint,
-        "contact": contact
-        and {
-            "bending_moment": finite(contact.our_moment),
-            "bending_moment_calculix": finite(contact.moment),
-            "load_elsewhere": finite(contact.elsewhere),
-            "mesh_change": finite(contact.stress_change),
-            "bands": [asdict(band) for band in contact.bands],
-        },
-        "limit_load": limit
-        and {
-            "unknowns": limit.unknowns,
-            "factor_same_mesh": finite(limit.ours),
-            "factor_calculix": finite(limit.theirs),
-        },
+        "contact": contact and json_of(CONTACT, contact),
+        "limit_load": limit and json_of(LIMIT, limit),
     }

@@ -8,8 +8,17 @@ from typing import Any
 
 from fea.support.contact.records import BandContact, JointRange, JointResult, Variation
 from reports.data.results import Results
-from reports.format.numbers import DASH, engineering, finite, short
-from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, texts, unit_columns
+from reports.format.numbers import DASH, engineering, short
+from reports.tables.column import (
+    PIN_AND_CASE,
+    Column,
+    PinRow,
+    Table,
+    fields,
+    json_of,
+    texts,
+    unit_columns,
+)
 
 
 @dataclass(frozen=True)
@@ -75,6 +84,11 @@ RANGE_COLUMNS: list[Column[PinRow[Variation]]] = [
 ]
 
 
+# The keys of results.json.
+JOINT = fields("model bands bending_moment bending_moments remark")
+VARIATION = fields("what value length max_von_mises max_von_mises_interval=interval beneath")
+
+
 def joint_tables(results: Results) -> list[Table[Any]]:
     """Of all pins in lugs: their bands, the load per length along these, and the maximum with the
     joint changed.
@@ -109,40 +123,12 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
         return None
     over = joint.range
     return {
-        "model": joint.model,
-        "bands": [
-            {
-                "name": band.name,
-                "force": finite(band.force),
-                "contact_angle": finite(band.contact_angle),
-                "mean_pressure": finite(band.mean_pressure),
-                "couple": finite(band.couple),
-                "clearance": finite(band.clearance),
-                "outer_diameter": finite(band.outer_diameter),
-                "line_load": [[finite(z), finite(load)] for z, load in band.line_load],
-                "ends": [finite(z) for z in band.ends],
-            }
-            for band in joint.bands
-        ],
-        "bending_moment": finite(joint.bending_moment),
-        "bending_moments": [[finite(z), finite(m)] for z, m in joint.bending_moments],
-        "remark": joint.remark,
+        **json_of(JOINT, joint),
         "range": over
         and {
-            "max_von_mises": [finite(x) for x in over.max_von_mises],
-            "model": over.model,
+            **json_of(fields("max_von_mises model"), over),
             "lugs": lugs_word(over),
-            "over": [
-                {
-                    "what": v.what,
-                    "value": v.value,
-                    "length": finite(v.length),
-                    "max_von_mises": finite(v.max_von_mises),
-                    "max_von_mises_interval": v.interval and [finite(x) for x in v.interval],
-                    "beneath": finite(v.beneath),
-                }
-                for v in over.variations
-            ],
+            "over": [json_of(VARIATION, variation) for variation in over.variations],
         },
     }
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from fea.core.places import BandPressure, ContactEdge, ContactPlace, SectionPlace, SurfacePlace
+from fea.core.places import ContactEdge, ContactPlace, SectionPlace, SurfacePlace
 from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import finite
+from reports.format.plain import plain
 from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 
 
@@ -22,70 +23,15 @@ def places_json(pin: PinResult) -> dict[str, Any]:
     places = pin.places
     if places is None:
         return {"governs": None}
-    found: dict[str, Any] = {
-        "governs": places.governs,
-        "surface": _surface(pin, places.surface),
-    }
-    if places.section is not None:
-        found["section"] = _section(pin, places.section)
+    found: dict[str, Any] = {"governs": places.governs}
+    for name, at in (("surface", places.surface), ("section", places.section)):
+        if at is not None:
+            factor = factor_at(pin, at.max_von_mises)
+            found[name] = {**plain(at), "safety_factor": finite(factor)}
     if places.contact is not None:
-        found["contact"] = _contact(places.contact)
+        found["contact"] = plain(places.contact)
+        del found["contact"]["depths"]
     return found
-
-
-def _surface(pin: PinResult, at: SurfacePlace) -> dict[str, Any]:
-    return {
-        "max_von_mises": finite(at.max_von_mises),
-        "error_estimate": finite(at.error_estimate),
-        "verdict": at.verdict,
-        "location": [finite(x) for x in at.location],
-        "time": finite(at.time),
-        "safety_factor": finite(factor_at(pin, at.max_von_mises)),
-    }
-
-
-def _section(pin: PinResult, at: SectionPlace) -> dict[str, Any]:
-    numbers = ("axial_force", "shear_force", "bending_moment", "torque", "plastic_utilisation")
-    return {
-        "max_von_mises": finite(at.max_von_mises),
-        "error_estimate": finite(at.error_estimate),
-        "verdict": at.verdict,
-        "z": finite(at.z),
-        "time": finite(at.time),
-        **{name: finite(getattr(at, name)) for name in numbers},
-        "safety_factor": finite(factor_at(pin, at.max_von_mises)),
-    }
-
-
-def _contact(at: ContactPlace) -> dict[str, Any]:
-    return {
-        "beneath": finite(at.beneath),
-        "beneath_error": finite(at.beneath_error),
-        "beneath_location": [finite(x) for x in at.beneath_location],
-        "beneath_time": finite(at.beneath_time),
-        "reach": finite(at.reach),
-        "reach_required": finite(at.reach_required),
-        "edges": [_edge(edge) for edge in at.edges],
-        "bands": [_band(band) for band in at.bands],
-    }
-
-
-def _edge(edge: ContactEdge) -> dict[str, Any]:
-    numbers = ("K", "exponent", "yield_distance", "max_pressure", "max_von_mises", "error_estimate")
-    return {
-        "band": edge.band,
-        "end": edge.end,
-        **{name: finite(getattr(edge, name)) for name in numbers},
-    }
-
-
-def _band(band: BandPressure) -> dict[str, Any]:
-    return {
-        "name": band.name,
-        "mean_pressure": finite(band.mean_pressure),
-        "bearing_share": finite(band.bearing_share),
-        "pressed": [[finite(x) for x in cell] for cell in band.pressed],
-    }
 
 
 @dataclass(frozen=True)
