@@ -25,4 +25,4 @@ def plain(value: Any) -> Any:
         return bool(value)
     if isinstance(value, np.integer):
         return int(value)
-    return finite(value) if isinstance(value, float | np.floating) else value
+    return finite(float(value)) if isinstance(value, float | np.floating) else value

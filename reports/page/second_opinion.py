@@ -9,8 +9,8 @@ from operator import mul
 
 from assess.opinion.opinions import BandOpinion, Opinion
 from reports.data.results import Units
+from reports.format.numbers import percent
 from reports.tables.column import Column, Grid, Table, read_only
-from reports.text.chart_summary import percent
 from reports.text.second_opinion import outcome_of, sentences
 
 LENGTH_PARTS = (

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from reports.data.chart import CHART_NAME, Chart, ChartPoint
-from reports.format.numbers import DASH, engineering
+from reports.data.chart import CHART_NAME, Chart, ChartPoint, error
+from reports.format.numbers import DASH, engineering, percent, seconds
 from reports.tables.column import Column, Table, fields
-from reports.text.chart_summary import error, percent, seconds
 
 
 def _end(k: int) -> Callable[[ChartPoint], float | None]:

@@ -17,10 +17,9 @@ from assess.opinion.opinions import (
     Opinion,
 )
 from reports.data.results import Results, Units
-from reports.format.numbers import DASH, engineering
+from reports.format.numbers import DASH, engineering, percent
 from reports.tables.column import Column, Table, read_only, texts
 from reports.tables.stress.calculix import opinions_of, over_answer
-from reports.text.chart_summary import percent
 from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:

@@ -91,4 +91,4 @@ def _curve(limit: LimitLoad) -> LoadCurve:
 
 def limit_load_json(limit: LimitLoad | None) -> dict[str, Any] | None:
     """For results.json; the curve is in limit_load.csv."""
-    return limit and json_of(LIMIT_LOAD, limit)
+    return None if limit is None else json_of(LIMIT_LOAD, limit)
