@@ -18,8 +18,8 @@ def record(name: str, text: str, command: str = "") -> Path:
     path = FOLDER / f"{name}.md"
     day = datetime.date.today().isoformat()
     told = f"`{command or f'python -m benchmarks {name}'}`, {day}, {machine()}:"
-    if not any(line.startswith("|") for line in text.splitlines()):
-        text = f"```text\n{text}\n```"  # no table of Markdown, whose lines would run together
+    if not any(line.startswith(("|", "## ")) for line in text.splitlines()):
+        text = f"```text\n{text}\n```"  # not Markdown: its lines would run together
     path.write_text(f"{told}\n\n{text}\n", encoding="utf-8")
     return path
 

@@ -35,8 +35,8 @@ __all__ = [
 ]  # fmt: skip
 
 _MODULE_OF = {
-    "Found": "pinstress.analysis.results",
     "InputError": "pinstress.study.reading.errors",
+    "RunResults": "pinstress.analysis.results",
     "Study": "pinstress.study.reading.file",
     "changed_study": "pinstress.study.reading.in_python",
     "load_study": "pinstress.study.reading.file",

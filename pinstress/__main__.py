@@ -30,12 +30,12 @@ def main() -> None:
     except BaseException:
         if not interrupts.came():
             raise
-        status = interrupts.INTERRUPTED  # in the middle of an import
+        status = interrupts.EXIT_INTERRUPTED  # in the middle of an import
     interrupts.ignore()  # it is done; an interrupt is no part of the answer now
     if why := lost():
         print(f"Error: {why}", file=sys.stderr)
         status = max(status, EXIT_NOT_WRITTEN)
-    if status == interrupts.INTERRUPTED:
+    if status == interrupts.EXIT_INTERRUPTED:
         # If the interrupt came while exec() ran a string (an import of dataclasses, say), CPython
         # ends the process by the signal, whoever caught it; everything is cleaned up by now.
         sys.stdout.flush()

@@ -23,7 +23,7 @@ from assess.fatigue.records import CaseHistory, PointHistory
 from assess.fatigue.signed_stress import signed_von_mises
 from assess.fatigue.stress_points import StressPoints, stress_points
 from fea.core.voigt import von_mises
-from fea.solve.solve_pin import Solution
+from fea.support.support import Solution
 from pinbase.arrays import Floats, Ints
 
 SEARCH_ANGLES, FINAL_ANGLES = 16, 72  # angles about the axis

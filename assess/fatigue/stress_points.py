@@ -16,7 +16,7 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import COSINE_COMPONENTS
 from fea.harmonic.free_surface import surface_points
 from fea.solid.evaluate import SolidField
-from fea.support.foundation.solve_on_foundations import FoundationField
+from fea.support.foundation.held import FoundationField
 from pinbase.arrays import Floats, Ints, Mask
 
 

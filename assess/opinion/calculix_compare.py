@@ -29,9 +29,9 @@ from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
+from fea.singular.singularities import singularities_of
 from fea.solid.evaluate import SolidSolution, solid_solution
 from fea.solid.stress_recovery import nodal_stress
-from fea.solve.solve_pin import singularities_of
 from geometry import PinLike
 from geometry.mesh.solid_mesh import MeshSize
 from pinbase.arrays import Floats, Ints
@@ -47,7 +47,7 @@ def second_opinions(
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Opinion, ...]:
     """Opinions on a pin's cases, each at the governing instant of its peak, on the first mesh of
-    the solid model. distance: as in fea.solve.solve_pin.Asked. An unconstrained pin has none.
+    the solid model. distance: as in fea.solve.solve.Asked. An unconstrained pin has none.
 
     Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
     """

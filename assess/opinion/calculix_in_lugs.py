@@ -22,9 +22,9 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.contact.records import BandContact, JointResult
 from fea.support.lugs.links import link_forces
 from fea.support.lugs.lug import Lug
+from fea.support.records import BandContact, JointResult
 from geometry import ArgumentError, Pin
 
 Meshes = tuple[Fineness, Fineness]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from fea.support.contact.records import Couple, LineLoad
+from fea.support.records import Couple, LineLoad
 from pinbase.dimensions import Length, Stress
 
 MAX_DISPLACEMENT_DIFFERENCE = 1e-5  # of the largest; CalculiX prints 7 digits

@@ -8,7 +8,7 @@ import numpy as np
 
 from assess.strength.section_forces import section_forces
 from assess.strength.situation import Situation
-from fea.support.contact.records import Couple
+from fea.support.records import Couple
 from pinbase.dimensions import Time
 
 MAX_OPPOSED_COSINE = -0.99  # cosine between the forces of outer lugs and of the middle one

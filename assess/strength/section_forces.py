@@ -25,7 +25,7 @@ from fea.beam.line_load import acting, shares
 from fea.beam.round_section import Circle, weakest
 from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
-from fea.support.contact.records import JointForces
+from fea.support.records import JointForces
 from pinbase.arrays import Floats
 
 EVEN_LOAD_BASIS = "even load on each band"

@@ -12,8 +12,8 @@ from assess.strength.margin import Level
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.records import JointForces
 from fea.support.lugs.lug import Lug
+from fea.support.records import JointForces
 from geometry import Pin
 from pinbase.arrays import Floats
 

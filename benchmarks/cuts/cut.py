@@ -16,10 +16,13 @@ from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Model, Requirement
 from fea.cut.evaluate import CutField, cut_result, cut_solution
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
-from fea.solve.solve_pin import Model, Requirement, Solution, singularities_of, solve_pin
+from fea.singular.singularities import singularities_of
+from fea.solve.solve import solve_pin
+from fea.support.support import Solution
 from geometry import CutPin, Hole
 
 HOLE = 0.004

@@ -13,7 +13,8 @@ import numpy as np
 from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
 
 D, MIDDLE, TOLERANCE, FURTHER = 0.02, 0.08, 0.01, 200

@@ -23,11 +23,13 @@ from benchmarks.random_pins import STEEL
 from benchmarks.timing import table
 from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import Maximum
+from fea.core.requirement import Requirement
 from fea.cut.evaluate import cut_result, cut_solution
 from fea.cut.local_fields import LocalFineness
 from fea.cut.region import PIECE_REACH, loaded_bands, pieces
 from fea.harmonic.evaluate import SectionProblem
-from fea.solve.solve_pin import Requirement, singularities_of, solve_pin
+from fea.singular.singularities import singularities_of
+from fea.solve.solve import solve_pin
 
 COUNT, KINDS, SEED = 30, 6, 7
 TOLERANCE = 0.02

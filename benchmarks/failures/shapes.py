@@ -14,7 +14,8 @@ from benchmarks.failures.draw import INK, line_style, note
 from benchmarks.failures.entry import Entry
 from benchmarks.failures.fields import MPA, evenly, finest, revolved
 from fea.core.pin_loads import Floats
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from geometry import Pin
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from reports.data.results import PinResult

@@ -12,11 +12,13 @@ import numpy as np
 from benchmarks.joints.random_pins import PinTrial, pin_trials
 from benchmarks.timing import table
 from fea.core.pin_loads import Floats
+from fea.core.requirement import Requirement
 from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import SECTION_MESHES, HarmonicField
 from fea.section.place import FLEXIBILITY_ERROR
 from fea.section.section_stress import SectionField
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
+from fea.support.contact.held import profile_of
 from fea.support.contact.pressure_loads import resultants
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import compare
@@ -101,7 +103,7 @@ def cell_error(trial: PinTrial, meshes: bool) -> CellError:
 
 def _model(trial: PinTrial, size: Resolution) -> ContactModel:
     given = trial.given
-    return ContactModel(given.pin, given.material, given.lugs, size)
+    return ContactModel(profile_of(given.pin), given.material, given.lugs, size)
 
 
 def _stress(model: ContactModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:

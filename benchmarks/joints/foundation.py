@@ -20,7 +20,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
-from fea.solve.solve_pin import singularities_of
+from fea.singular.singularities import singularities_of
 from fea.support.contact.bending import shear_force
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import AtPlaces

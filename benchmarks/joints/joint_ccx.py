@@ -17,10 +17,11 @@ from assess.opinion.calculix_joint_mesh import CONTACT_STIFFNESS, Fineness
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Requirement, solve_pin
-from fea.support.contact.solve_in_lugs import ROUGH
+from fea.solve.solve import solve_pin
+from fea.support.contact.held import ROUGH
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment

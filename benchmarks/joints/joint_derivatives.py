@@ -19,17 +19,19 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
+from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
 from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
 from fea.harmonic.model import HarmonicBody
 from fea.section.section_stress import SectionField
-from fea.solve.refine import singularities_of
-from fea.solve.requirement import Requirement
+from fea.singular.singularities import singularities_of
+from fea.solve.solve import solve_in_lugs
 from fea.support.contact.contact import ContactState, rotation
 from fea.support.contact.flexibility import RingBody, lug_rings
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.support.contact.held import HeldContact
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Bushing, Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.mesh.section_mesh import MeridianMesh
@@ -75,7 +77,7 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
     given = PinProblem(pin, material, tuple(lugs), (trial.loads,))
     (made,), solving = timed(lambda: solve_in_lugs(given, Requirement()))
     every = list(parameters(pin, material, lugs))
-    places = made.solution.peak.places
+    places = made.peak.places
     assert places is not None
     found, deriving = timed(
         lambda: joint_derivatives(*solved_in_lugs(made, material), every, place=places.governs)
@@ -88,8 +90,8 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
     off = max(abs(p.scale * (ours[p.key] - whole.derivative(p))) for p in most)
     return (
         pin.name,
-        len(made.model.rings) if made.model else 0,
-        f"{made.solution.peak.dofs:,}",
+        len(made.held.model.rings) if isinstance(made.held, HeldContact) else 0,
+        f"{made.peak.dofs:,}",
         len(found.by_parameter),
         solving,
         deriving,
@@ -98,18 +100,16 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
     )
 
 
-def solved_in_lugs(
-    made: LugSolution, material: Material
-) -> tuple[SolvedCase, ContactModel, PinLoads]:
+def solved_in_lugs(made: Solution, material: Material) -> tuple[SolvedCase, ContactModel, PinLoads]:
     """What is differentiated of a solution."""
-    solution, answer = made.solution, made.solution.answer
+    held, answer = made.held, made.answer
     assert isinstance(answer, HarmonicField)
     assert made.rings is not None
-    assert made.model is not None
-    assert solution.peak.governing is not None
-    loads = solution.loads.at(np.array([solution.instant]))
+    assert isinstance(held, HeldContact)
+    assert made.peak.governing is not None
+    loads = made.loads.at(np.array([made.instant]))
     solved = SolvedCase(made.rings, material, (), loads, answer.solution, answer.singularities)
-    return solved, made.model, solution.peak.governing
+    return solved, held.model, made.peak.governing
 
 
 def parameters(pin: Pin, material: Material, lugs: Sequence[Lug]) -> Iterator[JointParameter]:

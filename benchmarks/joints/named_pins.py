@@ -14,9 +14,10 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Requirement, solve_pin
-from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem
 from geometry import Pin, Segment
 
 BORE = 0.55 * D
@@ -66,7 +67,7 @@ def clevis(
 def peak_of(given: PinProblem) -> Maximum:
     """Of its only case."""
     (found,) = solve_in_lugs(given, Requirement())
-    return found.solution.peak
+    return found.peak
 
 
 def grooved() -> PinProblem:

@@ -14,9 +14,10 @@ from benchmarks.joints.random_pins import Checked, check, pin_trials
 from benchmarks.timing import table
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Requirement
-from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem
 from geometry import Pin, Segment
 
 PSI = 6894.757
@@ -51,11 +52,11 @@ def _gear() -> str:
         if task.pin.name not in GEAR or not isinstance(task.pin, Pin):
             continue
         cases = tuple(case for case in task.loads if case.case == "landing")
-        given = PinProblem(task.pin, task.material, task.lugs, cases, {}, task.ranges, None)
+        given = PinProblem(task.pin, task.material, task.lugs, cases, {}, task.ranges)
         (found,) = solve_in_lugs(given, Requirement())
         (low, high), section = GEAR[task.pin.name]
         span = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-        ours = _numbers(found.solution.peak, 1e3 * PSI, 4)
+        ours = _numbers(found.peak, 1e3 * PSI, 4)
         rows.append((task.pin.name, ours[0], span, ours[1], f"{section:g}", *ours[2:]))
     head = ("pin", "surface [ksi]", "finer", "section [ksi]", "finer", "row [ksi]", "beneath [ksi]")
     return table(head, sorted(rows))
@@ -109,7 +110,7 @@ def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Maxi
     along = FORCE * SHARE[None, :, None] * [[[1.0, 0.0, 0.0]]]
     given = PinProblem(pin, STEEL, lugs, (PinLoads("pull", NAMES, along),))
     (found,) = solve_in_lugs(given, Requirement())
-    return found.solution.peak
+    return found.peak
 
 
 def _random(pins: int) -> str:

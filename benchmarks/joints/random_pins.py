@@ -13,10 +13,11 @@ from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import PressedCell
+from fea.core.requirement import Requirement
 from fea.harmonic.fields import MeridianFields
-from fea.solve.solve_pin import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 2.1e11, 0.3, 7850.0, 1e9)
@@ -162,15 +163,15 @@ def check(trial: PinTrial, asked: Requirement | None = None) -> Checked:
     return checked(found)
 
 
-def checked(found: LugSolution) -> Checked:
+def checked(found: Solution) -> Checked:
     """Its row against what the other reader finds at the row's instant."""
-    peak, places = found.solution.peak, found.solution.peak.places
+    peak, places = found.peak, found.peak.places
     if places is None or places.contact is None or peak.max_von_mises is None:
         raise ValueError(peak.note)
     pressed = [cell for band in places.contact.bands for cell in band.pressed]
-    answer, loads = found.solution.answer, found.solution.loads
+    answer, loads = found.answer, found.loads
     fields: MeridianFields = answer.fields  # type: ignore[union-attr]
-    value, z, angle = read_surface(fields, loads, found.solution.instant, pressed)
+    value, z, angle = read_surface(fields, loads, found.instant, pressed)
     error = peak.error_estimate or 0.0
     return Checked(peak.max_von_mises, error, places.governs, peak.verdict, value, z, angle)
 

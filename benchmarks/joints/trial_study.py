@@ -10,8 +10,9 @@ import numpy as np
 from benchmarks.joints.random_pins import STEEL, PinTrial
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.solve_in_lugs import PinProblem
+from fea.support.contact.held import profile_of
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem
 from geometry import Pin, Segment
 
 
@@ -33,7 +34,7 @@ def write_study(trial: PinTrial, folder: Path) -> Path:
         *(_material(m) for m in materials.values()),
         '[case.pull]\nkind = "given"\ntable = "loads.csv"',
         f'[pin.P]\nmaterial = "{given.material.name}"\nprofile = [',
-        *(f"  {_segment(segment)}," for segment in given.pin.segments),
+        *(f"  {_segment(segment)}," for segment in profile_of(given.pin).segments),
         "]",
         *(_lug(lug) for lug in given.lugs),
     ]

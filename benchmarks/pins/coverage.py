@@ -13,9 +13,12 @@ from typing import Any
 from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.core.material import Material
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import Requirement, Solution, singularities_of, solve_pin
+from fea.solve.solve import solve_pin
+from fea.support.support import Solution
 
 Row = dict[str, Any]
 

@@ -16,12 +16,13 @@ from benchmarks.random_pins import STEEL, Trial, trials
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
 from fea.harmonic.evaluate import HarmonicField, _ends, _rims
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
-from fea.solve.requirement import Requirement
-from fea.solve.solve_pin import singularities_of, solve_pin
+from fea.singular.singularities import singularities_of
+from fea.solve.solve import solve_pin
 from geometry import Pin
 from geometry.mesh.moved.outline_motion import OutlineNodes, Reach
 from geometry.shape.dimensions import Dimension, dimensions

@@ -13,10 +13,12 @@ from benchmarks import ROOT
 from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.superposition import Circumference
+from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import Requirement, singularities_of, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin
 from pinstress import load_study
 from pinstress.analysis.plan import prepare

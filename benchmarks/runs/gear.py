@@ -12,8 +12,9 @@ from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import singularities_of, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin
 from pinbase.processes.pool import Job, Tell, in_parallel
 from pinstress import load_study

@@ -9,9 +9,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from fea.core.material import Material
+from fea.core.pin_loads import PinLoads
 from fea.core.zone import MESH_SCALE_RATIO, Kind, Zone
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
-from geometry import Arc, Pin, Vertex, meridian, vertices
+from geometry import Arc, Pin, PinLike, Vertex, meridian, vertices
 from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
 from pinbase.arrays import Floats, Mask
 
@@ -186,3 +188,21 @@ def _fillet(pin: Pin, v: Vertex) -> str:
         f"a fillet here would make it finite, as large as fits: {what}, {limit / d:.2g} x the "
         f"smaller diameter"
     )
+
+
+def singularities_of(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    distance: float = 0.1,
+) -> tuple[Zone, ...]:
+    """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
+    if not isinstance(pin, Pin):
+        return ()
+    acting = {load for case in cases for load in case.coefficients() if load.shears}
+    loaded = {load.surface for load in acting}
+    if acting and not clamps:  # all bands react the imbalance
+        loaded |= set(pin.connections)
+    nu = material.poisson_ratio
+    return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)

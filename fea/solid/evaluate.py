@@ -75,7 +75,7 @@ def solid_solution(
     """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
 
     singularities: of a body of revolution; those of any other are found on its mesh, `distance` (of
-    the diameter) wide. memory: as in fea.solve.solve_pin.Asked. Raises: MeshError, SolveError.
+    the diameter) wide. memory: as in fea.solve.solve.Asked. Raises: MeshError, SolveError.
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))

@@ -1,7 +1,7 @@
 """One mesh of one model, from the mesh to the maximum, for comparisons of models.
 
 All models leave out the same singularities, those at edges of loads included: what they say differs
-by the models and their meshes alone. A harmonic mesh is the one that `fea.solve.solve_pin` makes
+by the models and their meshes alone. A harmonic mesh is the one that `fea.solve.solve` makes
 at that level.
 """
 
@@ -20,8 +20,8 @@ from fea.core.zone import Zone
 from fea.cut.evaluate import LocalSolids
 from fea.cut.region import loaded_bands
 from fea.harmonic.evaluate import Harmonic
+from fea.singular.singularities import singularities_of
 from fea.solid.evaluate import Solid
-from fea.solve.refine import singularities_of
 from geometry import ArgumentError, CutPin, Pin, PinLike
 from geometry.mesh.elements import Element
 
@@ -29,7 +29,7 @@ from geometry.mesh.elements import Element
 @dataclass(frozen=True)
 class Problem:
     """A pin, clamped at surfaces (by the pin's names), in one case; distance: as in
-    fea.solve.solve_pin.
+    fea.solve.solve.
     """
 
     pin: PinLike

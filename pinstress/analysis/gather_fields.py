@@ -13,8 +13,8 @@ from fea.core.solution import StressField
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.revolve import revolve_solid
-from fea.solve.solve_pin import Solution
-from fea.support.contact.cell_pressure import CellPressure
+from fea.support.cell_pressure import CellPressure
+from fea.support.support import Solution
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data import results as plain

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from fea.core.memory import allowed_memory
-from fea.solve.solve_pin import Model, Requirement
+from fea.core.requirement import Model, Requirement
 from pinstress.analysis import checks
 from pinstress.analysis.gather_fields import ExtraFields
 from pinstress.analysis.published_quantities import published_values

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from fea.solve.solve_pin import Model
+from fea.core.requirement import Model
 from pinbase.processes.pool import processes
 from pinbase.processes.threads import one_thread
 from pinstress.analysis.gather.gather import results_of

@@ -12,14 +12,14 @@ from assess.fatigue.records import PointHistory
 from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
+from fea.core.requirement import Joints, Requirement
 from fea.harmonic.kept_fields import FirstMesh
 from fea.solid.evaluate import SOLID_MESHES
-from fea.solve.solve_pin import Requirement, Solution, solve_pin
-from fea.support.contact.records import JointResult
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
-from fea.support.foundation.solve_on_foundations import solve_joints
+from fea.solve.solve import solve
 from fea.support.foundation.variations import prescribed_ranges
-from geometry import CutPin, Pin
+from fea.support.records import JointResult
+from fea.support.support import PinProblem, Solution
+from geometry import Pin
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.checked import checked
@@ -162,23 +162,31 @@ def _checked(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
 
 def solutions(
     study: Study, task: Task, asked: Requirement, tell: Tell, first: FirstMesh | None = None
-) -> tuple[Solution | LugSolution, ...]:
-    """Of a task's cases, in contact with lugs if these hold the pin. first: what was solved before
-    of pins that are clamped, as solve_pin takes it.
+) -> tuple[Solution, ...]:
+    """Solutions of a task's cases. first: what was solved before of pins that are clamped.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
-    return _in_lugs(study, task, asked, tell) or solve_pin(
-        task.pin, task.material, task.clamps, task.loads, asked, tell, task.between, first
-    )
+    problem = PinProblem(
+        task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
+        first or FirstMesh(),
+    )  # fmt: skip
+    return solve(problem, replace(asked, joints=_joints(study, task)), tell)
+
+
+def _joints(study: Study, task: Task) -> Joints:
+    """How lugs hold a pin."""
+    joints = study.table.analysis.joints
+    if joints == "contact" or joints == "foundation":
+        return joints
+    # A beam sees no holes; damage depends on stress itself, not on a limit.
+    return "auto" if isinstance(task.pin, Pin) and study.table.fatigue is None else "contact"
 
 
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     study = plan.study
-    every = solutions(study, task, plan.asked, tell)
-    joined = tuple(s for s in every if isinstance(s, LugSolution))
-    found = tuple(s.solution if isinstance(s, LugSolution) else s for s in every)
-    pressures = [j.pressure for j in joined] or [None] * len(found)
+    found = solutions(study, task, plan.asked, tell)
+    pressures = [solution.pressure for solution in found]
     for solution, pressure in zip(found, pressures, strict=True):
         case = plan.loads[solution.peak.case]
         field = gather_fields.field(task, solution, case, plan.also, pressure)
@@ -189,21 +197,21 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     peaks = tuple(
         replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in found
     )
-    ranges = (gather.landing_range(plan.loads, task, s) for s in every)
+    ranges = (gather.landing_range(plan.loads, task, s) for s in found)
     landing = tuple(r for r in ranges if r is not None)
     beam = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
-    joints = tuple(j.joint for j in joined) or _around(plan, task, peaks)
+    joints = tuple(s.joint for s in found) if task.lugs else _around(plan, task, peaks)
     surfaces = surfaces_of(plan.loads, task, found, pressures)
     histories, no_histories = _histories(task, found)
     tell(f"pin {task.pin.name}, what to change")
     to_do = change(plan.asked, task, found)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, every, step, plan.sensitive)
-    limits = limit_loads(plan, task, every, tell)
+    sensitive = sensitivities(study, plan.asked, task, found, step, plan.sensitive)
+    limits = limit_loads(plan, task, found, tell)
     return PinOutcome(
         peaks,
         landing,
@@ -226,22 +234,6 @@ def _histories(task: Task, found: tuple[Solution, ...]) -> tuple[tuple[PointHist
         return stress_histories(task.pin.name, found), ""
     except Exception as error:
         return (), f"{type(error).__name__}: {error}"
-
-
-def _in_lugs(study: Study, task: Task, asked: Requirement, tell: Tell) -> tuple[LugSolution, ...]:
-    """Solutions of a pin that its lugs support; none of any other."""
-    if not task.lugs:
-        return ()
-    cut = task.pin if isinstance(task.pin, CutPin) else None
-    pin = task.pin if cut is None else cut.profile
-    assert isinstance(pin, Pin)
-    given = PinProblem(pin, task.material, task.lugs, task.loads, task.between, task.ranges, cut)
-    joints = study.table.analysis.joints
-    if joints == "prescribed":
-        joints = "auto"
-    if joints == "auto" and (cut is not None or study.table.fatigue is not None):
-        joints = "contact"  # a beam sees no holes; damage depends on stress itself, not on a limit
-    return solve_joints(given, asked, joints, tell)
 
 
 def _around(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> tuple[JointResult | None, ...]:

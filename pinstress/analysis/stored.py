@@ -12,8 +12,8 @@ from assess.plastic.records import LimitLoad
 from assess.strength.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Maximum
-from fea.solve.solve_pin import count_loads, sequence_of
-from fea.support.contact.records import JointResult
+from fea.solve.refine import count_loads, sequence_of
+from fea.support.records import JointResult
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.assessed.checked import Checked
@@ -119,7 +119,7 @@ def shape_of(pin: PinLike) -> object:
 
 
 def independent_of_memory(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> bool:
-    """Whether more memory would not have given another answer (fea.solve.solve_pin stops there)."""
+    """Whether more memory would not have given another answer (fea.solve.solve stops there)."""
     open_ = [
         p
         for p in peaks

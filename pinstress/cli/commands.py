@@ -30,7 +30,7 @@ from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, clipped
 
 if TYPE_CHECKING:
-    from fea.solve.solve_pin import Model
+    from fea.core.requirement import Model
 
 PLOTS_HELP = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
 EXIT_REACHED, EXIT_NOT_REACHED, EXIT_BAD_INPUT, EXIT_NUMERICS_FAILED = 0, 1, 2, 3

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from fea.core.places import ContactPlace
-from fea.support.contact.records import JointResult, Variation
+from fea.support.records import JointResult, Variation
 from reports.data.decision import BELOW_YIELD, NOT_DECIDED, SAFE, as_described, factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 

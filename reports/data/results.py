@@ -16,7 +16,7 @@ from assess.strength.margin import PinMargin
 from assess.strength.records import BeamCheck, HandCheck
 from fea.core.peak import Refinement, SingularZone
 from fea.core.places import Places
-from fea.support.contact.records import JointResult
+from fea.support.records import JointResult
 from pinbase.dimensions import (
     Floats,
     Force,

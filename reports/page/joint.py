@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.support.contact.records import BandContact, JointResult, Variation
+from fea.support.records import BandContact, JointResult, Variation
 from reports.data.results import PinResult, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import END_DIGITS, joint_range, part_words

@@ -34,7 +34,7 @@ PLUMBING = {  # without any rule of the physics, and not named on the page
     "fea/harmonic/revolve.py",
     "fea/cut/shown_free.py",
     "fea/harmonic/shown_surface.py",
-    "fea/support/contact/records.py",
+    "fea/support/records.py",
     "assess/plastic/records.py",
     "pinstress/explore/chart/single_joint.py",
     "fea/solid/evaluate.py",

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pinstress
-from fea.solve.solve_pin import Model
+from fea.core.requirement import Model
 from tests.fuzz import draw_pin
 from tests.fuzz.quantity import Csv, Quantity, Tree, write
 

@@ -10,11 +10,12 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs, Rings
+from fea.core.requirement import Requirement
 from fea.cut.evaluate import CutField
 from fea.cut.free_points import FreePoints, relieved
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import CutPin, Hole, Pin, Segment
 
 D, F = 0.02, 30e3
@@ -31,10 +32,10 @@ LUGS = tuple(Lug(n, 0.05, STEEL, 2e-5, 0.0, np.inf) for n in "AB")
 LOADS = PinLoads("pull", ("A", "B"), F * np.array([[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]]))
 
 
-def solved(*cuts: Hole) -> LugSolution:
+def solved(*cuts: Hole) -> Solution:
     """In single shear, where lugs nearly touch."""
     cut = CutPin(PIN, cuts) if cuts else None
-    return solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (LOADS,), cut=cut), ROUGHLY)[0]
+    return solve_in_lugs(PinProblem(cut or PIN, STEEL, LUGS, (LOADS,)), ROUGHLY)[0]
 
 
 def test_a_prick_changes_nothing() -> None:
@@ -44,14 +45,14 @@ def test_a_prick_changes_nothing() -> None:
     were read before, have 1.6 times the stress: steps of cells at the edges.
     """
     plain, pricked = solved(), solved(Hole(0.002, 6e-4, 0.0, 6e-4))
-    one, other = plain.solution.peak.places, pricked.solution.peak.places
+    one, other = plain.peak.places, pricked.peak.places
     assert one is not None
     assert other is not None
     assert one.contact is not None
     assert other.contact is not None
     assert other.surface.max_von_mises == pytest.approx(one.surface.max_von_mises, rel=0.05)
     assert other.contact.beneath == pytest.approx(one.contact.beneath, rel=0.02)
-    answer, loads = pricked.solution.answer, pricked.pressed(LOADS)
+    answer, loads = pricked.answer, pricked.pressed(LOADS)
     assert isinstance(answer, CutField)
     (piece,) = answer.solution.pieces
     assert piece.piece.z1 > PIN.band("B").z0
@@ -111,7 +112,7 @@ def test_the_wall_of_a_hole_under_a_lug_is_read() -> None:
     """In the pressed fibre under its lug: the walls of the hole are free however pressure surrounds
     its mouth, and there is the largest stress.
     """
-    found = solved(Hole(0.012, 0.1 * D)).solution.peak.places
+    found = solved(Hole(0.012, 0.1 * D)).peak.places
     assert found is not None
     assert found.section is None
     assert found.contact is not None

@@ -28,13 +28,13 @@ from benchmarks.pins.derivatives import moved_maximum, richardson
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.free_surface import surface_points
-from fea.solve.requirement import Requirement
-from fea.solve.solve_pin import solve_pin
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
 from geometry.shape.dimensions import dimensions
@@ -272,16 +272,16 @@ def test_of_whole_solutions(place: Place) -> None:
     every = {p.key: p for p in parameters(pin, STEEL, lugs)}
     one = every["profile[5-7].diameter" if surface else "profile[1-4].diameter"]
 
-    def solved(pin: Pin) -> tuple[LugSolution, float]:
+    def solved(pin: Pin) -> tuple[Solution, float]:
         (made,) = solve_in_lugs(PinProblem(pin, STEEL, lugs, (loads,)), Requirement(0.02))
-        places = made.solution.peak.places
+        places = made.peak.places
         assert places is not None
         value = places.surface if surface else places.section
         assert value is not None
         return made, value.max_von_mises
 
     made, maximum = solved(pin)
-    assert surface == (made.solution.peak.max_von_mises == maximum)
+    assert surface == (made.peak.max_von_mises == maximum)
     ours = joint_derivatives(*solved_in_lugs(made, STEEL), [one], place=place)
     assert ours.maximum == pytest.approx(maximum, rel=1e-6)
     more, less = (solved(one.changed(x * one.value)[0])[1] for x in (1.02, 0.98))

@@ -11,12 +11,13 @@ from assess.fatigue.critical_points import stress_histories
 from assess.fatigue.stress_points import StressPoints, stress_points
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import CutPin, Hole, Pin, Segment
 from pinbase.arrays import Floats
 
@@ -41,11 +42,11 @@ def pin(wide: float) -> Pin:
 
 
 @cache
-def solved(wide: float, hole: float = 0.0) -> LugSolution:
+def solved(wide: float, hole: float = 0.0) -> Solution:
     """Under a force that reverses."""
     lugs = tuple(Lug(n, 0.06, STEEL, 2e-5, 0.0, 0.0 if n == "B" else np.inf) for n in "ABC")
     cut = CutPin(pin(wide), (Hole(0.5 * pin(wide).length, hole, np.pi / 2.0),)) if hole else None
-    given = PinProblem(pin(wide), STEEL, lugs, (REVERSED,), cut=cut)
+    given = PinProblem(cut or pin(wide), STEEL, lugs, (REVERSED,))
     return solve_in_lugs(given, Requirement(0.05, cells="rough", meshes=1))[0]
 
 
@@ -53,7 +54,7 @@ def test_the_critical_point_is_in_the_fillet_with_the_range_of_the_surface() -> 
     """By symmetry the second instant does at the angle 0 what the first does on the other side,
     so that the range follows from the stress of the first alone, at both angles.
     """
-    found = solved(1.15).solution
+    found = solved(1.15)
     places = found.peak.places
     assert places is not None
     (*_, z) = places.surface.location
@@ -82,7 +83,7 @@ def test_a_point_beside_an_edge_has_both_halves_of_its_range() -> None:
     last free value kept while a lug presses it would be half.
     """
     found = solved(1.0)
-    known = stress_points(found.solution.answer, found.solution.loads)
+    known = stress_points(found.answer, found.loads)
     assert known is not None
     assert found.joint is not None
     edge = pin(1.0).band("B").z0
@@ -106,7 +107,7 @@ def test_of_a_pin_with_cuts_too() -> None:
     have the range that they have in the pin without it.
     """
     swing = []
-    for found in (solved(1.15).solution, solved(1.15, 0.05 * D).solution):
+    for found in (solved(1.15), solved(1.15, 0.05 * D)):
         known = stress_points(found.answer, found.loads)
         assert known is not None
         r, z = np.hypot(*known.points.T[:2]), known.points[:, 2]

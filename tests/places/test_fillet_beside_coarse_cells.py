@@ -10,7 +10,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
-from fea.solve.solve_pin import singularities_of
+from fea.singular.singularities import singularities_of
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment

@@ -13,10 +13,10 @@ from benchmarks.joints.random_joints import JointTrial, filleted_trials, joint_t
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
-from fea.support.foundation.solve_on_foundations import solve_joints
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 
 D, F = 0.02, 50e3
@@ -40,9 +40,9 @@ def clevis(fillet: float, apart: float) -> Pin:
     )
 
 
-def solved(pin: Pin, joints: str, asked: Requirement) -> LugSolution:
+def solved(pin: Pin, joints: str, asked: Requirement) -> Solution:
     lugs = tuple(Lug(n, 0.06, STEEL, edge_radius=2e-4, tilt=2e5) for n in "LMR")
-    return solve_joints(PinProblem(pin, STEEL, lugs, (PULL,)), asked, joints)[0]  # type: ignore[arg-type]
+    return solve(PinProblem(pin, STEEL, lugs, (PULL,)), replace(asked, joints=joints))[0]  # type: ignore[arg-type]
 
 
 def test_places_of_a_row() -> None:
@@ -53,7 +53,7 @@ def test_places_of_a_row() -> None:
                       Segment(0.02, D, connection="M"), Segment(0.001, D),
                       Segment(0.01, D, connection="R")))  # fmt: skip
     found = solved(plain, "foundation", Requirement())
-    peak, joint = found.solution.peak, found.joint
+    peak, joint = found.peak, found.joint
     assert joint is not None
     assert peak.places is not None
     assert joint.bending_moment is not None
@@ -72,7 +72,7 @@ def test_a_stub_is_governed_by_its_section() -> None:
     """Shear on the axis of a short pin, V (3 + 2 nu) / (2 A (1 + nu)), of Saint-Venant."""
     stub = Pin("P", (Segment(0.006, D, connection="L"), Segment(0.007, D, connection="M"),
                      Segment(0.006, D, connection="R")))  # fmt: skip
-    peak = solved(stub, "foundation", Requirement()).solution.peak
+    peak = solved(stub, "foundation", Requirement()).peak
     assert peak.places is not None
     assert peak.places.section is not None
     assert peak.places.governs == "section"
@@ -86,7 +86,7 @@ def test_a_stub_is_governed_by_its_section() -> None:
 
 @pytest.mark.parametrize(("apart", "known"), [(0.001, False), (0.0035, True)])
 def test_no_bounds_for_a_fillet_beside_the_edge_of_a_lug(apart: float, known: bool) -> None:
-    peak = solved(clevis(0.001, apart), "foundation", Requirement()).solution.peak
+    peak = solved(clevis(0.001, apart), "foundation", Requirement()).peak
     assert ("no-error-known" not in peak.reasons) == known
     assert ("nearer than 0.15 diameters to the edge of a lug" in peak.note) != known
 
@@ -124,16 +124,14 @@ def test_auto_is_never_safe_where_contact_is_not() -> None:
         for share in (0.5, 0.8, 0.95, 1.05):
             strength = 1e9
             need = share * strength / max(truth.row, truth.beneath)
-            peak = _auto(trial, strength, need).solution.peak
+            peak = _auto(trial, strength, need).peak
             if peak.model == "foundation":
                 answered += 1
                 assert share < 1.0
     assert answered
 
 
-def _auto(trial: JointTrial, strength: float, need: float) -> LugSolution:
+def _auto(trial: JointTrial, strength: float, need: float) -> Solution:
     material = replace(trial.material, yield_strength=strength)
     given = PinProblem(trial.pin, material, trial.lugs, (trial.loads,))
-    return solve_joints(given, Requirement(goal="decide", required=need, cells="rough", meshes=1))[
-        0
-    ]
+    return solve(given, Requirement(goal="decide", required=need, cells="rough", meshes=1))[0]

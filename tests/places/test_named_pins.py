@@ -26,7 +26,8 @@ from benchmarks.joints.named_pins import (
 )
 from benchmarks.joints.turned_ccx import DENSER, turned_opinion
 from fea.core.voigt import von_mises
-from fea.support.contact.solve_in_lugs import PinProblem
+from fea.support.contact.held import profile_of
+from fea.support.support import PinProblem
 from geometry import Segment
 
 # Of the nearer end: lugs with shanks of their own differ from rings by 4 % (docs/benchmarks.md).
@@ -81,7 +82,7 @@ def same(given: PinProblem, found: JointOpinion, within: float) -> None:
     assert peak.max_von_mises == pytest.approx(float(surface), rel=within)
     assert peak.places is not None
     assert peak.places.section is not None
-    section = section_of(found, given.pin, given.material)
+    section = section_of(found, profile_of(given.pin), given.material)
     assert peak.places.section.max_von_mises == pytest.approx(section.value, rel=0.02)
 
 
@@ -94,7 +95,7 @@ def test_calculix_agrees_on_grooves() -> None:
     plain = clevis(gap=(Segment(GROOVE.length, D),))
     at = [(0.012, GROOVE), (0.032 + GROOVE.length, GROOVE)]
     fineness = Fineness(rings=4, sectors=16, layers=5, eye=2)
-    found = turned_opinion(plain.pin, at, STEEL, given.lugs, given.cases[0], fineness)
+    found = turned_opinion(profile_of(plain.pin), at, STEEL, given.lugs, given.cases[0], fineness)
     same(given, found, 0.03)
 
 
@@ -106,7 +107,9 @@ def test_calculix_agrees_on_a_tube() -> None:
     """
     given = clevis(bore=BORE)
     fineness = Fineness(rings=6, sectors=16, layers=4, eye=2)
-    found = turned_opinion(given.pin, [], STEEL, given.lugs, given.cases[0], fineness, -DENSER)
+    found = turned_opinion(
+        profile_of(given.pin), [], STEEL, given.lugs, given.cases[0], fineness, -DENSER
+    )
     same(given, found, 0.05)
 
 
@@ -118,7 +121,11 @@ def test_calculix_agrees_on_a_shrink_fit() -> None:
     """
     given = clevis(interference=INTERFERENCE)
     found = joint_opinion(
-        given.pin, STEEL, given.lugs, given.cases[0], Fineness(rings=8, sectors=24, eye=2)
+        profile_of(given.pin),
+        STEEL,
+        given.lugs,
+        given.cases[0],
+        Fineness(rings=8, sectors=24, eye=2),
     )
     at = np.linalg.norm(found.nodes - [0.5 * D, 0.0, 0.5 * given.pin.length], axis=1).argmin()
     fibre = found.stress[at]
@@ -131,7 +138,7 @@ def test_calculix_agrees_on_a_shrink_fit() -> None:
     assert peak.error_estimate is not None
     assert as_is < 1.02 * (peak.max_von_mises + peak.error_estimate)
     assert peak.max_von_mises == pytest.approx(less, rel=0.04)
-    section = section_of(found, given.pin, STEEL).value
+    section = section_of(found, profile_of(given.pin), STEEL).value
     assert peak.places is not None
     assert peak.places.section is not None
     assert peak.places.section.max_von_mises == pytest.approx(section, rel=0.02)

@@ -12,8 +12,8 @@ import pytest
 
 from benchmarks.joints.random_pins import Checked, check, pin_trials, read_surface
 from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.requirement import Requirement
 from fea.harmonic.fields import MeridianFields
-from fea.solve.solve_pin import Requirement
 
 TRIALS = pin_trials(20, 7)
 

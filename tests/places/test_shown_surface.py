@@ -10,6 +10,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs
+from fea.core.requirement import Requirement
 from fea.core.solution import Picture
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import HarmonicField
@@ -17,9 +18,9 @@ from fea.harmonic.free_surface import FreeSurface
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import _first, sectors_of
 from fea.harmonic.superposition import Circumference
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 
 D, F = 0.02, 30e3
@@ -37,7 +38,7 @@ TURNING = PinLoads("turning", ("A", "B"), FORCES, times=np.array([0.0, 1.0]))
 
 
 @pytest.fixture(scope="module")
-def found() -> LugSolution:
+def found() -> Solution:
     """In single shear, in rigidly guided lugs that nearly touch."""
     lugs = tuple(Lug(n, 0.05, STEEL, 2e-5, 0.0, np.inf) for n in "AB")
     asked = Requirement(0.05, cells="rough", meshes=1)
@@ -45,24 +46,24 @@ def found() -> LugSolution:
 
 
 @pytest.fixture(scope="module")
-def answer(found: LugSolution) -> HarmonicField:
-    assert isinstance(found.solution.answer, HarmonicField)
-    return found.solution.answer
+def answer(found: Solution) -> HarmonicField:
+    assert isinstance(found.answer, HarmonicField)
+    return found.answer
 
 
-def picture(found: LugSolution, instant: int) -> Picture:
-    assert found.solution.answer is not None
-    shown = found.solution.answer.picture(found.solution.loads, instant)
+def picture(found: Solution, instant: int) -> Picture:
+    assert found.answer is not None
+    shown = found.answer.picture(found.loads, instant)
     assert shown is not None
     assert shown.pressed is not None
     return shown
 
 
-def test_the_free_surface_has_no_steps(found: LugSolution, answer: HarmonicField) -> None:
+def test_the_free_surface_has_no_steps(found: Solution, answer: HarmonicField) -> None:
     """Of both sides of the ends of rings the first one, as it was shown before, has more than 1.2
     times the largest stress of the free surface.
     """
-    loads = found.solution.loads
+    loads = found.loads
     around = answer.reader(loads)
     assert isinstance(around.region, FreeSurface)
     # under pressure, relieved of it, stress is read but not shown: there a picture is masked
@@ -81,7 +82,7 @@ def test_the_free_surface_has_no_steps(found: LugSolution, answer: HarmonicField
     assert raw.ravel()[~now].max() > 1.2 * largest[0]
 
 
-def test_the_envelope_is_of_what_is_free_at_some_instant(found: LugSolution) -> None:
+def test_the_envelope_is_of_what_is_free_at_some_instant(found: Solution) -> None:
     first, second = (picture(found, instant) for instant in (0, 1))
     assert first.pressed is not None
     assert second.pressed is not None
@@ -98,8 +99,8 @@ def test_the_envelope_is_of_what_is_free_at_some_instant(found: LugSolution) -> 
     assert np.isnan(first.envelope[always]).all()
 
 
-def test_the_solid_shows_what_its_surface_does(found: LugSolution, answer: HarmonicField) -> None:
-    skin, body = picture(found, 0), revolve_solid(answer.fields, found.solution.loads, 0, 0.3)
+def test_the_solid_shows_what_its_surface_does(found: Solution, answer: HarmonicField) -> None:
+    skin, body = picture(found, 0), revolve_solid(answer.fields, found.loads, 0, 0.3)
     where = {tuple(p): k for k, p in enumerate(np.round(skin.points, 12).tolist())}
     pairs = [
         (k, where[tuple(p)])
@@ -116,8 +117,8 @@ def test_the_solid_shows_what_its_surface_does(found: LugSolution, answer: Harmo
 
 
 @pytest.mark.parametrize(("cells", "sectors"), [(24, 72), (36, 72), (48, 90), (64, 120)])
-def test_every_cell_has_two_points(found: LugSolution, cells: int, sectors: int) -> None:
-    pressed = found.solution.loads.pressed
+def test_every_cell_has_two_points(found: Solution, cells: int, sectors: int) -> None:
+    pressed = found.loads.pressed
     assert isinstance(pressed, PressedArcs)
     few = np.zeros((len(pressed.rings), cells), dtype=bool)
     some = PressedArcs.of(pressed.rings, [few], [0.0])

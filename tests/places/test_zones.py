@@ -16,11 +16,13 @@ from assess.derivatives.derivatives import Adjoint
 from assess.derivatives.records import SolvedCase
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.zone import DISTANCE_VARIATIONS
 from fea.harmonic.evaluate import SectionProblem, harmonic_solution
-from fea.singular.singularities import find_singularities, free_of_arcs
+from fea.singular.singularities import find_singularities, free_of_arcs, singularities_of
 from fea.solid.sharp_edges import SharpEdges
-from fea.solve.solve_pin import Requirement, Solution, singularities_of, solve_pin
+from fea.solve.solve import solve_pin
+from fea.support.support import Solution
 from geometry import Arc, CutPin, GeometryError, Hole, Pin, Segment, meridian
 from geometry.mesh.moved.outline_motion import DIFFERENCE_STEPS
 from geometry.mesh.section_mesh import meridian_mesh

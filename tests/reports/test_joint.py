@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from fea.support.contact.records import JointRange, JointResult, Variation
+from fea.support.records import JointRange, JointResult, Variation
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import outcome
 from reports.data.dependence import depends_on

@@ -22,8 +22,8 @@ import pinstress
 from fea.core.equilibrium import closing, out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Requirement
-from fea.solve.solve_pin import solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line

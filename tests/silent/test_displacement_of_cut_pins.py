@@ -19,10 +19,11 @@ from scipy.spatial import cKDTree
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.solution import Picture
 from fea.cut.evaluate import CutField
 from fea.cut.region import zone
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from fea.solve.surface_fields import amounts, unit_surface
 from geometry import Cut, CutPin, Flat, Hole, Pin, PinLike, Segment
 from pinbase.arrays import Floats

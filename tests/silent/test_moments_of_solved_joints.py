@@ -25,7 +25,7 @@ from assess.strength.pin_checks import pin_checks
 from assess.strength.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.records import JointForces
+from fea.support.records import JointForces
 from geometry import Pin, Segment
 from pinstress import run, study_from
 from pinstress.cli.commands import run_command_line

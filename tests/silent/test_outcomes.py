@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from assess.strength.margin import Margin, PinMargin
-from fea.support.contact.records import JointRange, JointResult, Variation
+from fea.support.records import JointRange, JointResult, Variation
 from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
 from reports.data.decision import outcome

@@ -10,8 +10,9 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.singular.singularities import find_singularities
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 
 D, TAPER = 0.02, 0.05  # thin end, m; diameter per length

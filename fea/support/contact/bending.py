@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
-from fea.support.contact.contact import Bands
-from fea.support.contact.records import JointForces
+from fea.support.bands import Bands
 from fea.support.lugs.lug import Lug
+from fea.support.records import JointForces
 from geometry import Pin
 
 STATION_COUNT = 61  # along the pin, besides the ends of rings and segments

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands, ContactProblem
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactProblem
 from fea.support.contact.solve_joint import COUPLED_HARMONICS_PER_SECTOR, ContactModel
 from pinbase.arrays import Ints
 

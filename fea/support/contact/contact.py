@@ -23,7 +23,6 @@ import copy
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +30,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
+from fea.support.bands import Bands
 from pinbase.arrays import Ints
 
 Mask = NDArray[np.bool_]
@@ -49,40 +49,6 @@ SOFT_SPRING_STIFFNESS = (
 )
 TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
 MAX_KEPT_NUMBERS = 4_000_000  # numbers: of what sets of cells answer
-
-
-@dataclass(frozen=True)
-class Bands:
-    """The rings (R,) of all bands, in their order: z of the middle and length, m; radius, m; band:
-    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m. link:
-    (B,) the number of the link to which each band's lug belongs, each to its own by default; lugs
-    of one link shift together, and share its force as they can.
-    """
-
-    z: Floats
-    length: Floats
-    radius: Floats
-    band: NDArray[np.int64]
-    gap: Floats
-    link: NDArray[np.int64] | None = None
-
-    def __len__(self) -> int:
-        return int(self.band.max()) + 1
-
-    @cached_property
-    def links(self) -> NDArray[np.int64]:
-        """(B,) the number of each band's link."""
-        return np.arange(len(self)) if self.link is None else self.link
-
-    @cached_property
-    def middles(self) -> Floats:
-        """z of the bands' middles, (B,) m."""
-        ends = [
-            (self.z - self.length / 2.0)[self.band == b].min()
-            + (self.z + self.length / 2.0)[self.band == b].max()
-            for b in range(len(self))
-        ]
-        return 0.5 * np.array(ends)
 
 
 @dataclass(frozen=True)

@@ -25,14 +25,14 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.peak import Maximum, Reason
+from fea.core.requirement import Requirement
 from fea.cut.evaluate import CutField
 from fea.cut.region import zone
-from fea.solve.requirement import Requirement
+from fea.support.cell_pressure import CellPressure
 from fea.support.contact.bending import stations
-from fea.support.contact.cell_pressure import CellPressure
 from fea.support.contact.error_parts import with_parts
-from fea.support.contact.records import Variation
 from fea.support.contact.solve_joint import JointContact
+from fea.support.records import Variation
 from geometry import Cut, CutPin, Pin
 from pinbase.arrays import Floats
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fea.core.peak import ErrorParts, Maximum, accuracy
-from fea.solve.requirement import Requirement
+from fea.core.requirement import Requirement
 
 
 def with_parts(peak: Maximum, parts: ErrorParts, asked: Requirement) -> Maximum:

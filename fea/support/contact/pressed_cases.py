@@ -15,10 +15,10 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import Between, knots
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement, decided
 from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
-from fea.solve.requirement import Requirement, decided
-from fea.solve.solve_pin import singularities_of
+from fea.singular.singularities import singularities_of
 from fea.support.contact.contact import ContactState
 from fea.support.contact.pressure_loads import (
     MODE_TOLERANCE,

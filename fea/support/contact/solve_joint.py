@@ -2,7 +2,7 @@
 
 Flexibilities are found once, on a mesh of the pin and one of each lug; contact at an instant starts
 from that of the one before. The pressures are loads like any other of the harmonic model, so that
-stress, its error and verdict come from fea.solve.solve_pin, of a pin that nothing clamps.
+stress, its error and verdict come from fea.solve.solve, of a pin that nothing clamps.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.pressed import PressedArcs, Rings
 from fea.harmonic.kept_fields import FirstMesh
 from fea.singular.lug_edge import lug_edge_exponent
+from fea.support.bands import Bands
 from fea.support.contact.bending import bending_moment, mass_per_length
-from fea.support.contact.contact import Bands, ContactProblem, ContactState, rotation
+from fea.support.contact.contact import ContactProblem, ContactState, rotation
 from fea.support.contact.flexibility import (
     RingBody,
     half_plane,

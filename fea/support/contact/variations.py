@@ -15,18 +15,18 @@ import numpy as np
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.beneath import beneath
 from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
-from fea.solve.requirement import Requirement
-from fea.solve.solve_pin import singularities_of
+from fea.singular.singularities import singularities_of
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.contact import ContactProblem, ContactState
 from fea.support.contact.pressure_loads import MODE_TOLERANCE, PressureLoads, PressureModes, stacked
-from fea.support.contact.records import JointRange, Variation
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.rings import USUAL_RING_COUNT
+from fea.support.records import JointRange, Variation
 
 CELL_ERROR_SHARE = 0.6  # of the tolerance: what the cells may take
 # Orders of the error in the length of cells, on the surface and beneath, and in sections: what is

@@ -6,8 +6,8 @@ import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from fea.support.contact.bending import joint_forces, stations
-from fea.support.contact.records import BandContact, JointRange, JointResult
 from fea.support.contact.solve_joint import JointContact
+from fea.support.records import BandContact, JointRange, JointResult
 
 
 def contact_result(

@@ -29,8 +29,8 @@ from fea.beam.timoshenko import MOMENT, SHEAR, compliances
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.support.bands import Bands
 from fea.support.contact.bending import bending_moment, mass_per_length, shear_force
-from fea.support.contact.contact import Bands
 from fea.support.contact.pressure_loads import ring_shares
 from fea.support.foundation.plane_contact import plane_stiffness
 from fea.support.foundation.supported_beam import Response, SupportedBeam, refined, respond

@@ -21,7 +21,8 @@ from scipy.optimize import brentq
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands, ContactProblem
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactProblem
 from fea.support.contact.flexibility import half_plane
 
 MAX_PLANE_HARMONIC, PLANE_CONTACT_SECTORS = 16, 60

@@ -16,13 +16,13 @@ import numpy as np
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.records import JointRange, JointResult, Variation
 from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.changes import joint_variations, with_stiffness
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
+from fea.support.records import JointRange, JointResult, Variation
 from geometry import ArgumentError, Pin
 
 

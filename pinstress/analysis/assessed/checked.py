@@ -19,9 +19,9 @@ from assess.strength.records import HandCheck
 from assess.strength.situation import LoadFactors, Situation, with_solved, with_supports
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.records import JointResult
 from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
+from fea.support.records import JointResult
 from geometry import CutPin, Pin
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study

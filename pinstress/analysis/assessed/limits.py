@@ -12,8 +12,7 @@ from math import inf
 from assess.plastic.records import LimitLoad
 from assess.plastic.solve import Rung, limit_load
 from fea.core.peak import Maximum
-from fea.solve.solve_pin import Solution
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.support import Solution
 from geometry import Pin
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
@@ -47,7 +46,7 @@ def limit_seconds(plan: Plan) -> float:
 
 
 def limit_loads(
-    plan: Plan, task: Task, found: Iterable[Solution | LugSolution], tell: Tell
+    plan: Plan, task: Task, found: Iterable[Solution], tell: Tell
 ) -> tuple[LimitLoad | None, ...]:
     """One for each case of a task, None where it is not requested."""
     rung = rung_of(plan, task.pin.name)
@@ -55,19 +54,18 @@ def limit_loads(
 
 
 def _limit_load(
-    plan: Plan, task: Task, solved: Solution | LugSolution, rung: Rung | None, tell: Tell
+    plan: Plan, task: Task, solved: Solution, rung: Rung | None, tell: Tell
 ) -> LimitLoad | None:
-    in_lugs = solved if isinstance(solved, LugSolution) else None
-    peak = solved.solution.peak if isinstance(solved, LugSolution) else solved.peak
+    peak = solved.peak
     if rung is None or not limit_asked(peak, task, rung):
         return None
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
     pin, loads = task.pin, peak.governing
     assert loads is not None
-    if in_lugs is not None and isinstance(pin, Pin):
-        if in_lugs.rings is None:
+    if task.lugs and isinstance(pin, Pin):
+        if solved.rings is None:
             return LimitLoad("none", note=NOT_ON_FOUNDATIONS_NOTE)
-        pin, loads = in_lugs.rings, in_lugs.pressed(loads)
+        pin, loads = solved.rings, solved.pressed(loads)
     clamps = tuple(pin.surface(name) for name in task.clamps)
     seconds = limit_seconds(plan)
     try:

@@ -12,10 +12,9 @@ from assess.strength.records import BeamCheck
 from fea.core.peak import Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
-from fea.solve.solve_pin import Solution
 from fea.support.contact.pressure_loads import PressureLoads
-from fea.support.contact.records import JointResult
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.records import JointResult
+from fea.support.support import Solution
 from geometry import CutPin, Pin
 from pinstress.analysis.assessed.checked import Checked, factor_assumption
 from pinstress.analysis.cache.store import REQUIRED_PACKAGES
@@ -272,14 +271,13 @@ def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
 
 
 def landing_range(
-    loads: Mapping[str, CaseLoads], task: Task, found: Solution | LugSolution
+    loads: Mapping[str, CaseLoads], task: Task, solution: Solution
 ) -> plain.LandingRange | None:
     """A pin over the ranges of its landing's impulse: unit fields superposed."""
-    solution = found.solution if isinstance(found, LugSolution) else found
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
-    maxima, strength = _maxima(task, found, task.ranges[case]), task.material.yield_strength
+    maxima, strength = _maxima(task, solution, task.ranges[case]), task.material.yield_strength
     return plain.LandingRange(
         pin=task.pin.name,
         case=case,
@@ -297,13 +295,12 @@ def landing_range(
     )
 
 
-def _maxima(task: Task, found: Solution | LugSolution, loads: PinLoads) -> plain.Floats:
+def _maxima(task: Task, solution: Solution, loads: PinLoads) -> plain.Floats:
     """The larger of surface and section, Pa, under other loads of a case, at each instant."""
-    if isinstance(found, LugSolution):
-        solution, pin, acting = found.solution, found.rings, found.pressed(loads)
-        clamps: tuple[str, ...] = ()
+    acting, clamps = solution.pressed(loads), tuple[str, ...]()
+    if task.lugs:
+        pin = solution.rings
     else:
-        solution, acting = found, loads
         pin = task.pin if isinstance(task.pin, Pin) else None
         clamps = tuple(task.pin.surface(name) for name in task.clamps)
     assert solution.answer is not None

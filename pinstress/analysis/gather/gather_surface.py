@@ -14,7 +14,6 @@ from fea.cut.evaluate import CutField
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.half_section import MeridianPlane
 from fea.solid.evaluate import SolidField
-from fea.solve.solve_pin import Solution
 from fea.solve.surface_fields import (
     amounts,
     excluded,
@@ -23,7 +22,8 @@ from fea.solve.surface_fields import (
     unit_surface,
     unread,
 )
-from fea.support.contact.cell_pressure import CellPressure
+from fea.support.cell_pressure import CellPressure
+from fea.support.support import Solution
 from pinbase.arrays import Ints
 from pinstress.analysis.gather.gather_section import half_section
 from pinstress.analysis.gather_fields import at_samples

@@ -14,9 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement
 from fea.core.solution import StressField
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Requirement, Solution
+from fea.support.support import Solution
 from geometry import GeometryError, Pin
 from pinstress.analysis.remedies.secant import NoSizeError, smallest
 from pinstress.study.model.pins import slenderness

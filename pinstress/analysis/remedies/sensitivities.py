@@ -22,10 +22,12 @@ from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
-from fea.solve.refine import MESH_RATIO, Solution, singularities_of
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.singular.singularities import singularities_of
+from fea.solve.refine import MESH_RATIO
+from fea.support.contact.held import HeldContact
+from fea.support.support import Solution
 from geometry import Pin
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
@@ -52,7 +54,7 @@ def sensitivities(
     study: Study,
     asked: Requirement,
     task: Task,
-    solutions: Iterable[Solution | LugSolution],
+    solutions: Iterable[Solution],
     step: float,
     every: bool = False,
 ) -> tuple[PinSensitivities, ...]:
@@ -63,21 +65,20 @@ def sensitivities(
     dimensions = tuple(dimensions_of(study, task.pin))
     return tuple(
         _of_lugs(study, task, s, step if every else None)
-        if isinstance(s, LugSolution)
+        if task.lugs
         else _of_case(asked, task, s, dimensions, step)
         for s in found[: None if every else 1]
     )
 
 
-def _largest(found: Solution | LugSolution) -> float:
-    solution = found.solution if isinstance(found, LugSolution) else found
+def _largest(solution: Solution) -> float:
     return solution.peak.max_von_mises or 0.0
 
 
 def by_length(
     study: Study,
     task: Task,
-    joined: LugSolution,
+    joined: Solution,
     keys: Collection[str] | None = None,
 ) -> dict[str, float] | None:
     """The derivative of the largest von Mises stress of a pin in contact, solved, with respect to
@@ -93,7 +94,7 @@ def by_length(
 
 
 def differentiated_in_lugs(
-    joined: LugSolution,
+    joined: Solution,
     task: Task,
     parameters: Iterable[JointParameter],
     *,
@@ -103,10 +104,11 @@ def differentiated_in_lugs(
     """Of the maximum of a pin in contact, or of a place at the row's instant; None where it has
     none. alone: by the parameters only, not by loads. Raises: MeshError, SolveError.
     """
-    solution, model, rings = joined.solution, joined.model, joined.rings
+    solution, held, rings = joined, joined.held, joined.rings
     peak, answer = solution.peak, solution.answer
-    if model is None or rings is None or peak.governing is None or not peak.max_von_mises:
+    if rings is None or peak.governing is None or not peak.max_von_mises:
         return None
+    assert isinstance(held, HeldContact)
     if not isinstance(answer, HarmonicField):
         return None
     solved = SolvedCase(
@@ -121,7 +123,7 @@ def differentiated_in_lugs(
     )
     links = peak.governing
     return joint_derivatives(
-        solved, model, links, parameters, alone=alone, place=place or governing_place(peak)
+        solved, held.model, links, parameters, alone=alone, place=place or governing_place(peak)
     )
 
 
@@ -211,15 +213,15 @@ def _with_rows(
     )
 
 
-def _of_lugs(study: Study, task: Task, joined: LugSolution, step: float | None) -> PinSensitivities:
+def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> PinSensitivities:
     """Of a pin in contact; without a step, why there are none."""
-    peak = joined.solution.peak
+    peak = joined.peak
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
     if not isinstance(task.pin, Pin):
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
-    if joined.model is None or links is None:
+    if joined.rings is None or links is None:
         return replace(out, note=NO_CONTACT_NOTE)
     if step is None:
         return replace(out, note=IN_LUGS_NOTE)

@@ -8,12 +8,13 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from fea.core.peak import Maximum
+from fea.core.requirement import Requirement
+from fea.core.verdict import MeshHistory
 from fea.solve.refine import LOCAL_MODEL
 from fea.solve.single_mesh import Problem, Rung
-from fea.solve.solve_pin import Requirement, Solution, solve_pin
-from fea.solve.verdict import MeshHistory
+from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.contact.pressure_loads import PressureLoads
-from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.support.support import PinProblem, Solution
 from geometry import Pin
 from geometry.mesh.elements import Element
 from pinbase.processes.pool import Progress
@@ -120,10 +121,9 @@ def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
             code="not-axisymmetric",
         )
     given = PinProblem(task.pin, task.material, task.lugs, task.loads, task.between)
-    (found,) = solve_in_lugs(given, asked)
-    solution = found.solution
+    (solution,) = solve_in_lugs(given, asked)
     _require_stress(study, solution.peak)
-    assert found.joint is not None
+    assert solution.joint is not None
     loads = solution.loads
     problem = JointProblem(
         task.pin,
@@ -134,8 +134,8 @@ def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
         asked.distance,
         loads.pressed,
     )
-    end = chosen_in_lugs(problem, solution.peak, found.joint)
-    limit = limit_problem(study, task, found)
+    end = chosen_in_lugs(problem, solution.peak, solution.joint)
+    limit = limit_problem(study, task, solution)
     return ChartPlan(study, problem, asked, solution.peak, chosen=end, limit=limit)
 
 

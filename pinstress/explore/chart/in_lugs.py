@@ -11,11 +11,11 @@ from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum
 from fea.core.pin_loads import Distribution
-from fea.solve.verdict import MeshHistory
-from fea.support.contact.records import JointResult
-from fea.support.contact.solve_in_lugs import MAX_CELLS
+from fea.core.verdict import MeshHistory
+from fea.support.contact.held import MAX_CELLS
 from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.rings import ring_ends
+from fea.support.records import JointResult
 from pinstress.explore.chart.mesh_sequences import Climb
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
 

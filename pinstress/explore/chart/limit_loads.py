@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from fea.solve.solve_pin import Solution
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.support import Solution
 from geometry import Pin
 from pinstress.analysis.assessed.limits import limit_asked, limit_rung
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
@@ -17,14 +16,14 @@ from reports.data.chart import ChartPoint
 LIMIT_LOAD_ELEMENT_NAMES = {"hinges": "Timoshenko beam", "elastic-plastic": "hexahedra, {} meshes"}
 
 
-def limit_problem(study: Study, task: Task, found: Solution | LugSolution) -> LimitProblem | None:
+def limit_problem(study: Study, task: Task, found: Solution) -> LimitProblem | None:
     """None where a run computes no limit load."""
-    peak = found.solution.peak if isinstance(found, LugSolution) else found.peak
+    peak = found.peak
     rung = limit_rung(study, task.pin.name)
     pin, loads = task.pin, peak.governing
     if rung is None or loads is None or not limit_asked(peak, task, rung):
         return None
-    if isinstance(found, LugSolution):
+    if task.lugs:
         if found.rings is None:
             return None
         pin, loads = found.rings, found.pressed(loads)

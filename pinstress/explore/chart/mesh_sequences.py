@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from fea.core.linear_solver import SolveError
 from fea.core.mesh_result import MeshMaximum
+from fea.core.requirement import Requirement, accurate_enough
+from fea.core.verdict import MeshHistory
 from fea.cut.evaluate import LOCAL_MESHES
 from fea.harmonic.evaluate import SECTION_MESHES
-from fea.solve.refine import LOCAL_MODEL, MESH_RATIO
+from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, sequence_of
 from fea.solve.single_mesh import Problem, Rung
-from fea.solve.solve_pin import Requirement, accurate_enough, sequence_of
-from fea.solve.verdict import MeshHistory
 from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob

@@ -28,11 +28,11 @@ from fea.core.voigt import von_mises
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.section.section_stress import AtSection, SectionField
-from fea.singular.singularities import outside
-from fea.solve.refine import MESH_RATIO, singularities_of
+from fea.singular.singularities import outside, singularities_of
+from fea.solve.refine import MESH_RATIO
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.foundation.foundation_model import FoundationModel
-from fea.support.foundation.solve_on_foundations import FoundPlaces, point_of
+from fea.support.foundation.held import FoundPlaces, point_of
 from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.fit import on_structure
 from fea.support.lugs.lug import Lug
@@ -44,7 +44,7 @@ DEFAULT_RESOLUTION = Resolution()
 @dataclass(frozen=True)
 class JointProblem:
     """A pin in its lugs in one case. loads: of the links. governing: number of the instant with
-    the largest stress, the only one that CalculiX solves. distance: as in fea.solve.solve_pin.
+    the largest stress, the only one that CalculiX solves. distance: as in fea.solve.solve.
     pressed: where contact presses at these instants; by default that on cells as usual.
     """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fea.core.places import Place
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.support import Solution
 from geometry import Pin
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
@@ -25,7 +25,7 @@ class UndifferentiatedError(Exception):
 def by_contact(
     before: Study,
     study: Study,
-    row: tuple[Task, LugSolution, Place],
+    row: tuple[Task, Solution, Place],
     dimensions: tuple[Dimension, ...],
 ) -> Floats:
     """Relative derivatives (n,) of the largest stress of a place, 1/m; eyes that are wider in the

@@ -21,7 +21,7 @@ from reports.data.decision import OUTCOME_ORDER, SAFE, as_described
 from reports.data.results import Results
 
 MAX_PASSES = 5
-LEAST_WEIGHT_MODULES = ("fea.solve.solve_pin", "assess.derivatives.places", "scipy.optimize")
+LEAST_WEIGHT_MODULES = ("fea.solve.solve", "assess.derivatives.places", "scipy.optimize")
 
 
 @dataclass(frozen=True)

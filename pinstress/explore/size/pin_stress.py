@@ -28,11 +28,10 @@ from fea.beam.error_model import CLAMPED_SPAN_ERROR
 from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.zone import DISTANCE_VARIATIONS
 from fea.harmonic.evaluate import HarmonicField
-from fea.solve.requirement import Requirement
-from fea.solve.solve_pin import Solution
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.support import Solution
 from geometry import ArgumentError, Pin
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats, Mask
@@ -279,13 +278,12 @@ class PinStress:
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
         for each in solutions(study, task, asked, lambda _: None):
-            self.in_contact |= isinstance(each, LugSolution) and each.model is not None
-            solution = each.solution if isinstance(each, LugSolution) else each
-            peak = solution.peak
+            self.in_contact |= each.rings is not None
+            peak = each.peak
             _require_solved(peak)
             if not peak.max_von_mises:
                 continue
-            if isinstance(each, LugSolution):
+            if task.lugs:
                 before = self.problem.study
                 yield peak, [
                     _Found(

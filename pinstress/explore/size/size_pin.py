@@ -11,7 +11,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from fea.core.peak import Maximum, Verdict
-from fea.support.contact.solve_in_lugs import LugSolution
 from geometry import ArgumentError
 from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.remedies.secant import NoSizeError, smallest
@@ -133,8 +132,7 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
     asked = replace(plan.asked, goal="value")
     peaks: list[Maximum] = []
     for task in tasks(study, [pin_of(study, pin)], loads):
-        for found in solutions(study, task, asked, tell):
-            peaks.append(found.solution.peak if isinstance(found, LugSolution) else found.peak)
+        peaks += [solution.peak for solution in solutions(study, task, asked, tell)]
     for peak in peaks:
         if peak.verdict == "rigid":
             raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")

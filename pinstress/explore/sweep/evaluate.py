@@ -18,8 +18,8 @@ from typing import Generic, TypeVar
 
 from fea.core.material import Material
 from fea.core.peak import Maximum, Verdict
+from fea.core.requirement import Requirement
 from fea.harmonic.kept_fields import EveryMesh
-from fea.solve.requirement import Requirement
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage

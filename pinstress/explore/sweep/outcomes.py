@@ -10,9 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fea.core.peak import Maximum, meets_limit
-from fea.solve.solve_pin import Solution
-from fea.support.contact.records import JointResult
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.records import JointResult
+from fea.support.support import Solution
 from pinstress.analysis.gather.gather import landing_range
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
@@ -35,15 +34,10 @@ class DesignAnswer:
     landing: LandingRange | None
 
 
-def bare_answer(
-    task: Task, found: Solution | LugSolution, loads: Mapping[str, CaseLoads]
-) -> DesignAnswer:
+def bare_answer(task: Task, found: Solution, loads: Mapping[str, CaseLoads]) -> DesignAnswer:
     """Of one solution of a task."""
-    if isinstance(found, LugSolution):
-        peak, joint = found.solution.peak, found.joint
-        joint = joint and replace(joint, along=None, bending_moments=())
-    else:
-        peak, joint = found.peak, None
+    peak, joint = found.peak, found.joint
+    joint = joint and replace(joint, along=None, bending_moments=())
     places = peak.places
     if places is not None and places.contact is not None:
         places = replace(places, contact=replace(places.contact, edges=(), bands=()))

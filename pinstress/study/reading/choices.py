@@ -12,7 +12,7 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.schema.shown import as_text, listed, near
 
 if TYPE_CHECKING:
-    from fea.solve.solve_pin import Model
+    from fea.core.requirement import Model
 
 
 V = TypeVar("V")
@@ -76,7 +76,7 @@ def select(
 
 def require_model(model: Model | None) -> Model | None:
     """The same. Raises: ChoiceError for an unknown model."""
-    from fea.solve.solve_pin import Model  # which is slow to import
+    from fea.core.requirement import Model  # which is slow to import
 
     must = f"must be one of {listed(get_args(Model))}"
     right = model is None or model in get_args(Model)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from fea.support.contact.records import JointRange
+from fea.support.records import JointRange
 from reports.data.decision import DEPENDS, limit, outcome, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from fea.support.contact.records import BandContact, JointRange, JointResult, Variation
+from fea.support.records import BandContact, JointRange, JointResult, Variation
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import (

@@ -20,7 +20,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.assembly import Section, elasticity
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
-from fea.solve.refine import MESH_RATIO, singularities_of
+from fea.singular.singularities import singularities_of
+from fea.solve.refine import MESH_RATIO
 from fea.support.contact.pressure_loads import PressureLoads
 from geometry import Pin, Segment
 from geometry.mesh.moved.outline_motion import OtherShapeError, OutlineNodes, Reach

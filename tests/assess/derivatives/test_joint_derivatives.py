@@ -20,10 +20,11 @@ from benchmarks.joints.joint_derivatives import (
 )
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_in_lugs
 from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.lug import Bushing, Lug
+from fea.support.support import PinProblem
 from geometry import Pin, Segment
 from tests.fea.support.contact.test_solve_in_lugs import LUGS, PIN, STEADY, STEEL
 
@@ -178,7 +179,7 @@ def test_of_a_solution_by_forces_clearances_and_shape() -> None:
     """
     lugs = tuple(replace(lug, clearance=1e-5) for lug in GUIDED)
     (made,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (STEADY,)), Requirement(0.1))
-    solution, (solved, model, links) = made.solution, solved_in_lugs(made, STEEL)
+    solution, (solved, model, links) = made, solved_in_lugs(made, STEEL)
     every = tuple(parameters(PIN, STEEL, lugs))
     ours = joint_derivatives(solved, model, links, every)
     assert ours.maximum == pytest.approx(solution.peak.max_von_mises, rel=1e-12)
@@ -196,6 +197,6 @@ def test_of_a_solution_by_forces_clearances_and_shape() -> None:
     for times in (1.02, 0.98):
         pin, _, same = wide.changed(times * wide.value)
         (other,) = solve_in_lugs(PinProblem(pin, STEEL, same, (STEADY,)), Requirement(0.1))
-        stress.append(other.solution.peak.max_von_mises or 0.0)
+        stress.append(other.peak.max_von_mises or 0.0)
     slope = (stress[0] - stress[1]) / (0.04 * wide.value)
     assert ours.by_parameter[wide.key] == pytest.approx(slope, rel=0.02)

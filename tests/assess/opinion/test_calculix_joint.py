@@ -23,9 +23,10 @@ from assess.opinion.calculix_joint_deck import JointDeck, surface_weights
 from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh, pin_mesh
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment

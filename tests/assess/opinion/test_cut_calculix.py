@@ -8,7 +8,8 @@ import pytest
 from benchmarks.cuts.cut_calculix import in_calculix
 from benchmarks.random_pins import STEEL
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from geometry import CutPin, Hole, Pin, Segment
 
 D = 0.02

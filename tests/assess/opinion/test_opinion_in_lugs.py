@@ -22,10 +22,11 @@ from assess.opinion.opinions import BandOpinion, ContactOpinion, Opinion
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Requirement
-from fea.support.contact.records import BandContact, JointResult
-from fea.support.contact.solve_in_lugs import PinProblem, solve_in_lugs
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Bushing, Lug
+from fea.support.records import BandContact, JointResult
+from fea.support.support import PinProblem
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
 
@@ -188,7 +189,7 @@ def test_calculix_agrees_on_a_clevis_with_a_bushing() -> None:
     given = PinProblem(pin, STEEL, lugs, (PinLoads("pull", ("L", "M", "R"), fork),))
     (solved,) = solve_in_lugs(given, Requirement(0.1))
     assert solved.joint is not None
-    seated, peak = PinInLugs(pin, STEEL, lugs), solved.solution.peak
+    seated, peak = PinInLugs(pin, STEEL, lugs), solved.peak
     coarse = Fineness(rings=4, sectors=16, layers=1, eye=1), Fineness(rings=4, sectors=16, eye=2)
     found = opinion_in_lugs(seated, peak, solved.joint, meshes=coarse)
     assert found.complaint == ""

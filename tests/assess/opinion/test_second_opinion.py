@@ -14,8 +14,9 @@ from assess.opinion.opinions import Opinion
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.solid.evaluate import solid_solution
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import CutPin, Flat, Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize
 from tests.support.pins import calculix_stand_in

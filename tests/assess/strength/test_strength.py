@@ -34,8 +34,8 @@ from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.support.contact.records import JointForces
 from fea.support.lugs.lug import Lug
+from fea.support.records import JointForces
 from geometry import Pin, Segment
 from tests.support.pins.plain_pins import double_shear
 

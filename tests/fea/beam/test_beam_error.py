@@ -13,7 +13,8 @@ from fea.beam.stress import BeamStress, beam_stress
 from fea.beam.stress_concentration import BENDING_FIT, TENSION_FIT, TORSION_FIT, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from geometry import ArgumentError, Pin, Segment
 from tests.support.errors import raises
 

@@ -11,7 +11,8 @@ import pytest
 from fea.core.material import Material
 from fea.core.over_time import knots, rise_between
 from fea.core.pin_loads import Distribution, Floats, PinLoads, chord_deviation
-from fea.solve.solve_pin import Model, Requirement, solve_pin
+from fea.core.requirement import Model, Requirement
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 
 # Double shear of a plain bar of 20 mm.

@@ -10,10 +10,10 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.requirement import Requirement
 from fea.harmonic.model import HarmonicModel
-from fea.solve.requirement import Requirement
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 

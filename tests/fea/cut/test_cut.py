@@ -9,12 +9,13 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.voigt import VON_MISES
 from fea.cut.evaluate import CutField
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refusal, zone
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import ArgumentError, CutPin, Flat, Hole, Passage, Pin, Segment
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh

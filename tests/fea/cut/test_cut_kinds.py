@@ -14,12 +14,13 @@ import pytest
 from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.voigt import VON_MISES
 from fea.cut.inner_corners import inner_corners
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.region import pieces, zone
 from fea.solid.assembly import Discretisation
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Bottom, Cut, CutPin, Flat, Hole, Passage, Pin, Segment, Slot
 from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from pinbase.arrays import Floats

@@ -7,11 +7,13 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.cut import region
 from fea.cut.evaluate import CutField
 from fea.cut.local_fields import LocalFields
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Requirement, Solution, solve_pin
+from fea.solve.solve import solve_pin
+from fea.support.support import Solution
 from geometry import CutPin, Hole, Pin, Segment
 
 STEEL = Material("steel", 210e9, 0.3, 500e6, 0.0)

@@ -8,13 +8,14 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.requirement import Requirement
 from fea.cut.evaluate import CutField
 from fea.cut.local_model import LocalModel
 from fea.cut.lost_loads import bearings, trial_forces
 from fea.cut.region import loaded_bands, pieces
 from fea.harmonic.model import HarmonicModel
 from fea.solid.boundary import resultants
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
 from tests.support.errors import raises

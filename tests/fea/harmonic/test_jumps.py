@@ -8,6 +8,7 @@ import pytest
 from fea.core.local_fit import at_one_place, continuation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
@@ -15,7 +16,7 @@ from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, jumps
 from fea.harmonic.superposition import Circumference
 from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, Spot

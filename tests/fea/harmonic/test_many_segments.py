@@ -12,10 +12,12 @@ from fea.core.material import Material
 from fea.core.memory import section_memory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
 from fea.harmonic.quiet_corners import NUMEROUS_FILLETS_ABOVE, numerous_fillets
-from fea.solve.refine import MESH_RATIO
-from fea.solve.solve_pin import Requirement, count_loads, singularities_of, solve_pin
+from fea.singular.singularities import singularities_of
+from fea.solve.refine import MESH_RATIO, count_loads
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles

@@ -7,10 +7,11 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import VIEW_SECTORS
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 
 NU = 0.3  # does not matter without lugs

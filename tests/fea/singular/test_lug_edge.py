@@ -20,7 +20,8 @@ from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel
 from fea.singular.lug_edge import edge_exponent, lug_edge_exponent
 from fea.singular.williams import plane_exponent
-from fea.support.contact.contact import Bands, ContactProblem
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactProblem
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Pin, Segment

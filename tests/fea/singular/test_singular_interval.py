@@ -10,10 +10,11 @@ import pytest
 from fea.core.material import Material
 from fea.core.peak import ErrorParts, Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Model, Requirement
 from fea.singular.fit_exponent import strength
 from fea.singular.singularities import find_singularities
 from fea.singular.williams import notch_factor, plane_exponent
-from fea.solve.solve_pin import Model, Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 
 ROOT = Pin("R", (Segment(0.04, 0.02, connection="R1"), Segment(0.01, 0.02, name="head")))

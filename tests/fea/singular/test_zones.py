@@ -13,7 +13,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.singular.singularities import find_singularities
 from fea.singular.williams import antiplane_exponent, plane_exponent
-from fea.solve.solve_pin import solve_pin
+from fea.solve.solve import solve_pin
 from geometry import GeometryError, Pin, Segment
 from tests.support.errors import raises
 

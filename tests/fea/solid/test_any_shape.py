@@ -12,11 +12,12 @@ import pytest
 from fea.core.material import Material
 from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.solid.evaluate import SolidField
 from fea.solid.model import SolidModel, acting
 from fea.solid.superposition import envelope
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import CutPin, Flat, Hole, Pin, PinLike, Segment
 from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody

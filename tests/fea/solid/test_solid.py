@@ -11,10 +11,11 @@ from assess.opinion.cantilever import cantilever
 from fea.core.equilibrium import out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.singular.singularities import find_singularities
 from fea.solid.evaluate import SolidField, solid_result, solid_solution
 from fea.solid.model import SolidModel
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.pins.solid_line import axial_stress

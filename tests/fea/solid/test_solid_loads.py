@@ -12,6 +12,7 @@ from fea.core.equilibrium import out_of_balance
 from fea.core.linear_solver import SolveError, factorize
 from fea.core.material import Material
 from fea.core.pin_loads import BODY_SURFACE, PinLoads, UnitLoad
+from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.solid import model as solid
 from fea.solid import nodal_loads as solid_loads
@@ -19,7 +20,7 @@ from fea.solid.boundary import Patch, resultants, surface
 from fea.solid.model import SolidModel, acting
 from fea.solid.nodal_loads import closed, nodal_loads
 from fea.solid.superposition import envelope
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from tests.support.errors import raises

@@ -10,9 +10,10 @@ import pytest
 from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.harmonic.evaluate import SECTION_MESHES
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from tests.support.errors import raises
 

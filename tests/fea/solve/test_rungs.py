@@ -9,10 +9,11 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.core.verdict import MeshHistory, judge
 from fea.solid.evaluate import SOLID_MESHES
 from fea.solve.single_mesh import Problem, Rung, result_on
-from fea.solve.solve_pin import Requirement, solve_pin
-from fea.solve.verdict import MeshHistory, judge
+from fea.solve.solve import solve_pin
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from geometry.mesh.elements import Element
 from tests.support.errors import raises

@@ -10,7 +10,8 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.gmsh_session import MeshError
 from tests.support.errors import raises

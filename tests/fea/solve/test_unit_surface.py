@@ -7,10 +7,11 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
+from fea.core.requirement import Model, Requirement
 from fea.core.solution import StressField
 from fea.core.voigt import von_mises
 from fea.solve import surface_fields as shown_by
-from fea.solve.solve_pin import Model, Requirement, solve_pin
+from fea.solve.solve import solve_pin
 from fea.solve.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 from pinbase.arrays import Mask

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import pinstress
+from fea.core.requirement import Model
 from fea.core.voigt import von_mises
-from fea.solve.solve_pin import Model
 from pinstress.study.reading.errors import InputError
 from tests.pinstress.test_import import loaded_by
 

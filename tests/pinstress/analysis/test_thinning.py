@@ -7,7 +7,8 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from fea.solve.surface_fields import amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 from geometry.shape.chords import needed

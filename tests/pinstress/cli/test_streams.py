@@ -16,7 +16,7 @@ import click
 import pytest
 
 from fea.core.linear_solver import SolveError
-from fea.solve.solve_pin import solve_pin
+from fea.solve.solve import solve_pin
 from pinbase.processes import interrupts
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fea.support.contact.records import BandContact, JointRange, JointResult, Variation
+from fea.support.records import BandContact, JointRange, JointResult, Variation
 from reports.data.results import Results
 from reports.data.surface import Surface, SurfaceCase
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.support.contact.cell_pressure import CellPressure
-from fea.support.contact.contact import Bands
+from fea.support.bands import Bands
+from fea.support.cell_pressure import CellPressure
 
 RADIUS = 0.01
 

@@ -9,7 +9,7 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.solve.requirement import Requirement
+from fea.core.requirement import Requirement
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.contact.variations import MIN_CELL_ERROR, compare

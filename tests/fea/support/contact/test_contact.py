@@ -9,7 +9,8 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands, ContactProblem, ContactState
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactProblem, ContactState
 
 NU = 0.3
 E_STAR = 1.0 / (1.0 - NU * NU)

@@ -10,10 +10,11 @@ import pytest
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement, accurate_enough
+from fea.core.verdict import MeshHistory, judge
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
-from fea.solve.requirement import Requirement, accurate_enough, reasons
-from fea.solve.verdict import MeshHistory, judge
+from fea.solve.refine import met
 from fea.support.contact.pressed_cases import Compared
 from fea.support.contact.variations import AtPlaces, ResolutionComparison
 
@@ -64,7 +65,7 @@ def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> No
     for section, done in ((1.001 * high, True), (0.999 * high, False)):
         asked = Requirement(1e-4, elsewhere={"c": section})
         assert accurate_enough(asked, STEEL, here) is done
-        assert ("surface-below-sections" in reasons(asked, STEEL, "harmonic")(here).codes) is done
+        assert ("surface-below-sections" in met(asked, STEEL, here).codes) is done
     assert not accurate_enough(Requirement(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
 
 

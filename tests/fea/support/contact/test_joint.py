@@ -10,10 +10,12 @@ import pytest
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
 from fea.harmonic.superposition import Circumference
-from fea.solve.solve_pin import Requirement, Solution, solve_pin
+from fea.solve.solve import solve_pin
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Lug
+from fea.support.support import Solution
 from geometry import Pin, Segment
 
 E, NU, D, EYE, ARM, FORCE = 210e9, 0.3, 0.02, 0.05, 0.04, 50e3

@@ -11,7 +11,8 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands, ContactProblem, ContactState
+from fea.support.bands import Bands
+from fea.support.contact.contact import ContactProblem, ContactState
 from fea.support.contact.flexibility import half_plane, lug_flexibility, pin_flexibility
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import annulus, graded, ring, ringed

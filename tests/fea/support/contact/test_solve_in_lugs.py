@@ -10,10 +10,11 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_in_lugs
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 
 STEEL = Material("steel", 210e9, 0.3)
@@ -51,15 +52,15 @@ STEADY = pull(np.array([[FORCE, 0.0]]))
 
 
 @pytest.fixture(scope="module")
-def sharp() -> LugSolution:
+def sharp() -> Solution:
     return solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (STEADY,)), Requirement())[0]
 
 
-def test_a_clevis_beside_contact_in_three_dimensions(sharp: LugSolution) -> None:
+def test_a_clevis_beside_contact_in_three_dimensions(sharp: Solution) -> None:
     """Two programs give 306.3 MPa at mid-span and M / M0 = .8418. The free surface there has that
     without any distance from the edges, which are sharp; the section has 32 M / (pi d^3).
     """
-    peak, joint = sharp.solution.peak, sharp.joint
+    peak, joint = sharp.peak, sharp.joint
     assert joint is not None
     assert joint.range is not None
     assert peak.verdict == "converged"
@@ -80,8 +81,8 @@ def test_a_clevis_beside_contact_in_three_dimensions(sharp: LugSolution) -> None
     assert "contact" in peak.why
 
 
-def test_the_error_names_the_cells(sharp: LugSolution) -> None:
-    peak = sharp.solution.peak
+def test_the_error_names_the_cells(sharp: Solution) -> None:
+    peak = sharp.peak
     assert peak.parts is not None
     assert peak.max_von_mises is not None
     assert 0.0 < peak.parts.cells < 0.02 * peak.max_von_mises
@@ -89,7 +90,7 @@ def test_the_error_names_the_cells(sharp: LugSolution) -> None:
     assert peak.error_estimate == pytest.approx(peak.parts.total)
 
 
-def test_bands_carry_what_their_links_exert(sharp: LugSolution) -> None:
+def test_bands_carry_what_their_links_exert(sharp: Solution) -> None:
     assert sharp.joint is not None
     bands = {band.name: band for band in sharp.joint.bands}
     assert [bands[n].force for n in "LMR"] == pytest.approx([25e3, 50e3, 25e3], rel=1e-9)
@@ -101,7 +102,7 @@ def test_bands_carry_what_their_links_exert(sharp: LugSolution) -> None:
     assert 60.0 < bands["M"].contact_angle < 100.0
 
 
-def test_section_forces_along_the_pin_are_those_of_statics(sharp: LugSolution) -> None:
+def test_section_forces_along_the_pin_are_those_of_statics(sharp: Solution) -> None:
     """Half of the force in the gaps, none at the ends, and the moment of the governing instant."""
     joint = sharp.joint
     assert joint is not None
@@ -114,11 +115,11 @@ def test_section_forces_along_the_pin_are_those_of_statics(sharp: LugSolution) -
     assert along.moment.max() == pytest.approx(joint.bending_moment)
 
 
-def test_stress_is_in_proportion_without_clearance(sharp: LugSolution) -> None:
+def test_stress_is_in_proportion_without_clearance(sharp: Solution) -> None:
     """Also in what is asked for later, of which contact is not solved again."""
-    given = PinProblem(PIN, STEEL, LUGS, (STEADY,), besides={"pull": pull(np.array([[1.0, 0.0]]))})
+    given = PinProblem(PIN, STEEL, LUGS, (STEADY,), also={"pull": pull(np.array([[1.0, 0.0]]))})
     (found,) = solve_in_lugs(given, replace(Requirement(), meshes=1))
-    answer = found.solution.answer
+    answer = found.answer
     assert answer is not None
     more = pull(np.array([[FORCE, 0.0], [0.5 * FORCE, 0.0], [0.0, 0.0]]))
     full, half, none = answer.maxima(found.pressed(more))
@@ -126,13 +127,13 @@ def test_stress_is_in_proportion_without_clearance(sharp: LugSolution) -> None:
     assert none == 0.0
 
 
-def test_the_edges_of_lugs_are_contacts_and_leave_the_row(sharp: LugSolution) -> None:
+def test_the_edges_of_lugs_are_contacts_and_leave_the_row(sharp: Solution) -> None:
     """Rounded by 0.5 mm they move it by 1 % at most; they have a peak then, and none if sharp. All
     but the outer ones of the fork have a K, to a quarter the same.
     """
     lugs = tuple(replace(lug, edge_radius=0.0005) for lug in LUGS)
     (found,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (STEADY,)), QUICK)
-    rounded, plain = found.solution.peak, sharp.solution.peak
+    rounded, plain = found.peak, sharp.peak
     assert rounded.verdict == "converged"
     assert rounded.singular_at == ()
     assert rounded.max_von_mises == pytest.approx(plain.max_von_mises, rel=0.023)
@@ -159,7 +160,7 @@ def test_the_crest_of_a_motion_is_found_between_samples() -> None:
     case = at(np.linspace(0.0, 1.0, 5))
     given = PinProblem(PIN, STEEL, LUGS, (case,), between={"pull": at})
     (found,) = solve_in_lugs(given, QUICK)
-    peak = found.solution.peak
+    peak = found.peak
     assert peak.time == pytest.approx(crest, abs=0.01)
     assert peak.max_von_mises == pytest.approx(306.3e6, rel=0.03)
     assert peak.parts is not None
@@ -191,7 +192,7 @@ def test_lugs_of_a_structure_share_what_the_link_leaves_over() -> None:
     forces = {band.name: band.force for band in found.joint.bands}
     assert forces["L"] + forces["R"] == pytest.approx(FORCE, rel=1e-9)
     assert forces["L"] == pytest.approx(forces["R"], rel=1e-3)
-    assert found.solution.peak.max_von_mises == pytest.approx(306.3e6, rel=0.04)
+    assert found.peak.max_von_mises == pytest.approx(306.3e6, rel=0.04)
 
 
 def test_a_structure_beside_takes_more_than_one_farther_away() -> None:
@@ -223,7 +224,7 @@ def test_a_rounded_weight_is_shared_and_reported() -> None:
     (found,) = solve_in_lugs(
         PinProblem(PIN, STEEL, LUGS, (loads,)), replace(Requirement(), meshes=1)
     )
-    share = found.solution.peak.imbalance
+    share = found.peak.imbalance
     assert share is not None
     assert share[0] == pytest.approx(0.5e-3, rel=1e-3)
 
@@ -242,7 +243,7 @@ def test_what_cannot_be_in_equilibrium_has_failed_with_the_reason(
     along[0, :, 0] = FORCE * np.array(forces)
     loads = PinLoads("pull", ("L", "M", "R"), along)
     (found,) = solve_in_lugs(PinProblem(PIN, STEEL, lugs, (loads,)), QUICK)
-    peak = found.solution.peak
+    peak = found.peak
     assert (peak.verdict, peak.max_von_mises, found.joint) == ("failed", None, None)
     assert said in peak.note
 
@@ -268,7 +269,7 @@ def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
     (usual,), (decided,) = (
         solve_in_lugs(given, asked) for asked in (QUICK, replace(QUICK, goal="decide", required=1))
     )
-    peaks = usual.solution.peak, decided.solution.peak
+    peaks = usual.peak, decided.peak
     assert decided.rings is not None
     assert usual.rings is not None
     assert len(decided.rings.connections) < len(usual.rings.connections)
@@ -299,7 +300,7 @@ def test_a_softer_joint_is_that_of_softer_lugs() -> None:
 
 def test_nothing_is_in_contact_without_loads() -> None:
     (found,) = solve_in_lugs(PinProblem(PIN, STEEL, LUGS, (pull(np.zeros((1, 2))),)), QUICK)
-    peak = found.solution.peak
+    peak = found.peak
     assert (peak.verdict, peak.max_von_mises, peak.error_estimate) == ("converged", 0.0, 0.0)
     assert found.joint is not None
     assert all(band.mean_pressure == 0.0 for band in found.joint.bands)
@@ -311,8 +312,8 @@ def test_moments_across_the_axis_are_refused() -> None:
     (found,) = solve_in_lugs(
         PinProblem(PIN, STEEL, LUGS, (replace(STEADY, moments=moments),)), QUICK
     )
-    assert found.solution.peak.verdict == "failed"
-    assert "moments of links across the axis" in found.solution.peak.note
+    assert found.peak.verdict == "failed"
+    assert "moments of links across the axis" in found.peak.note
 
 
 def test_surfaces_have_the_names_of_the_whole_pin() -> None:
@@ -321,8 +322,8 @@ def test_surfaces_have_the_names_of_the_whole_pin() -> None:
         PIN, segments=tuple(replace(s, bore=0.012) if s.connection else s for s in PIN.segments)
     )
     (found,) = solve_in_lugs(PinProblem(tube, STEEL, LUGS, (STEADY,)), replace(QUICK, meshes=1))
-    names = {name for zone in found.solution.peak.singular_at for name in zone.between}
+    names = {name for zone in found.peak.singular_at for name in zone.between}
     steps = {f"bore step {i}" for i in range(1, 7)}
     assert names <= {*"LMR", "its lug", "bore L", "bore M", "bore R", *steps}
     assert {"bore M", "bore step 3"} <= names
-    assert "ring" not in found.solution.peak.note
+    assert "ring" not in found.peak.note

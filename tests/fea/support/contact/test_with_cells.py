@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from fea.core.peak import ErrorParts, Maximum, accuracy
-from fea.solve.requirement import Requirement
+from fea.core.requirement import Requirement
 from fea.support.contact.error_parts import with_cells
 
 ASKED = Requirement(tolerance=0.02)

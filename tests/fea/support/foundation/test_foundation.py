@@ -13,7 +13,8 @@ from benchmarks.joints.random_joints import JointTrial, joint_trials
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.solve_pin import Requirement, solve_pin
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve_pin
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.foundation.foundation_model import (
     LONG_LUG_ERROR,

@@ -15,15 +15,15 @@ from fea.beam.model import BeamField
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
-from fea.solve.requirement import Requirement
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem
+from fea.core.requirement import Requirement
+from fea.solve.solve import solve
 from fea.support.foundation.bounds import StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel
 from fea.support.foundation.plane_contact import half_angle, largest_pressure
-from fea.support.foundation.solve_on_foundations import solve_joints
 from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange, prescribed_ranges
 from fea.support.lugs.lug import Bushing, Lug
+from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 from tests.fea.support.contact.test_contact import PERSSON
 
@@ -43,11 +43,9 @@ def on_foundations(pin: Pin, lugs: tuple[Lug, ...], loads: PinLoads = PULL) -> S
     return stress_bounds(FoundationStress.of(model), model.solve(loads))
 
 
-def solved(
-    lugs: tuple[Lug, ...], pin: Pin, asked: Requirement, joints: str = "auto"
-) -> LugSolution:
+def solved(lugs: tuple[Lug, ...], pin: Pin, asked: Requirement, joints: str = "auto") -> Solution:
     given = PinProblem(pin, STEEL, lugs, (PULL,))
-    (found,) = solve_joints(given, asked, joints)  # type: ignore[arg-type]
+    (found,) = solve(given, replace(asked, joints=joints))  # type: ignore[arg-type]
     return found
 
 
@@ -187,7 +185,7 @@ def test_sharp_corners_are_left_out_and_fillets_without_a_factor_are_not() -> No
 def test_a_row_has_the_error_of_the_model_alone() -> None:
     pin, lugs = usual()
     found = solved(lugs, pin, Requirement(tolerance=0.02), "foundation")
-    peak, joint = found.solution.peak, found.joint
+    peak, joint = found.peak, found.joint
     assert (peak.model, peak.verdict) == ("foundation", "unconverged")
     assert peak.parts is not None
     assert peak.error_estimate == peak.parts.model > 0.11 * (peak.max_von_mises or 0.0)
@@ -201,12 +199,12 @@ def test_a_row_has_the_error_of_the_model_alone() -> None:
     assert joint.bands[1].couple == pytest.approx(0.0, abs=1e-6)
     assert joint.bands[0].couple > 1.0
     rough = solved(lugs, pin, Requirement(tolerance=0.9), "foundation")
-    assert rough.solution.peak.verdict == "converged"
+    assert rough.peak.verdict == "converged"
 
 
 def test_a_row_without_a_known_error_has_one_as_large_as_itself() -> None:
     pin, lugs = clevis(10, 5, 0.5)  # thinner lugs than were measured
-    peak = solved(tuple(lugs), pin, Requirement(tolerance=0.9), "foundation").solution.peak
+    peak = solved(tuple(lugs), pin, Requirement(tolerance=0.9), "foundation").peak
     assert peak.verdict == "unconverged"
     assert peak.error_estimate == peak.max_von_mises
     assert "no-error-known" in peak.reasons
@@ -223,12 +221,12 @@ def test_a_motion_governs_between_its_samples() -> None:
     pin, lugs = usual()
     case = at(np.linspace(0.0, 1.0, 4))
     given = PinProblem(pin, STEEL, lugs, (case,), {"swing": at})
-    (found,) = solve_joints(given, Requirement(), "foundation")
-    peak = found.solution.peak
+    (found,) = solve(given, Requirement(joints="foundation"))
+    peak = found.peak
     assert peak.time == pytest.approx(0.41, abs=1e-3)
     assert peak.max_von_mises == pytest.approx(on_foundations(pin, lugs).maximum, rel=1e-4)
-    assert found.solution.answer is not None
-    assert found.solution.answer.maxima(PULL)[0] == pytest.approx(peak.max_von_mises, rel=1e-4)
+    assert found.answer is not None
+    assert found.answer.maxima(PULL)[0] == pytest.approx(peak.max_von_mises, rel=1e-4)
 
 
 def far_apart() -> tuple[Pin, tuple[Lug, ...]]:
@@ -241,23 +239,23 @@ def far_apart() -> tuple[Pin, tuple[Lug, ...]]:
 
 def test_auto_takes_foundations_where_bending_governs() -> None:
     pin, lugs = far_apart()
-    assert solved(lugs, pin, Requirement(tolerance=0.3)).solution.peak.model == "foundation"
+    assert solved(lugs, pin, Requirement(tolerance=0.3)).peak.model == "foundation"
 
 
 STRONG = replace(STEEL, yield_strength=1e9)
 
 
-def decided(required: float, edges: float = 3e-4) -> LugSolution:
+def decided(required: float, edges: float = 3e-4) -> Solution:
     """The clevis of about 300 MPa, with rounded or sharp edges of its lugs."""
     pin, lugs = usual()
     rounded = tuple(replace(lug, edge_radius=edges) for lug in lugs)
     asked = Requirement(goal="decide", required=required)
-    (found,) = solve_joints(PinProblem(pin, STRONG, rounded, (PULL,)), asked)
+    (found,) = solve(PinProblem(pin, STRONG, rounded, (PULL,)), asked)
     return found
 
 
 def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
-    peak = decided(1.5).solution.peak
+    peak = decided(1.5).peak
     assert (peak.model, "foundation-decides" in peak.reasons) == ("foundation", True)
     assert (peak.max_von_mises or 0.0) + (peak.error_estimate or 0.0) < 1e9 / 1.5
 
@@ -267,14 +265,14 @@ def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
 def test_auto_takes_contact_for_what_is_close_or_fails_or_is_singular(
     required: float, edges: float
 ) -> None:
-    assert decided(required, edges).solution.peak.model == "harmonic"
+    assert decided(required, edges).peak.model == "harmonic"
 
 
 @pytest.mark.slow
 def test_auto_takes_contact_for_more_than_foundations_can() -> None:
     """The clevis, though its error is within the tolerance, is pressed too hard."""
     pin, lugs = usual()
-    assert solved(lugs, pin, Requirement(tolerance=0.5)).solution.peak.model == "harmonic"
+    assert solved(lugs, pin, Requirement(tolerance=0.5)).peak.model == "harmonic"
 
 
 @pytest.mark.parametrize(("lugs", "clearance", "largest"), [

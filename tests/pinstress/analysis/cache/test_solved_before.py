@@ -16,7 +16,7 @@ import meshio
 import pytest
 
 from fea.core.peak import Maximum, Refinement
-from fea.solve.solve_pin import solve_pin
+from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinstress import load_study

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import pinstress
-from fea.support.contact.solve_in_lugs import LugSolution
+from fea.support.support import Solution
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.sensitivities import by_length
@@ -163,7 +163,7 @@ def test_in_contact_by_all_of_the_joint() -> None:
     assert total("stress") + forces == pytest.approx(1.0, abs=1e-6)
     (task,) = plan.tasks
     (joined,) = solutions(study, task, plan.asked, lambda _: None)
-    assert isinstance(joined, LugSolution)
+    assert isinstance(joined, Solution)
     lengths = {row.key: row.stress for row in found.rows if row.kind == "length"}
     some = [key for key in lengths if key.endswith("diameter")]
     ours = by_length(study, task, joined, some)

@@ -92,7 +92,7 @@ def test_every_model_and_mesh_is_charted_coarse_to_fine(made_up: Chart) -> None:
 
 def test_the_reference_is_an_order_finer_and_its_error_is_stated(made_up: Chart) -> None:
     """Of made-up errors of second order Roache's index makes 1.25 times themselves, and the least
-    error of a section (fea.solve.verdict) is a little more.
+    error of a section (fea.core.verdict) is a little more.
     """
     charted = max(p.dofs or 0 for p in made_up.points if p.model == "harmonic")
     assert made_up.reference.dofs >= 10 * charted

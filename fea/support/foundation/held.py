@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,15 +23,12 @@ from fea.core.over_time import rise_between, through_time
 from fea.core.peak import ErrorParts, Maximum, Reason, Refinement, accuracy
 from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
+from fea.core.requirement import Requirement
 from fea.core.solution import Picture
 from fea.section.place import FoundSection
 from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import find_singularities
-from fea.solve.requirement import DECIDED_TEXT, Requirement
-from fea.solve.solve_pin import Solution
 from fea.support.contact.bending import joint_forces, stations
-from fea.support.contact.records import BandContact, JointRange, JointResult
-from fea.support.contact.solve_in_lugs import LugSolution, PinProblem, solve_in_lugs
 from fea.support.foundation.bounds import PRESSURE_FACTOR, StressBounds, stress_bounds
 from fea.support.foundation.foundation_model import (
     PLAIN_MOMENT_ERROR,
@@ -43,15 +39,10 @@ from fea.support.foundation.plane_contact import half_angle
 from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange
 from fea.support.lugs.fit import beyond_foundations
+from fea.support.records import BandContact, JointRange, JointResult
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from geometry import Pin, PinLike
 
-Joints = Literal["auto", "contact", "foundation"]
-Progress = Callable[[str], None]
-
-REQUESTED_REASON = Reason("foundation: requested", ("requested",))
-WITHIN_TOLERANCE_REASON = Reason(
-    "foundation: its error is within the tolerance", ("foundation-within-tolerance",)
-)
-DECIDES_REASON = Reason(f"foundation: {DECIDED_TEXT}", ("foundation-decides",))
 FOUNDATION_OMISSIONS = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
     "measured effect on the surface and beneath contact, but not the peaks at the edges of lugs."
@@ -59,83 +50,118 @@ FOUNDATION_OMISSIONS = (
 MIN_GOVERNING_RATIO = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
 
 
-def solve_joints(
-    given: PinProblem,
-    asked: Requirement,
-    joints: Joints = "auto",
-    progress: Progress = lambda _: None,
-) -> tuple[LugSolution, ...]:
-    """All cases of a pin: by a beam on foundations where that is requested, or enough; else by
-    contact.
+class Foundation:
+    """Lugs as springs along a beam (fea.support.support.Support)."""
 
-    Raises: ArgumentError for lugs that do not fit; MeshError, SolveError.
-    """
-    found: dict[str, LugSolution] = {}
-    if joints == "foundation":
-        found = _on_foundations(given, asked, REQUESTED_REASON, progress)
-    elif joints == "auto" and _may_be_enough(given, asked):
-        tried = _on_foundations(given, asked, WITHIN_TOLERANCE_REASON, progress)
-        found = {case: solution for case, solution in tried.items() if _enough(solution)}
-        if _bounded_everywhere(given, asked):
-            found |= {
-                case: _because(solution)
-                for case, solution in tried.items()
-                if case not in found and _is_safe(solution.solution.peak, given.material, asked)
-            }
-    left = tuple(case for case in given.cases if case.case not in found)
-    if left:
-        contact = solve_in_lugs(replace(given, cases=left), asked, progress)
-        found |= {solution.solution.peak.case: solution for solution in contact}
-    return tuple(found[case.case] for case in given.cases)
+    def hold(
+        self,
+        problem: PinProblem,
+        requirement: Requirement,
+        coarser: HeldPin | None = None,
+        progress: Progress = silent,
+    ) -> HeldFoundation:
+        """As of every support; nothing is discretised."""
+        progress(f"pin {problem.pin.name}, beam on foundations")
+        assert isinstance(problem.pin, Pin)
+        over = FoundationRange(
+            problem.pin, problem.material, problem.lugs, requirement.distance, assumed=False
+        )
+        return HeldFoundation(problem, over)
 
-
-def _may_be_enough(given: PinProblem, asked: Requirement) -> bool:
-    known = given.material.yield_strength is not None and asked.required is not None
-    may = asked.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
-        asked.goal == "decide" and known
-    )
-    beyond = beyond_foundations(given.pin, given.lugs)
-    return asked.model == "auto" and may and not beyond
+    def may_be_enough(self, problem: PinProblem, requirement: Requirement) -> bool:
+        """Whether its error, at least a tenth, may do; a beam sees no cuts."""
+        if not isinstance(problem.pin, Pin):
+            return False
+        known = problem.material.yield_strength is not None and requirement.required is not None
+        may = requirement.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
+            requirement.goal == "decide" and known
+        )
+        beyond = beyond_foundations(problem.pin, problem.lugs)
+        return requirement.model == "auto" and may and not beyond
 
 
-def _bounded_everywhere(given: PinProblem, asked: Requirement) -> bool:
-    """Whether no sharp corner of the pin or edge of a lug makes its stress singular."""
-    nu = given.material.poisson_ratio
-    rounded = all(lug.edge_radius > 0.0 for lug in given.lugs)
-    return rounded and not find_singularities(given.pin, (), (), nu, asked.distance)
+@dataclass(frozen=True)
+class HeldFoundation:
+    """A pin on foundations (fea.support.support.HeldPin); its stress is that of their beam."""
 
+    problem: PinProblem
+    over: FoundationRange
+    failures: Mapping[str, Maximum] = field(default_factory=dict)
+    notes: Mapping[str, Reason] = field(default_factory=dict)
+    clamps: tuple[str, ...] = ()
+    finest = True
 
-def _is_safe(peak: Maximum, material: Material, asked: Requirement) -> bool:
-    """Whether the required factor is reached whatever contact does. Of a pin that fails it matters
-    by how much.
-    """
-    value, error = peak.max_von_mises, peak.error_estimate
-    strength, required = material.yield_strength, asked.required
-    if asked.goal != "decide" or strength is None or required is None:
-        return False
-    return value is not None and error is not None and value + error < strength / required
+    @property
+    def pin(self) -> PinLike:
+        """The pin itself."""
+        return self.problem.pin
 
+    def start(self, case: str) -> PinLoads:
+        """The loads of the links."""
+        (loads,) = (loads for loads in self.problem.cases if loads.case == case)
+        return loads
 
-def _because(found: LugSolution) -> LugSolution:
-    peak = found.solution.peak
-    reasons = (
-        tuple(code for code in peak.reasons if code not in WITHIN_TOLERANCE_REASON.codes)
-        + DECIDES_REASON.codes
-    )
-    peak = replace(peak, why=DECIDES_REASON.text, reasons=reasons)
-    return replace(found, solution=replace(found.solution, peak=peak))
+    def press(self, links: PinLoads) -> PinLoads:
+        """The loads of the links: the beam on foundations takes these."""
+        return links
 
+    def resolved(self, case: str, requirement: Requirement) -> bool:
+        """Nothing is discretised."""
+        return True
 
-def _enough(found: LugSolution) -> bool:
-    """Whether the error is within the tolerance, and bending governs: not contact, whose pressure
-    is largest at the edges of lugs and on stubby pins.
-    """
-    peak, answer = found.solution.peak, found.solution.answer
-    if peak.verdict != "converged" or not isinstance(answer, FoundationField):
-        return False
-    return (
-        peak.max_von_mises or 0.0
-    ) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * answer.largest_load(found)
+    def of_meshes(self, requirement: Requirement) -> Requirement:
+        """All of it: there are none."""
+        return requirement
+
+    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
+        """The solution: it has all that a foundation knows."""
+        return solution
+
+    def solution(self, case: PinLoads, requirement: Requirement) -> Solution:
+        """Stress of a case, its error, sections and joint."""
+        try:
+            return self._solution(case, requirement)
+        except SolveError as error:
+            peak = Maximum(self.pin.name, case.case, "foundation", "failed", str(error))
+            return Solution(peak, None, case, held=self)
+
+    def _solution(self, case: PinLoads, requirement: Requirement) -> Solution:
+        start, rise, over = time.perf_counter(), 0.0, self.over
+        stress, tolerance = over.own, requirement.tolerance
+        answer = FoundationField(stress, case)
+        if between := self.problem.between.get(case.case):
+            case = through_time(answer, case, between, tolerance)
+            rise = rise_between(answer, case, between)
+        every = stress.model.solve(case)
+        places = FoundPlaces.of(stress, every)
+        row = places.row
+        here = case.at(np.array([row.instant]))
+        peak = _peak(over, case.case, row, rise, requirement)
+        history = (Refinement(0, row.maximum, time.perf_counter() - start),)
+        peak = replace(peak, governing=here, history=history)
+        peak = replace(peak, places=places.said(peak, case, self.problem.material, tolerance))
+        whole, remark = over.at(here)
+        joint = _joint(stress.model.solve(here), stress.model, whole, remark)
+        along = joint_forces(every.pin, every.mass, every.bands, every.loads, every.lugs)
+        joint = replace(joint, along=along)
+        return Solution(peak, answer, case, row.instant, self, joint)
+
+    def bounded_everywhere(self, requirement: Requirement) -> bool:
+        """Whether no sharp corner of the pin or edge of a lug makes its stress singular."""
+        nu, pin = self.problem.material.poisson_ratio, self.problem.pin
+        assert isinstance(pin, Pin)
+        rounded = all(lug.edge_radius > 0.0 for lug in self.problem.lugs)
+        return rounded and not find_singularities(pin, (), (), nu, requirement.distance)
+
+    def bending_governs(self, solution: Solution) -> bool:
+        """Whether the error is within the tolerance, and bending governs: not contact, whose
+        pressure is largest at the edges of lugs and on stubby pins.
+        """
+        peak, answer = solution.peak, solution.answer
+        if peak.verdict != "converged" or not isinstance(answer, FoundationField):
+            return False
+        load = answer.largest_load(solution)
+        return (peak.max_von_mises or 0.0) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * load
 
 
 class FoundationField:
@@ -171,14 +197,11 @@ class FoundationField:
         """None: a beam has no field over its surface."""
         return None
 
-    def largest_load(self, found: LugSolution) -> float:
+    def largest_load(self, solution: Solution) -> float:
         """Largest load per length over the diameter at the governing instant, Pa."""
-        made = self.stress.model.solve(_governing(found.solution))
+        here = solution.loads.at(np.array([solution.instant]))
+        made = self.stress.model.solve(here)
         return float((np.linalg.norm(made.line_load, axis=2) / (2.0 * made.bands.radius)).max())
-
-
-def _governing(solution: Solution) -> PinLoads:
-    return solution.loads.at(np.array([solution.instant]))
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
@@ -201,47 +224,6 @@ def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
         body=body,
         times=None,
     )
-
-
-def _on_foundations(
-    given: PinProblem, asked: Requirement, why: Reason, progress: Progress
-) -> dict[str, LugSolution]:
-    progress(f"pin {given.pin.name}, beam on foundations")
-    over = FoundationRange(given.pin, given.material, given.lugs, asked.distance, assumed=False)
-    return {case.case: _solved(over, given, case, asked, why) for case in given.cases}
-
-
-def _solved(
-    over: FoundationRange, given: PinProblem, case: PinLoads, asked: Requirement, why: Reason
-) -> LugSolution:
-    try:
-        return _of_case(over, given, case, asked, why)
-    except SolveError as error:
-        peak = Maximum(given.pin.name, case.case, "foundation", "failed", str(error))
-        return LugSolution(Solution(peak, None, case), None, lambda links: links)
-
-
-def _of_case(
-    over: FoundationRange, given: PinProblem, case: PinLoads, asked: Requirement, why: Reason
-) -> LugSolution:
-    start, rise, stress = time.perf_counter(), 0.0, over.own
-    answer = FoundationField(stress, case)
-    if between := given.between.get(case.case):
-        case = through_time(answer, case, between, asked.tolerance)
-        rise = rise_between(answer, case, between)
-    every = stress.model.solve(case)
-    places = FoundPlaces.of(stress, every)
-    found = places.row
-    peak, here = _peak(over, case.case, found, rise, asked, why), case.at(np.array([found.instant]))
-    history = (Refinement(0, found.maximum, time.perf_counter() - start),)
-    peak = replace(peak, governing=here, history=history)
-    peak = replace(peak, places=places.said(peak, case, given.material, asked.tolerance))
-    solution = Solution(peak, answer, case, found.instant)
-    whole, remark = over.at(here)
-    joint = _joint(stress.model.solve(here), stress.model, whole, remark)
-    along = joint_forces(every.pin, every.mass, every.bands, every.loads, every.lugs)
-    joint = replace(joint, along=along)
-    return LugSolution(solution, joint, lambda links: links)
 
 
 @dataclass(frozen=True)
@@ -302,7 +284,6 @@ def _peak(
     found: StressBounds,
     rise: float,
     asked: Requirement,
-    why: Reason,
 ) -> Maximum:
     """With an error of the whole value where it is not known."""
     parts = ErrorParts(0.0, rise, model=found.maximum if found.error is None else found.error)
@@ -321,9 +302,8 @@ def _peak(
         max_von_mises=found.maximum,
         error_estimate=parts.total,
         location=point_of(found),
-        why=why.text,
         parts=parts,
-        reasons=own.codes + why.codes,
+        reasons=own.codes,
     )
 
 

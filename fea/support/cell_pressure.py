@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.core.pin_loads import Floats
-from fea.support.contact.contact import Bands
+from fea.support.bands import Bands
 
 RING_RADIUS_TOLERANCE = 1e-6  # of the radius: how far off its ring a point may be by round-off
 

@@ -1,0 +1,87 @@
+"""Requirements on a pin's solution, and when they are met."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from fea.core.material import Material
+from fea.core.verdict import MeshHistory
+
+Model = Literal["auto", "beam", "harmonic", "solid"]
+Goal = Literal["value", "decide"]
+Joints = Literal["auto", "contact", "foundation"]
+
+MIN_TOLERANCE_SHARE = 0.4  # of the tolerance
+DECIDED_TEXT = "its error does not affect whether the required factor is reached"
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """Requirements on a solution.
+
+    tolerance: of the maximum, relative. model: the one to use. goal: "value" asks for the maximum
+    to the tolerance, "decide" only whether the `required` safety factor is met. distance: excluded
+    around singularities, as a fraction of the local diameter. meshes: maximum number of meshes, by
+    default that of the model. memory: limit for a mesh in MB, by default most of the free memory.
+    near: whether sections have the meshes of near shapes with their nodes moved. joints: how lugs
+    hold a pin. cells: of contact with lugs, these alone; None: until they are fine enough.
+
+    A support adds what it knows. elsewhere: by case, stress (Pa) that sections have: a surface that
+    surely has less needs no finer mesh. besides: by case, the error, relative, that comes to that
+    of meshes and instants.
+    """
+
+    tolerance: float = 0.02
+    model: Model = "auto"
+    goal: Goal = "value"
+    required: float | None = None
+    distance: float = 0.1
+    meshes: int | None = None
+    memory: float | None = None
+    near: bool = False
+    joints: Joints = "auto"
+    cells: Literal["rough", "usual"] | None = None
+    elsewhere: Mapping[str, float] = field(default_factory=dict)
+    besides: Mapping[str, float] = field(default_factory=dict)
+
+    def left(self, case: str) -> float:
+        """What meshes and instants of a case may take of the tolerance, MIN_TOLERANCE_SHARE of it
+        in any case.
+        """
+        return max(
+            self.tolerance - self.besides.get(case, 0.0), MIN_TOLERANCE_SHARE * self.tolerance
+        )
+
+
+def decided(asked: Requirement, material: Material, low: float, high: float) -> bool:
+    """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
+    limit = _limit(asked, material)
+    return limit is not None and (high < limit or low > limit)
+
+
+def _limit(asked: Requirement, material: Material) -> float | None:
+    """Maximum (Pa) with the required factor, if that is to be decided."""
+    strength, required = material.yield_strength, asked.required
+    if asked.goal != "decide" or strength is None or required is None:
+        return None
+    return strength / required
+
+
+def accurate_enough(asked: Requirement, material: Material, seen: MeshHistory) -> bool:
+    """Whether these meshes are accurate enough, or decide the required factor. Fewer never tell
+    how large a maximum is, for they can agree by chance.
+    """
+    if len(seen.results) < seen.meshes.min_meshes:
+        return False
+    return (
+        seen.known(asked.left(seen.case))
+        or decided(asked, material, *seen.range)
+        or below_sections(asked, seen)
+    )
+
+
+def below_sections(asked: Requirement, seen: MeshHistory) -> bool:
+    """Whether sections have more stress than the surface may have."""
+    return bool(seen.range[1] <= asked.elsewhere.get(seen.case, 0.0))

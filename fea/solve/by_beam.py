@@ -1,0 +1,39 @@
+"""A case of a pin by the beam model."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from fea.beam.model import BeamField
+from fea.core.over_time import rise_between, through_time
+from fea.core.peak import NO_REASON, Reason
+from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.support.support import HeldPin, PinProblem, Solution
+from geometry import Pin
+
+
+def by_beam(
+    held: HeldPin,
+    problem: PinProblem,
+    case: PinLoads,
+    requirement: Requirement,
+    remark: Reason = NO_REASON,
+) -> Solution:
+    """The solution of a case, with the beam's own error. remark: appended to its note."""
+    start, rise, pin = time.perf_counter(), 0.0, held.pin
+    assert isinstance(pin, Pin)
+    note = held.notes.get(case.case, NO_REASON) + remark
+    loads = held.start(case.case)
+    field = BeamField(pin, problem.material, held.clamps, loads)
+    if between := problem.between.get(case.case):
+        loads = through_time(field, loads, between, requirement.tolerance)
+        rise = rise_between(field, loads, between)
+        field = BeamField(pin, problem.material, held.clamps, loads)
+    instant, spent = field.estimate.instant, time.perf_counter() - start
+    peak = field.peak(requirement.tolerance, spent, note, rise)
+    peak = replace(peak, governing=loads.at(np.array([instant])))
+    return held.finished(Solution(peak, field, loads, instant, held), requirement)

@@ -1,0 +1,296 @@
+"""The one place that chooses support and model: the smallest that are accurate enough.
+
+beam            prescribed loads, where its error is enough to decide   (fea.beam.error_model)
+harmonic        any body of revolution                                  (fea.harmonic.evaluate)
+harmonic+local  such a body with cuts, solid about these                (fea.cut.evaluate)
+solid           any other body, and to check the others                 (fea.solid.evaluate)
+
+foundation      lugs as springs along a beam, where that decides        (fea.support.foundation)
+contact         lugs in contact, on cells until these are fine enough   (fea.support.contact)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from fea.beam.error_model import PLAIN_SECTION_ERROR
+from fea.beam.model import BeamField
+from fea.core.linear_solver import SolveError
+from fea.core.model import Model
+from fea.core.peak import Reason
+from fea.core.requirement import DECIDED_TEXT, Requirement, decided
+from fea.cut.evaluate import LocalSolids
+from fea.cut.region import RingedCutPin, corner_refusal, loaded_bands, refusal, unringed
+from fea.harmonic.evaluate import Harmonic
+from fea.solid.evaluate import Solid
+from fea.solve.by_beam import by_beam
+from fea.solve.refine import refine, zones_of
+from fea.support.contact.held import RESOLUTIONS, ROUGH, Contact, HeldContact, cells_matter
+from fea.support.foundation.held import Foundation, HeldFoundation
+from fea.support.prescribed import Prescribed
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, Support
+from geometry import ArgumentError, CutPin, Pin
+
+CONTACT_REASON = Reason("contact, harmonic: the pin is held by its lugs", ("contact",))
+CUT_CONTACT_REASON = Reason(
+    "contact, harmonic with local solids about the cuts: the pin is held by its lugs", ("contact",)
+)
+REQUESTED_REASON = Reason("foundation: requested", ("requested",))
+WITHIN_TOLERANCE_REASON = Reason(
+    "foundation: its error is within the tolerance", ("foundation-within-tolerance",)
+)
+DECIDES_REASON = Reason(f"foundation: {DECIDED_TEXT}", ("foundation-decides",))
+REQUESTED_BEAM = Reason("beam: requested", ("requested",))
+BEAM_WITHIN_TOLERANCE = Reason(
+    "beam: its error is within the tolerance", ("beam-within-tolerance",)
+)
+BEAM_DECIDES = Reason(f"beam: {DECIDED_TEXT}", ("beam-decides",))
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A held pin, the cases that are left to solve, and what is required of them. failure: of the
+    step before, if that failed.
+    """
+
+    held: HeldPin
+    problem: PinProblem
+    requirement: Requirement
+    progress: Progress
+    failure: Exception | None = None
+
+    def refined(self, model: Model, why: Reason | None = None) -> dict[str, Solution]:
+        """The cases on finer and finer meshes of a model."""
+        why = why or _chosen(self.requirement, model.name)
+        return refine(model, self.held, self.problem, self.requirement, why, self.progress)
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One step of the choice. solve: gives the cases that this step answers well enough. trial: a
+    failure goes on to the next step.
+    """
+
+    support: Support
+    solve: Callable[[Attempt], dict[str, Solution]]
+    trial: bool = False
+
+
+class Refused(SolveError):
+    """A model does not apply, for a reason that the next step states."""
+
+    def __init__(self, reason: Reason) -> None:
+        super().__init__(reason.text, reason.codes[-1])
+        self.reason = reason
+
+
+def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
+    """The steps in their order; the last answers whatever is left.
+
+    Raises: ArgumentError for a model that does not apply to the pin.
+    """
+    pin, model = problem.pin, requirement.model
+    if problem.lugs:
+        yield from _in_lugs(problem, requirement)
+        return
+    if model in ("beam", "harmonic") and not isinstance(pin, Pin):
+        raise ArgumentError(
+            f"pin {pin.name} is not a body of revolution, which the {model} model needs: use "
+            "auto or solid",
+            "not-axisymmetric",
+        )
+    prescribed = Prescribed()
+    if isinstance(pin, Pin) and model in ("auto", "beam"):
+        yield Rung(prescribed, _beam)
+    if isinstance(pin, Pin) and model in ("auto", "harmonic"):
+        yield Rung(prescribed, _harmonic, trial=model == "auto")
+    if isinstance(pin, Pin) and model == "auto":
+        yield Rung(prescribed, _beam_instead)
+    if isinstance(pin, CutPin) and not pin.revolved and model == "auto":
+        yield Rung(prescribed, _local, trial=True)
+    if model == "solid" or not isinstance(pin, Pin):
+        yield Rung(prescribed, _solid)
+
+
+def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
+    joints, foundation = requirement.joints, Foundation()
+    if joints == "foundation":
+        yield Rung(foundation, _foundation_requested)
+    elif joints == "auto" and foundation.may_be_enough(problem, requirement):
+        yield Rung(foundation, _foundation)
+    resolutions = RESOLUTIONS
+    if requirement.cells is not None:
+        resolutions = (ROUGH if requirement.cells == "rough" else RESOLUTIONS[0],)
+    elif requirement.goal == "decide":
+        resolutions = (ROUGH, *RESOLUTIONS)
+    for cells, finer in pairwise((*resolutions, None)):
+        assert cells is not None
+        yield Rung(Contact(cells, finer), _contact)
+
+
+def _beam(at: Attempt) -> dict[str, Solution]:
+    """The cases for which a beam is accurate enough; all if it is requested."""
+    requirement, material = at.requirement, at.problem.material
+    auto = requirement.model == "auto"
+    if auto and requirement.goal == "value" and requirement.tolerance < PLAIN_SECTION_ERROR:
+        return {}  # below the error of any beam
+    out = {}
+    for case in at.problem.cases:
+        zones = zones_of(at.held.pin, at.held.clamps, material, (case,), requirement)
+        if auto and any(zone.kind != "edge of a load" for zone in zones):
+            continue  # where a beam cannot see the singularity
+        solution = by_beam(at.held, at.problem, case, requirement)
+        peak, why = solution.peak, REQUESTED_BEAM
+        if auto:
+            assert isinstance(solution.answer, BeamField)
+            if solution.answer.estimate.error is None:
+                continue
+            value, error = peak.max_von_mises or 0.0, peak.error_estimate or 0.0
+            if decided(requirement, material, value - error, value + error):
+                why = BEAM_DECIDES
+            elif peak.verdict == "converged":
+                why = BEAM_WITHIN_TOLERANCE
+            else:
+                continue
+        out[case.case] = with_reason(solution, why)
+    return out
+
+
+def _beam_instead(at: Attempt) -> dict[str, Solution]:
+    """Beams, with their own error, where no harmonic mesh could be solved."""
+    remark = Reason(f"; the harmonic model failed: {at.failure}")
+    why = Reason("beam: the harmonic model failed", ("harmonic-failed",))
+    return {
+        case.case: with_reason(by_beam(at.held, at.problem, case, at.requirement, remark), why)
+        for case in at.problem.cases
+    }
+
+
+def _harmonic(at: Attempt) -> dict[str, Solution]:
+    pressed = any(at.held.start(case.case).pressed is not None for case in at.problem.cases)
+    return at.refined(Harmonic(at.problem.first, pressed, at.requirement.near))
+
+
+def _local(at: Attempt) -> dict[str, Solution]:
+    return at.refined(_local_solids(at))
+
+
+def _solid(at: Attempt) -> dict[str, Solution]:
+    why = None
+    if isinstance(at.failure, Refused):
+        why = at.failure.reason
+    elif at.failure is not None:
+        text = f"solid: a local solid about the cuts failed: {at.failure}"
+        why = Reason(text, ("not-axisymmetric", "local-failed"))
+    return at.refined(Solid(at.held.pin.meshed), why)
+
+
+def _local_solids(at: Attempt) -> LocalSolids:
+    """Solids about the cuts of a pin, alone. Raises: Refused where they will not do."""
+    pin, clamps, problem = at.held.pin, at.held.clamps, at.problem
+    assert isinstance(pin, CutPin)
+    whole = unringed(pin)
+    loaded = [name for case in problem.cases for name in case.surfaces] if whole is pin else []
+    if not clamps:
+        loaded += whole.connections  # which react the imbalance
+    starts = tuple(at.held.start(case.case) for case in problem.cases)
+    zones = zones_of(pin, clamps, problem.material, starts, at.requirement)
+    why = refusal(whole, clamps, loaded) or corner_refusal(whole, zones)
+    if why is not None:
+        raise Refused(why)
+    return LocalSolids(whole, loaded_bands(whole, loaded), problem.first, at.requirement.near)
+
+
+def _contact(at: Attempt) -> dict[str, Solution]:
+    """The cases whose cells are fine enough, solved; and kept where these leave nothing open."""
+    held, requirement = at.held, at.requirement
+    assert isinstance(held, HeldContact)
+    cases = at.problem.cases
+    ready = tuple(c for c in cases if held.resolved(c.case, requirement))
+    if not ready:
+        return {}
+    problem = replace(at.problem, cases=ready, first=held.model.first)
+    at = replace(at, problem=problem, requirement=held.of_meshes(requirement))
+    model: Harmonic | LocalSolids = Harmonic(problem.first, True, requirement.near)
+    why = CONTACT_REASON
+    if isinstance(held.pin, RingedCutPin):
+        why = CUT_CONTACT_REASON
+        try:
+            model = _local_solids(at)
+        except Refused as refused:
+            since = str(refused).removeprefix("solid: the pin is not a body of revolution, and ")
+            raise SolveError(
+                f"pin {held.pin.name}: no local solid about the cuts will do, since {since}",
+                refused.code,
+            ) from refused
+    limit, solutions = _limit(problem, requirement), at.refined(model, why)
+    return {
+        case: solution
+        for case, solution in solutions.items()
+        if held.finest
+        or limit is None
+        or solution.peak.verdict == "singular"
+        or not cells_matter(solution.peak, limit)
+    }
+
+
+def _limit(problem: PinProblem, requirement: Requirement) -> float | None:
+    """Stress with the required factor, Pa, if only that is to be decided."""
+    strength, required = problem.material.yield_strength, requirement.required
+    if requirement.goal == "value" or strength is None or required is None:
+        return None
+    return strength / required
+
+
+def _foundation_requested(at: Attempt) -> dict[str, Solution]:
+    assert isinstance(at.held, HeldFoundation)
+    return {
+        c.case: with_reason(at.held.solution(c, at.requirement), REQUESTED_REASON)
+        for c in at.problem.cases
+    }
+
+
+def _foundation(at: Attempt) -> dict[str, Solution]:
+    """The cases that beams on foundations answer within the tolerance, or that they show to be safe
+    whatever contact does. Of a pin that fails it matters by how much.
+    """
+    assert isinstance(at.held, HeldFoundation)
+    out, limit = {}, _limit(at.problem, at.requirement) or 0.0
+    bounded = limit > 0.0 and at.held.bounded_everywhere(at.requirement)
+    for case in at.problem.cases:
+        solution = at.held.solution(case, at.requirement)
+        value, error = solution.peak.max_von_mises, solution.peak.error_estimate
+        if at.held.bending_governs(solution):
+            out[case.case] = with_reason(solution, WITHIN_TOLERANCE_REASON)
+        elif bounded and value is not None and error is not None and value + error < limit:
+            out[case.case] = with_reason(solution, DECIDES_REASON)
+    return out
+
+
+def with_reason(solution: Solution, why: Reason) -> Solution:
+    """With the reason for its model, if that gave an answer."""
+    peak = solution.peak
+    if solution.answer is None:
+        return solution
+    return replace(solution, peak=replace(peak, why=why.text, reasons=peak.reasons + why.codes))
+
+
+def _chosen(requirement: Requirement, model: str) -> Reason:
+    """Why this model and no smaller one."""
+    if requirement.model == model:
+        return Reason(f"{model}: requested", ("requested",))
+    if model == "solid":
+        return Reason("solid: the pin is not a body of revolution", ("not-axisymmetric",))
+    if model == "harmonic+local":
+        text = "only about its cuts the pin is not a body of revolution"
+        return Reason(f"harmonic, with a local solid about the cuts: {text}", ("local-solid",))
+    if requirement.goal == "decide":
+        text = "its error leaves open whether the required factor is reached"
+        return Reason(f"harmonic: beam rejected: {text}", ("beam-open",))
+    error = "error"
+    if requirement.tolerance < PLAIN_SECTION_ERROR:
+        error = f"error, at least {PLAIN_SECTION_ERROR:.0%},"
+    text = f"its {error} exceeds the tolerance of {requirement.tolerance:.1%}"
+    return Reason(f"harmonic: beam rejected: {text}", ("beam-inaccurate",))

@@ -1,0 +1,76 @@
+"""A pin in all its cases, by the smallest support and model that meet the requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from fea.core.linear_solver import SolveError
+from fea.core.material import Material
+from fea.core.over_time import Between
+from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.harmonic.kept_fields import FirstMesh
+from fea.solve.choose import Attempt, rungs
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from geometry import GeometryError, PinLike
+from geometry.mesh.solid_mesh import MeshError
+
+DEFAULT_REQUIREMENT = Requirement()
+
+
+def solve(
+    problem: PinProblem,
+    requirement: Requirement = DEFAULT_REQUIREMENT,
+    progress: Progress = silent,
+) -> tuple[Solution, ...]:
+    """Solutions of a pin's cases, one each.
+
+    Raises: ArgumentError for a model that does not apply to the pin, and for lugs that do not fit;
+    MeshError, SolveError.
+    """
+    done: dict[str, Solution] = {}
+    held: HeldPin | None = None
+    failure: Exception | None = None
+    for rung in rungs(problem, requirement):
+        left = tuple(case for case in problem.cases if case.case not in done)
+        if not left:
+            break
+        here = replace(problem, cases=left)
+        try:
+            held = rung.support.hold(here, requirement, held, progress)
+            for case in left:  # what cannot be held needs no model
+                if peak := held.failures.get(case.case):
+                    done[case.case] = Solution(peak, None, case)
+            here = replace(here, cases=tuple(c for c in left if c.case not in done))
+            if here.cases:
+                done |= rung.solve(Attempt(held, here, requirement, progress, failure))
+        except (MeshError, SolveError, GeometryError) as error:
+            if not rung.trial:
+                raise
+            failure = error
+    return tuple(done[case.case] for case in problem.cases)
+
+
+def solve_pin(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    requirement: Requirement = DEFAULT_REQUIREMENT,
+    progress: Progress = silent,
+    between: Mapping[str, Between] | None = None,
+    first: FirstMesh | None = None,
+) -> tuple[Solution, ...]:
+    """Solutions of a pin under prescribed loads; clamps: names of the clamped surfaces."""
+    problem = PinProblem(
+        pin, material, (), cases, between or {}, clamps=clamps, first=first or FirstMesh()
+    )
+    return solve(problem, requirement, progress)
+
+
+def solve_in_lugs(
+    problem: PinProblem, requirement: Requirement, progress: Progress = silent
+) -> tuple[Solution, ...]:
+    """Solutions of a pin in contact with its lugs, also where foundations would do."""
+    return solve(problem, replace(requirement, joints="contact"), progress)

@@ -1,0 +1,45 @@
+"""The bands of a pin that its lugs hold, cut into rings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pinbase.arrays import Floats
+
+
+@dataclass(frozen=True)
+class Bands:
+    """The rings (R,) of all bands, in their order: z of the middle and length, m; radius, m; band:
+    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m. link:
+    (B,) the number of the link to which each band's lug belongs, each to its own by default; lugs
+    of one link shift together, and share its force as they can.
+    """
+
+    z: Floats
+    length: Floats
+    radius: Floats
+    band: NDArray[np.int64]
+    gap: Floats
+    link: NDArray[np.int64] | None = None
+
+    def __len__(self) -> int:
+        return int(self.band.max()) + 1
+
+    @cached_property
+    def links(self) -> NDArray[np.int64]:
+        """(B,) the number of each band's link."""
+        return np.arange(len(self)) if self.link is None else self.link
+
+    @cached_property
+    def middles(self) -> Floats:
+        """z of the bands' middles, (B,) m."""
+        ends = [
+            (self.z - self.length / 2.0)[self.band == b].min()
+            + (self.z + self.length / 2.0)[self.band == b].max()
+            for b in range(len(self))
+        ]
+        return 0.5 * np.array(ends)

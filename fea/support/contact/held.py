@@ -1,0 +1,306 @@
+"""Pins in their lugs: contact at every instant of every case, stress, its error, and by how much
+the maximum depends on what is not known of the joint.
+
+Stress under the pressures is found as under any loads (fea.solve.solve), of a pin that nothing
+clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
+governs on the first mesh is solved once more on cells twice as large, and from the difference, by
+the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
+only a required factor is to be decided, larger cells come first, which take a third of the time,
+and are enough if they decide it with their error, also for what lies beneath the contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from fea.core.equilibrium import out_of_balance
+from fea.core.linear_solver import SolveError
+from fea.core.peak import Maximum, Reason, meets_limit
+from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.cut.evaluate import CutField
+from fea.cut.region import RingedCutPin
+from fea.harmonic.beneath import beneath
+from fea.harmonic.evaluate import HarmonicField
+from fea.section.place import FoundSection, found_section
+from fea.section.row import row_of, with_contact
+from fea.support.cell_pressure import CellPressure
+from fea.support.contact.contact_place import contact_place
+from fea.support.contact.cut_in_lugs import neglected, with_neglected
+from fea.support.contact.error_parts import with_cells
+from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
+from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
+from fea.support.contact.variations import ResolutionComparison, compare
+from fea.support.contact.what_contact_says import contact_result
+from fea.support.lugs.fit import fitted, on_structure
+from fea.support.lugs.links import link_forces
+from fea.support.lugs.rings import whole_names
+from fea.support.prescribed import balanced, imbalance
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from geometry import CutPin, Pin, PinLike
+
+RESOLUTIONS: tuple[Resolution, ...] = (
+    Resolution(),
+    Resolution(12, 48, 16),
+    Resolution(16, 64, 20),
+)  # until one is fine enough
+ROUGH = Resolution(4, 24, 8)  # may decide a required factor
+MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
+
+
+class Contact:
+    """Lugs in contact on cells of one resolution (fea.support.support.Support). finer: the next
+    resolution, None for the last.
+    """
+
+    def __init__(self, cells: Resolution, finer: Resolution | None = None) -> None:
+        self.cells, self.finer = cells, finer
+
+    def hold(
+        self,
+        problem: PinProblem,
+        requirement: Requirement,
+        coarser: HeldPin | None = None,
+        progress: Progress = silent,
+    ) -> HeldContact:
+        """As of every support; what no contact can carry fails before anything is meshed."""
+        refused: dict[str, Maximum] = {}
+        if not isinstance(coarser, HeldContact):
+            refused = _refused(problem)
+        left = tuple(case for case in problem.cases if case.case not in refused)
+        near: Mapping[str, Candidates] = {}
+        if isinstance(coarser, HeldContact):
+            near = coarser.candidates
+        progress(f"pin {problem.pin.name}, flexibility of {self.cells.rings} rings of each lug")
+        profile = profile_of(problem.pin)
+        model = ContactModel(profile, problem.material, problem.lugs, self.cells)
+        progress(f"pin {problem.pin.name}, contact")
+        cut = isinstance(problem.pin, CutPin)
+        contact = PressedCases(model, left, problem.between, problem.also, cut=cut)
+        if not contact.instants.keys() <= near.keys():
+            near = contact.near(requirement)
+        contact.follow(near)
+        compared = contact.compared(near, requirement)
+        # More cells than memory allows are none; and on the last ones all cases are answered.
+        finest = self.finer is None or _count(model, self.finer) > MAX_CELLS
+        held = HeldContact(problem, contact, near, compared, finest, refused)
+        if self.finer is None or self.cells is not ROUGH:  # rough ones are a trial only
+            failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
+            held = replace(held, failures=held.failures | failed)
+        cases = [held.start(case) for case in contact.instants]
+        rigid, _, notes = balanced(held.pin, problem.material, cases, "harmonic")
+        return replace(held, failures=held.failures | rigid, notes=notes)
+
+
+def profile_of(pin: PinLike) -> Pin:
+    """The pin without its cuts, for which contact is solved."""
+    profile = pin.profile if isinstance(pin, CutPin) else pin
+    assert isinstance(profile, Pin)
+    return profile
+
+
+def _refused(problem: PinProblem) -> dict[str, Maximum]:
+    """The cases whose loads no contact can carry, before anything is meshed. Raises: ArgumentError
+    for lugs that do not fit.
+    """
+    pin, lugs = profile_of(problem.pin), problem.lugs
+    whole = on_structure(pin, lugs)
+    fitted(whole, problem.material, lugs)
+    structure = len(lugs) > len(pin.connections)
+    mass, out = (problem.material.density or 0.0) * whole.volume, dict[str, Maximum]()
+    for case in problem.cases:
+        try:
+            link_forces(pin, mass, case, structure)
+        except SolveError as error:
+            out[case.case] = _failed(problem, case.case, str(error))
+    return out
+
+
+def _failed(problem: PinProblem, case: str, why: str) -> Maximum:
+    return Maximum(problem.pin.name, case, "harmonic", "failed", why)
+
+
+def cells_matter(peak: Maximum, limit: float) -> bool:
+    """Whether a limit (Pa) is within the error, and would not be if cells had none."""
+    if peak.parts is None or meets_limit(peak, limit) is not None:
+        return meets_limit(peak, limit) is None
+    low, high = peak.lower_end, peak.upper_end
+    return not low + peak.parts.cells <= limit < high - peak.parts.cells
+
+
+def _count(model: ContactModel, cells: Resolution) -> int:
+    """How many there would be, roughly."""
+    return len(model.rings) * cells.rings // model.cells.rings * cells.sectors
+
+
+@dataclass(frozen=True)
+class HeldContact:
+    """A pin in contact with its lugs (fea.support.support.HeldPin). candidates: by case, which
+    instants may govern; compared: contact on these cells against that on larger ones.
+    """
+
+    problem: PinProblem
+    contact: PressedCases
+    candidates: Mapping[str, Candidates]
+    compared: Mapping[str, Compared]
+    finest: bool
+    failures: dict[str, Maximum]
+    notes: Mapping[str, Reason] = field(default_factory=dict)
+    clamps: tuple[str, ...] = ()
+
+    @property
+    def model(self) -> ContactModel:
+        """Flexibilities of pin and lugs."""
+        return self.contact.model
+
+    @property
+    def cut(self) -> CutPin | None:
+        """The pin with its cuts, if it has any."""
+        return self.problem.pin if isinstance(self.problem.pin, CutPin) else None
+
+    @cached_property
+    def pin(self) -> PinLike:
+        """On which the pressures act, with its cuts."""
+        model, cut = self.model, self.cut
+        if cut is None:
+            return model.pin
+        whole = replace(cut, profile=model.whole)
+        ringed = CutPin.of(model.pin, cut.cuts.values())
+        return RingedCutPin(
+            ringed.profile, ringed.holes, ringed.flats, ringed.slots, ringed.passages, whole=whole
+        )
+
+    def start(self, case: str) -> PinLoads:
+        """Pressures at the instants of which their patterns are made."""
+        return self.contact.press(self.contact.instants[case])
+
+    def press(self, links: PinLoads) -> PinLoads:
+        """Pressures under loads of the links."""
+        return self.contact.press(links)
+
+    def resolved(self, case: str, requirement: Requirement) -> bool:
+        """Whether finer cells would not help, or there are none."""
+        known = self.compared.get(case)
+        if known is None:
+            return False
+        return self.finest or known.fine(self.problem.material, requirement)
+
+    def of_meshes(self, requirement: Requirement) -> Requirement:
+        """Less than all of the tolerance, for cells take a part of it; and less still where
+        sections govern.
+        """
+        cells = {case: x.surface.cells.surface for case, x in self.compared.items()}
+        return replace(requirement, besides=cells, elsewhere=self._in_sections())
+
+    def _in_sections(self) -> dict[str, float]:
+        """By case, the largest stress of sections, Pa; none of pins with cuts."""
+        if self.cut is not None:
+            return {}
+        return {
+            case: self.contact.sections[case].largest(self.contact.on_rings(links))[0]
+            for case, links in self.contact.instants.items()
+        }
+
+    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
+        """With the error of cells and of what contact leaves out, sections, contact, and the range
+        over what is not known of the joint.
+        """
+        model, material, asked = self.model, self.problem.material, requirement
+        (case,) = (c for c in self.problem.cases if c.case == solution.peak.case)
+        answer = solution.answer
+        assert isinstance(answer, HarmonicField | CutField)
+        assert self.contact.patterns is not None
+        at_surface = self.contact.joined(solution.loads.links, solution.instant)
+        known = self.compared[case.case].near(at_surface, case, self._compared_anew(asked))
+        missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
+        peak = with_cells(_named(model, solution.peak), known.surface.cells.surface + missed, asked)
+        peak = replace(peak, governing=at_surface.loads.links, imbalance=_imbalance(model, case))
+        section = None
+        if self.cut is None:
+            section = self._section(case, known.section.cells.section, asked)
+        links = None if section is None else links_at(self.problem, case, section)
+        peak = row_of(peak, section, material, asked.tolerance, links)
+        solved = solution.loads
+        solution = self._at_row(solution, peak, case)
+        contact = self.contact.joined(solution.loads.links, solution.instant)
+        over = known.row.range(peak.max_von_mises or 0.0)
+        (pressed,) = contact.contact
+        pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
+        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
+        if self.cut is not None and isinstance(answer, CutField):
+            left = neglected(self.cut, material, contact, pressure, answer)
+            peak = with_neglected(peak, left, answer, over.variations, asked)
+            peak = row_of(peak, None, material, asked.tolerance)
+            largest = peak.max_von_mises or 1.0
+            error += left.error(largest, False, over.variations) / largest
+        row = peak.max_von_mises or 0.0
+        place = contact_place(contact, material, answer, solved, asked.required, error, row)
+        solution = replace(solution, peak=with_contact(peak, place))
+        over = known.row.range(row, place.beneath)
+        joint = contact_result(contact, over, solution.loads, known.row.left_out)
+        return replace(solution, joint=joint, pressure=pressure)
+
+    def _by_mesh(self, answer: HarmonicField | CutField, known: ResolutionComparison) -> float:
+        """By how much what lies beneath contact differs from that on the first mesh, relative."""
+        fields = answer.solution.uncut if isinstance(answer, CutField) else answer.fields
+        there = beneath(fields, self.contact.press(known.links), answer.singularities).value
+        return abs(known.stress.beneath / there - 1.0) if there else 0.0
+
+    def _compared_anew(self, asked: Requirement) -> Callable[[JointContact], ResolutionComparison]:
+        of = self.contact
+        return lambda contact: compare(of.model, [contact], asked, of.patterns)[0]
+
+    def _section(self, case: PinLoads, cells: float, asked: Requirement) -> FoundSection:
+        """The largest stress of sections of a case; cells: its error by these, relative."""
+        between, loads = self.problem.between.get(case.case), self.contact.instants[case.case]
+        on_rings = None if between is None else lambda times: self.contact.on_rings(between(times))
+        return found_section(
+            self.contact.sections[case.case],
+            self.contact.on_rings(loads),
+            on_rings,
+            asked.tolerance,
+            cells,
+        )
+
+    def _at_row(self, solution: Solution, peak: Maximum, case: PinLoads) -> Solution:
+        """With the loads at all samples of a case, at the instant of its row."""
+        loads, links = solution.loads, self.contact.press(case)
+        if loads.times is None:
+            return replace(solution, peak=peak)
+        assert peak.governing is not None
+        assert peak.time is not None
+        loads = links.merged(loads).merged(self.contact.press(peak.governing))
+        assert loads.times is not None
+        instant = int(np.searchsorted(loads.times, peak.time))
+        return replace(solution, peak=peak, loads=loads, instant=instant)
+
+
+def links_at(problem: PinProblem, case: PinLoads, section: FoundSection) -> PinLoads:
+    """The loads of the links at the instant of a section."""
+    time, between = section.time, problem.between.get(case.case)
+    if time is None or case.times is None:
+        return case
+    if between is not None:
+        return between(np.array([time]))
+    return case.at(np.flatnonzero(case.times == time)[:1])
+
+
+def _named(model: ContactModel, peak: Maximum) -> Maximum:
+    """With the names of the whole pin's surfaces, for those of its rings."""
+    names, note, zones = whole_names(model.whole, model.ends), peak.note, []
+    for zone in peak.singular_at:
+        first, second = (names.get(name, name) for name in zone.between)
+        note = note.replace(" / ".join(zone.between), f"{first} / {second}")
+        zones.append(replace(zone, between=(first, second)))
+    return replace(peak, note=note, singular_at=tuple(zones))
+
+
+def _imbalance(model: ContactModel, case: PinLoads) -> tuple[float, float] | None:
+    """Force and couple that links leave over, relative; a structure takes them."""
+    if model.on_structure:
+        return None
+    return imbalance(model.given, out_of_balance(model.given, case, model.material.density))

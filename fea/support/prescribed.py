@@ -1,0 +1,147 @@
+"""Pins whose loads are prescribed: clamps, and tractions of a given distribution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.equilibrium import NO_SUPPORT, Balance, Carried, out_of_balance
+from fea.core.material import Material
+from fea.core.peak import Maximum, Reason
+from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.section.place import found_section
+from fea.section.row import row_of
+from fea.section.section_stress import SectionField
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from geometry import Pin, PinLike
+
+MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
+
+
+class Prescribed:
+    """Clamps and prescribed tractions (fea.support.support.Support)."""
+
+    def hold(
+        self,
+        problem: PinProblem,
+        requirement: Requirement,
+        coarser: HeldPin | None = None,
+        progress: Progress = silent,
+    ) -> HeldPrescribed:
+        """The pin as it is; a case out of balance is rigid, unless bands can react it."""
+        if isinstance(coarser, HeldPrescribed):
+            return coarser
+        pin = problem.pin
+        if problem.clamps:
+            return HeldPrescribed(problem, {}, {}, {})
+        of = balanced(pin, problem.material, problem.cases, requirement.model)
+        return HeldPrescribed(problem, *of)
+
+
+@dataclass(frozen=True)
+class HeldPrescribed:
+    """A pin under prescribed loads (fea.support.support.HeldPin)."""
+
+    problem: PinProblem
+    failures: Mapping[str, Maximum]
+    imbalance: Mapping[str, tuple[float, float] | None]
+    notes: Mapping[str, Reason]
+    finest = True
+
+    @property
+    def pin(self) -> PinLike:
+        """The pin itself."""
+        return self.problem.pin
+
+    @property
+    def clamps(self) -> tuple[str, ...]:
+        """Those of the problem, by the names of surfaces."""
+        return tuple(self.pin.surface(name) for name in self.problem.clamps)
+
+    def start(self, case: str) -> PinLoads:
+        """The loads that are given."""
+        (loads,) = (loads for loads in self.problem.cases if loads.case == case)
+        return loads
+
+    def press(self, links: PinLoads) -> PinLoads:
+        """The loads of the links themselves."""
+        return links
+
+    def resolved(self, case: str, requirement: Requirement) -> bool:
+        """Nothing is discretised."""
+        return True
+
+    def of_meshes(self, requirement: Requirement) -> Requirement:
+        """All of it: the loads have no error."""
+        return requirement
+
+    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
+        """With the place in sections, where the pin is a body of revolution."""
+        peak, loads = solution.peak, solution.loads
+        case = peak.case
+        if case in self.imbalance:
+            peak = replace(peak, imbalance=self.imbalance[case])
+        if solution.answer is None or loads.pressed is not None:
+            return replace(solution, peak=peak)
+        section, material = None, self.problem.material
+        if isinstance(self.pin, Pin):
+            given = self.start(case)
+            stress = SectionField(self.pin, material, self.clamps, (given,))
+            between = self.problem.between.get(case)
+            section = found_section(stress, given, between, requirement.tolerance)
+        peak = row_of(peak, section, material, requirement.tolerance)
+        if peak.places is None or peak.places.governs == "surface" or loads.times is None:
+            return replace(solution, peak=peak)
+        assert section is not None
+        loads = loads.merged(section.loads)
+        assert loads.times is not None
+        instant = int(np.searchsorted(loads.times, section.time or 0.0))
+        return replace(solution, peak=peak, loads=loads, instant=instant)
+
+
+def balanced(
+    pin: PinLike, material: Material, cases: Sequence[PinLoads], model: str
+) -> tuple[dict[str, Maximum], dict[str, tuple[float, float] | None], dict[str, Reason]]:
+    """What the loads on an unclamped pin lack of equilibrium, by case: maxima of those that its
+    bands cannot react, the imbalance that they do react, and the note on it.
+    """
+    balances = {case.case: _balance(pin, case, material) for case in cases}
+    shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
+    notes = {case: _reacted(share) for case, share in shares.items() if share}
+    rigid = {
+        case: Maximum(
+            pin.name, case, model, "rigid", of.refusal, reasons=(of.code,), imbalance=shares[case]
+        )
+        for case, of in balances.items()
+        if of.refusal
+    }
+    return rigid, shares, notes
+
+
+def _balance(pin: PinLike, case: PinLoads, material: Material) -> Balance:
+    """Of the loads as they are given; couples of pressures are those that contact has found."""
+    pressed = case.links is not case
+    carried = Carried(couple=True) if pressed else NO_SUPPORT
+    return out_of_balance(pin, case, material.density, carried)
+
+
+def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
+    """Force and couple that the bands react, relative; None if negligible."""
+    if not balance.largest:
+        return None
+    force = balance.force / balance.largest
+    couple = balance.couple / balance.largest / pin.length
+    return (force, couple) if max(force, couple) >= MIN_REPORTED_IMBALANCE else None
+
+
+def _reacted(share: tuple[float, float]) -> Reason:
+    """The imbalance that the bands react, as the end of a note."""
+    force, couple = share
+    return Reason(
+        f"; the bearing bands react a residual imbalance: a force of {force:.2g} of the largest "
+        f"load and a couple of {couple:.2g} of that load times the length",
+        ("imbalance-reacted",),
+    )

@@ -1,0 +1,145 @@
+"""The interface of supports: what the links of a pin do to it, as loads on its surface."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from fea.core.material import Material
+from fea.core.over_time import Between
+from fea.core.peak import Maximum, Reason
+from fea.core.pin_loads import PinLoads
+from fea.core.requirement import Requirement
+from fea.core.solution import StressField
+from fea.harmonic.kept_fields import FirstMesh
+from fea.support.cell_pressure import CellPressure
+from fea.support.lugs.lug import Lug
+from fea.support.records import JointResult
+from geometry import Pin, PinLike
+
+Progress = Callable[[str], None]
+
+
+def silent(_: str) -> None:
+    """Report no progress."""
+
+
+@dataclass(frozen=True)
+class PinProblem:
+    """A pin to be solved under the loads of its links.
+
+    lugs: that hold it in contact; without any, clamps (surfaces by the pin's names) and prescribed
+    loads do. cases: loads of the links. between: of the cases that are motions, the loads at any
+    times; in others only the given instants count. also: by case, other loads under which its
+    stress will be asked for. first: what was solved on the first mesh before.
+    """
+
+    pin: PinLike
+    material: Material
+    lugs: tuple[Lug, ...]
+    cases: tuple[PinLoads, ...]
+    between: Mapping[str, Between] = field(default_factory=dict)
+    also: Mapping[str, PinLoads] = field(default_factory=dict)
+    clamps: tuple[str, ...] = ()
+    first: FirstMesh | None = None
+
+
+class HeldPin(Protocol):
+    """A pin held in one way, ready for any loads of its links. It lives in one process."""
+
+    @property
+    def pin(self) -> PinLike:
+        """What is meshed: bands are cut into rings where pressure varies along them."""
+        ...
+
+    @property
+    def clamps(self) -> tuple[str, ...]:
+        """Constrained surfaces, by the pin's names."""
+        ...
+
+    @property
+    def failures(self) -> Mapping[str, Maximum]:
+        """By case: why it cannot be held, with the verdict "rigid" or "failed"."""
+        ...
+
+    @property
+    def notes(self) -> Mapping[str, Reason]:
+        """By case: what the reader of its maximum must know of the support."""
+        ...
+
+    @property
+    def finest(self) -> bool:
+        """Whether a finer resolution may not follow."""
+        ...
+
+    def start(self, case: str) -> PinLoads:
+        """What acts on the pin at the instants from which the solution of a case starts."""
+        ...
+
+    def press(self, links: PinLoads) -> PinLoads:
+        """What acts on the pin under loads of its links. Raises: SolveError."""
+        ...
+
+    def resolved(self, case: str, requirement: Requirement) -> bool:
+        """Whether a finer resolution could not change the answer, before stress is refined."""
+        ...
+
+    def of_meshes(self, requirement: Requirement) -> Requirement:
+        """What the meshes must meet, the support's own error being known."""
+        ...
+
+    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
+        """A case with what the support adds to it: its part of the error, sections, contact, and
+        the range over what is not known of the joint. All of these follow from the loads at one
+        instant, which are found once.
+        """
+        ...
+
+
+class Support(Protocol):
+    """How pins are held. It turns what links do to a pin into loads on its surface."""
+
+    def hold(
+        self,
+        problem: PinProblem,
+        requirement: Requirement,
+        coarser: HeldPin | None = None,
+        progress: Progress = silent,
+    ) -> HeldPin:
+        """The pin, held. coarser: the same pin on the resolution before, whose candidates for the
+        governing instant are kept.
+
+        Raises: ArgumentError for lugs that do not fit; MeshError, SolveError where no case can be
+        held.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A case: its maximum and the stress behind it, None for a pin that cannot be solved.
+
+    loads: on the pin, with the instants added to find the maximum; instant: index of the governing
+    one. held: how the pin is held. joint, pressure: what contact has at the governing instant.
+    """
+
+    peak: Maximum
+    answer: StressField | None
+    loads: PinLoads
+    instant: int = 0
+    held: HeldPin | None = None
+    joint: JointResult | None = None
+    pressure: CellPressure | None = None
+
+    def pressed(self, links: PinLoads) -> PinLoads:
+        """What acts on the pin under other loads of its links."""
+        return links if self.held is None else self.held.press(links)
+
+    @property
+    def rings(self) -> Pin | None:
+        """The body of revolution on which the loads of lugs act, its bands cut; None without lugs,
+        and of pins with cuts.
+        """
+        pin = None if self.held is None or self.pressure is None else self.held.pin
+        return pin if isinstance(pin, Pin) else None
