@@ -8,7 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from reports.data.results import GoverningLoad, PinResult, ReactionTable, Results, Units
+from reports.data.results import (
+    GoverningLoad,
+    PeakReaction,
+    PinResult,
+    ReactionTable,
+    Results,
+    Units,
+)
 from reports.format.numbers import DASH, components, engineering
 from reports.plots.loads.reactions import NO_PIN_NAME
 from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts
@@ -27,26 +34,12 @@ class DropPart:
     grids: list[Grid]
 
 
-@dataclass(frozen=True)
-class ReactionRow:
-    """A connection's maximum force with its components and time, and its maximum moment."""
-
-    connection: str
-    body: str
-    pin: str
-    shared: bool
-    largest: float
-    components: tuple[float, float, float]
-    time: float | None
-    moment: float
-
-
 def load_part(results: Results) -> dict[str, Any]:
     """Reactions, drops and landings of all cases."""
     return {
         "published": published_reactions(results),
         "timed": any(v.time is not None for v in results.published),
-        "reactions": [(table, _rows(table)) for table in results.reactions],
+        "reactions": [(table, _reactions(table, results.units)) for table in results.reactions],
         "without": NO_PIN_NAME,
         "drops": [
             DropPart(
@@ -63,20 +56,28 @@ def load_part(results: Results) -> dict[str, Any]:
     }
 
 
-def _rows(table: ReactionTable) -> list[ReactionRow]:
-    return [
-        ReactionRow(
-            connection=table.connections[c],
-            body=table.bodies[c],
-            pin=table.pins[c],
-            shared=table.connections[c] in table.shared,
-            largest=peak.force,
-            components=peak.components,
-            time=peak.time,
-            moment=peak.moment,
-        )
-        for c, peak in enumerate(table.largest)
+def _reactions(table: ReactionTable, units: Units) -> Grid:
+    """Each connection's largest force with its components and time, and its largest moment."""
+
+    def name(row: tuple[int, PeakReaction]) -> str:
+        connection = table.connections[row[0]]
+        return connection + " (shared)" * (connection in table.shared)
+
+    def part(k: int) -> Callable[[tuple[int, PeakReaction]], str]:
+        return lambda row: components(row[1].components, row[1].force)[k]
+
+    columns: list[Column[tuple[int, PeakReaction]]] = [
+        read_only("connection", name, numeric=False),
+        read_only("body", lambda row: table.bodies[row[0]], numeric=False),
+        read_only("pin", lambda row: table.pins[row[0]], numeric=False),
+        read_only("force", lambda row: row[1].force, "force"),
+        *(read_only(f"F{x}", part(k)) for k, x in enumerate("xyz")),
     ]
+    if table.times is not None:
+        columns.append(read_only("time", lambda row: row[1].time, "time"))
+    if table.moments.any():
+        columns.append(read_only("moment", lambda row: row[1].moment, "moment"))
+    return Table("reactions", columns, [*enumerate(table.largest)]).grid(units)
 
 
 def loads_at(pin: PinResult, units: Units) -> Grid | None:
