@@ -22,6 +22,7 @@ from reports.format.plain import plain
 from reports.format.units import unit_name
 
 MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
+LINES_AT_ONCE = 4096  # lines of an array that are Python's numbers at a time
 
 R = TypeVar("R")
 T = TypeVar("T")
@@ -180,21 +181,23 @@ class ArrayTable(Table[R]):
         )
 
     def values(self, column: Column[R]) -> Sequence[Cell]:
-        return list(chain(*(_listed(column.cell(row), self._lines(row)) for row in self.rows)))
+        each = ((column.cell(row), self._lines(row)) for row in self.rows)
+        return list(chain(*(_listed(cells, 0, count) for cells, count in each)))
 
     def cells(self) -> Iterator[Sequence[Cell]]:
         for row in self.rows:
-            count = self._lines(row)
-            yield from zip(*(_listed(c.cell(row), count) for c in self.filed), strict=True)
+            columns, count = [c.cell(row) for c in self.filed], self._lines(row)
+            for first in range(0, count, LINES_AT_ONCE):
+                last = min(first + LINES_AT_ONCE, count)
+                yield from zip(*(_listed(cells, first, last) for cells in columns), strict=True)
 
 
-def _listed(cells: Floats | list[Cell] | Cell, count: int) -> Iterable[Cell]:
-    """`count` cells, one by one."""
+def _listed(cells: Floats | list[Cell] | Cell, first: int, last: int) -> list[Cell]:
+    """Some of the cells, of one value for all as often as needed."""
     if isinstance(cells, np.ndarray):
-        return (
-            value for part in np.array_split(cells, count // 4096 + 1) for value in part.tolist()
-        )
-    return cells if isinstance(cells, list) else [cells] * count
+        some: list[Cell] = cells[first:last].tolist()
+        return some
+    return cells[first:last] if isinstance(cells, list) else [cells] * (last - first)
 
 
 def json_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
