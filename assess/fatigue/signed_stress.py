@@ -14,11 +14,11 @@ import numpy as np
 from fea.core.voigt import von_mises
 from pinbase.arrays import Floats
 
-MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum is none
+MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum of principal stresses is zero
 
 
 def signed_von_mises(stress: Floats) -> Floats:
-    """Signed von Mises stress (...) of stresses (..., 6)."""
+    """The signed von Mises stress (...) of stresses (..., 6)."""
     size = von_mises(stress)
     xx, yy, zz, yz, xz, xy = np.moveaxis(stress, -1, 0)
     p = (xx + yy + zz) / 3.0

@@ -21,6 +21,7 @@ from geometry.mesh.section_mesh import (
 )
 from geometry.mesh.sizing import Grade
 from geometry.shape.profile import off_edge
+from tests.support.each import each
 from tests.support.pins.section_pins import PINS
 
 PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.03, 0.02, connection="A")), fillet=0.002)
@@ -37,7 +38,7 @@ def volume(found: MeridianMesh) -> float:
     return float(2.0 * np.pi * np.sum(basis.dx * basis.global_coordinates()[0]))
 
 
-@pytest.mark.parametrize("name", PINS)
+@each("name", PINS)
 def test_the_outline_is_exact_and_elements_are_good(name: str) -> None:
     pin = PINS[name]
     found = near_mesh.near_mesh(pin, SectionSize())

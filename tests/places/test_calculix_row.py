@@ -74,6 +74,7 @@ def test_rows_of_both_programs_agree() -> None:
     assert row == pytest.approx(ours.maximum, rel=0.06)
 
 
+@pytest.mark.slow
 def test_prescribed_tractions_are_read_where_contact_leaves_the_pin_free() -> None:
     """A foundation and even tractions have the row of the plain pin within the error of beams; none
     of them reads what tractions do at the edges of bands.
