@@ -24,7 +24,7 @@ from reports.data.headline import headline_json, worst_checks
 from reports.data.results import LandingRange, PinResult, Results
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
-from reports.tables.strength.safety_factors import safety_factor_rows
+from reports.tables.strength.safety_factors import safety_factors_table
 from reports.text.summary import summary
 from tests.conftest import ROOT
 from tests.support.results.judged_results import judged, row
@@ -64,8 +64,8 @@ def test_safe_as_described_but_not_within_the_range_of_the_joint(clevis: Results
     assert found["pins"][0]["depends_on"][0]["flips_at"] == 0.1
     assert found["headline"]["depends"] == ["P"]
     assert found["headline"]["failing"] == []
-    (cells,) = safety_factor_rows(clevis)
-    assert (cells["outcome"], cells["meets_required"]) == ("depends", "no")
+    (cells,) = safety_factors_table(clevis).records()
+    assert (cells["outcome"], cells["meets_required"]) == ("depends", False)
     assert str(cells["depends_on"]).startswith("the range of the joint (clearance 0.1 mm")
 
 
@@ -244,7 +244,7 @@ def test_one_margin_of_a_row_has_one_meaning() -> None:
     results = run(study)
     (found,) = results.pins
     (m,) = (m.margin for m in results.margins if m.margin.method == "von Mises stress, yield")
-    (cells,) = safety_factor_rows(results)
+    (cells,) = safety_factors_table(results).records()
     assert found.max_von_mises is not None
     assert m.factor == 10.0
     low = (found.safety_factor or 0.0) / (1.0 + (found.error_estimate or 0.0) / found.max_von_mises)
@@ -279,7 +279,7 @@ def test_a_sweep_says_what_a_run_says(clevis: Results) -> None:
     results = run(contact)
     (pin,) = results.pins
     assert row_.outcome == outcome(pin) == "depends"
-    assert row_.depends_on == safety_factor_rows(results)[0]["depends_on"]
+    assert row_.depends_on == safety_factors_table(results).records()[0]["depends_on"]
 
 
 def test_designs_of_equal_forces_are_judged_each_by_its_own_impulse() -> None:
