@@ -7,7 +7,7 @@ from functools import partial
 
 from benchmarks import ROOT
 from benchmarks.timing import table
-from fea.solve.single_mesh import Rung
+from fea.solve.single_mesh import ModelMesh
 from pinstress import load_study
 from pinstress.explore.chart.chart import ELEMENT_NAMES, ChartPlan, chart, plan_chart
 from pinstress.explore.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
@@ -92,7 +92,7 @@ def _further(plan: ChartPlan, found: Chart) -> list[ChartPoint]:
     points = [p for p in found.points if p.element == ELEMENT_NAMES["curved"] and not p.failed]
     more: list[ChartPoint] = []
     while error((points + more)[-1]) > TOLERANCE and ((points + more)[-1].dofs or 0) < LARGEST:
-        made = _measured(MeasureJob(plan.problem, Rung("solid", "curved", level)))
+        made = _measured(MeasureJob(plan.problem, ModelMesh("solid", "curved", level)))
         if made.result is None:
             break
         value = made.result.maximum / stress

@@ -45,7 +45,7 @@ class Problem:
 
 
 @dataclass(frozen=True)
-class Rung:
+class ModelMesh:
     """A mesh of a model. element: of the solid model; level: 0 is the first mesh of a run, each
     further one finer by the square root of 2 (with local solids by
     fea.cut.local_fields.LOCAL_MESH_RATIO), those below 0 coarser.
@@ -56,7 +56,9 @@ class Rung:
     level: int = 0
 
 
-def result_on(problem: Problem, rung: Rung, before: tuple[MeshMaximum, ...] = ()) -> MeshMaximum:
+def result_on(
+    problem: Problem, rung: ModelMesh, before: tuple[MeshMaximum, ...] = ()
+) -> MeshMaximum:
     """The maximum on one mesh. before: the mesh result of the harmonic model, with local solids or
     not, at the level below, where a run has one, by which it decides where its elements are small.
 
@@ -74,7 +76,7 @@ def result_on(problem: Problem, rung: Rung, before: tuple[MeshMaximum, ...] = ()
     return model.solve(posed, rung.level, below).maximum(loads)
 
 
-def _posed(problem: Problem, rung: Rung) -> tuple[Model, MeshProblem]:
+def _posed(problem: Problem, rung: ModelMesh) -> tuple[Model, MeshProblem]:
     """A model, and the problem as it takes it."""
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     posed = MeshProblem(

@@ -12,7 +12,7 @@ from typing import Literal
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import line, text, wide
 from reports.page.drawing_places import PlaceMark
-from reports.tables.stress.singular_zones import Zone
+from reports.tables.stress.singular_zones import ShownZone
 
 ZONE_COLOUR = "#a8211b"
 RING_RADIUS = 4.0  # radius
@@ -47,7 +47,7 @@ class ZoneMarks:
 
     def __init__(
         self,
-        zones: list[Zone],
+        zones: list[ShownZone],
         places: list[PlaceMark],
         drawn: tuple[float, float, float],
         width: float,
@@ -136,7 +136,7 @@ def _drawn(mark: _Mark, axis: float) -> list[str]:
     return [_ring(mark.x, y, mark.governs) for y in ends]
 
 
-def _words(zone: Zone) -> str:
+def _words(zone: ShownZone) -> str:
     return f"{zone.number} {zone.short_kind}" + (", governs" if zone.found.governs else "")
 
 

@@ -12,7 +12,7 @@ from reports.format.drawing.svg import INK_COLOUR, line, text, wide
 from reports.format.numbers import short
 from reports.page.drawing_places import PlaceMark
 from reports.page.drawing_zones import STRIPE_PATTERN, ZoneMarks
-from reports.tables.stress.singular_zones import Zone
+from reports.tables.stress.singular_zones import ShownZone
 
 DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 760.0, 45.0, 0.2  # the last in widths
 LOCAL_SOLID_OFFSET = 3.0  # what the box of a local solid stands off the pin
@@ -46,7 +46,7 @@ class _Piece:
 def draw_pin(
     shape: PinShape,
     units: Units,
-    zones: list[Zone] | None = None,
+    zones: list[ShownZone] | None = None,
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
 ) -> str:

@@ -18,7 +18,7 @@ from reports.format.numbers import engineering
 from reports.page.pin_drawing import draw_pin
 from reports.plots.all import all_plots
 from reports.tables.json_results import to_json
-from reports.tables.stress.singular_zones import Zone, circles, pin_zones
+from reports.tables.stress.singular_zones import ShownZone, circles, pin_zones
 from tests.support.results.html_page import EVIL, parse
 from tests.support.results.judged_results import judged, row, zones
 
@@ -170,7 +170,7 @@ def test_drawing_stripes_what_is_excluded_of_the_walls(found: Results) -> None:
 def test_the_edge_of_a_lug_is_drawn_like_the_others(found: Results) -> None:
     """In theory a power, and not measured."""
     lug = replace(zones()[1], kind="the edge of a lug", exponent_theory=0.226, governs=True)
-    zone = Zone(1, lug)
+    zone = ShownZone(1, lug)
     assert zone.exponents == "– / 0.226"
     assert "1 edge of a lug, governs<" in draw_pin(found.shapes[0], found.units, [zone])
 

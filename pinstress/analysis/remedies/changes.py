@@ -16,7 +16,7 @@ import numpy as np
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.core.solution import StressField
-from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.support.support import Solution
 from geometry import GeometryError, Pin
 from pinstress.analysis.remedies.secant import NoSizeError, smallest
@@ -24,7 +24,7 @@ from pinstress.study.model.pins import slenderness
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
 
-FIRST_RUNG = Rung("harmonic")
+FIRST_RUNG = ModelMesh("harmonic")
 FIRST_MESH_TOLERANCE = 0.04  # of the factor: what the first mesh is worth
 # Of an impulse tried at a time, each time between the last two
 IMPULSE_SHARES, SEARCH_ROUNDS = 17, 3

@@ -11,7 +11,7 @@ from fea.core.peak import Maximum
 from fea.core.requirement import Requirement
 from fea.core.verdict import MeshHistory
 from fea.solve.refine import LOCAL_MODEL
-from fea.solve.single_mesh import Problem, Rung
+from fea.solve.single_mesh import ModelMesh, Problem
 from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.support import PinProblem, Solution
@@ -160,13 +160,13 @@ def chart(
         return _joined(plan, climb, (rung, seen), cells)
     pin = plan.problem.pin
     if isinstance(pin, Pin):
-        climb.to(Rung("beam"))
+        climb.to(ModelMesh("beam"))
         climb_harmonic(climb)
     elif climb.auto == LOCAL_MODEL:
         climb_local(climb)
     else:
         other = Measured(None, failed=f"pin {pin.name} is not a body of revolution")
-        climb.done += [(Rung("beam"), other), (Rung("harmonic"), other)]
+        climb.done += [(ModelMesh("beam"), other), (ModelMesh("harmonic"), other)]
     elements: tuple[Element, ...] = ("linear", "straight", "curved")
     for element in elements:
         climb_solid(climb, element, meshes)
@@ -180,7 +180,7 @@ def chart(
 def _joined(
     plan: ChartPlan,
     climb: Climb,
-    reference: tuple[Rung | JointRung, MeshHistory],
+    reference: tuple[ModelMesh | JointRung, MeshHistory],
     cells: float = 0.0,
 ) -> Chart:
     """cells: the part of the reference's error from cells of contact, relative."""
@@ -188,7 +188,7 @@ def _joined(
     stress, best = plan.study.system.factor("stress"), seen.results[-1]
     ends = plan.chosen or chosen(climb)
 
-    def name(rung: Rung | JointRung) -> str:
+    def name(rung: ModelMesh | JointRung) -> str:
         if isinstance(rung, JointRung):
             return rung.element
         return ELEMENT_NAMES.get(rung.model, ELEMENT_NAMES[rung.element])

@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 
 from fea.core.mesh_result import MeshMaximum
-from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from pinbase.processes.apart import Failed, guarded
 from pinbase.processes.pool import Job, Tell
 from pinstress.explore.chart.single_joint import JointProblem, JointRung, joint_result_on
@@ -55,7 +55,7 @@ class MeasureJob:
     """
 
     problem: Problem | JointProblem
-    rung: Rung | JointRung
+    rung: ModelMesh | JointRung
     before: tuple[MeshMaximum, ...] = ()
     runs: int = 1
     reference: bool = False
@@ -122,5 +122,5 @@ def _result(job: MeasureJob) -> MeshMaximum:
     if isinstance(job.problem, JointProblem):
         assert isinstance(job.rung, JointRung)
         return joint_result_on(job.problem, job.rung, job.before)
-    assert isinstance(job.rung, Rung)
+    assert isinstance(job.rung, ModelMesh)
     return result_on(job.problem, job.rung, job.before)

@@ -12,7 +12,7 @@ from fea.core.verdict import MeshHistory
 from fea.cut.evaluate import LOCAL_MESHES
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, sequence_of
-from fea.solve.single_mesh import Problem, Rung
+from fea.solve.single_mesh import ModelMesh, Problem
 from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
@@ -39,9 +39,9 @@ class Climb:
     measure: Measure
     runs: int
     tell: Callable[[str], None]
-    done: list[tuple[Rung | JointRung, Measured]] = field(default_factory=list)
+    done: list[tuple[ModelMesh | JointRung, Measured]] = field(default_factory=list)
 
-    def to(self, rung: Rung | JointRung, keep: bool = True) -> Measured:
+    def to(self, rung: ModelMesh | JointRung, keep: bool = True) -> Measured:
         """Climb a rung; `keep` it as a point of the chart."""
         self.tell(f"{rung.model} model")
         below = self.results(rung) if rung.model in ADAPTIVE_MODELS and rung.level > 0 else ()
@@ -61,7 +61,7 @@ class Climb:
         if one.result and two.result and one.result.unknowns == two.result.unknowns:
             del self.done[-2]
 
-    def results(self, like: Rung | JointRung) -> tuple[MeshMaximum, ...]:
+    def results(self, like: ModelMesh | JointRung) -> tuple[MeshMaximum, ...]:
         """Of the same model and element, from a run's first mesh on."""
         return tuple(
             m.result for r, m in self.done
@@ -82,23 +82,23 @@ class Climb:
 def climb_harmonic(climb: Climb) -> None:
     """The usual levels, and on to where `auto` ends."""
     for level in HARMONIC_LEVELS:
-        found = climb.to(Rung("harmonic", level=level))
+        found = climb.to(ModelMesh("harmonic", level=level))
         climb.drop_repeated()
     while (
         climb.auto == "harmonic"
         and found.result is not None
         and level + 1 < SECTION_MESHES.max_meshes
         and found.result.unknowns * MESH_RATIO**2 <= SECTION_MESHES.max_unknowns
-        and not climb.enough("harmonic", climb.results(Rung("harmonic")))
+        and not climb.enough("harmonic", climb.results(ModelMesh("harmonic")))
     ):
         level += 1
-        found = climb.to(Rung("harmonic", level=level))
+        found = climb.to(ModelMesh("harmonic", level=level))
 
 
 def climb_local(climb: Climb) -> None:
     """All meshes that a run may make."""
     for level in range(LOCAL_MESHES.max_meshes):
-        climb.to(Rung(LOCAL_MODEL, level=level))
+        climb.to(ModelMesh(LOCAL_MODEL, level=level))
 
 
 def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
@@ -108,7 +108,7 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
     first = 0 if pin.meshed else FIRST_SOLID_LEVEL[element]
     most = MAX_CHARTED_UNKNOWNS if isinstance(pin, Pin) else MAX_UNKNOWNS_BELOW_REFERENCE
     for k in range(meshes or SOLID_MESHES):
-        found = climb.to(Rung("solid", element, first + step * k))
+        found = climb.to(ModelMesh("solid", element, first + step * k))
         if found.over:
             return
         growth = MESH_RATIO ** (3 * step)
@@ -117,7 +117,7 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
             return
 
 
-def harmonic_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
+def harmonic_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
     """Finer and finer than the finest that is charted, until an order larger."""
     level, charted = _finest(climb, "harmonic")
     results: list[MeshMaximum] = []
@@ -126,7 +126,7 @@ def harmonic_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
         or results[-1].unknowns < REFERENCE_UNKNOWNS_RATIO * charted[-1].unknowns
     ):
         level += 1
-        found = climb.to(Rung("harmonic", level=level), keep=False)
+        found = climb.to(ModelMesh("harmonic", level=level), keep=False)
         if found.result is None:
             raise SolveError(
                 f"the reference, harmonic mesh {level + 1}: {found.failed}", code="no-reference"
@@ -135,23 +135,25 @@ def harmonic_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
         if results[-1].unknowns > MAX_REFERENCE_UNKNOWNS:
             break
     first = level - len(results) + 1
-    return Rung("harmonic", level=level), climb.seen("harmonic", tuple(results), first)
+    return ModelMesh("harmonic", level=level), climb.seen("harmonic", tuple(results), first)
 
 
-def local_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
+def local_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
     """A mesh more than is charted, which has nearly twice the unknowns of the last one.
 
     Raises: SolveError where it cannot be solved.
     """
     level, charted = _finest(climb, LOCAL_MODEL)
-    finer = Rung(LOCAL_MODEL, level=level + 1)
+    finer = ModelMesh(LOCAL_MODEL, level=level + 1)
     found = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
     if found.result is None:
         raise SolveError(f"the reference: {found.failed}", code="no-reference")
-    return Rung(LOCAL_MODEL, level=level + 1), climb.seen(LOCAL_MODEL, (*charted, found.result))
+    return ModelMesh(LOCAL_MODEL, level=level + 1), climb.seen(
+        LOCAL_MODEL, (*charted, found.result)
+    )
 
 
-def solid_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
+def solid_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
     """The solid model on finer meshes than are charted, as far as its unknowns allow."""
     level, charted = _finest(climb, "solid")
     results = list(charted)
@@ -160,7 +162,7 @@ def solid_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
         results[-1].unknowns < REFERENCE_UNKNOWNS_RATIO * charted[-1].unknowns
         and results[-1].unknowns * MESH_RATIO ** (3 * step) <= MAX_REFERENCE_UNKNOWNS
     ):
-        found = climb.to(Rung("solid", "curved", level + step), keep=False)
+        found = climb.to(ModelMesh("solid", "curved", level + step), keep=False)
         if found.result is None:
             break
         results.append(found.result)
@@ -170,7 +172,7 @@ def solid_reference(climb: Climb) -> tuple[Rung, MeshHistory]:
             "no solid mesh finer than those charted could be solved as a reference",
             code="no-reference",
         )
-    return Rung("solid", "curved", level), climb.seen("solid", tuple(results))
+    return ModelMesh("solid", "curved", level), climb.seen("solid", tuple(results))
 
 
 def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
@@ -188,16 +190,16 @@ def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
     return max(level for level, m in of_it if m.result), results
 
 
-def chosen(climb: Climb) -> Rung | JointRung | None:
+def chosen(climb: Climb) -> ModelMesh | JointRung | None:
     """Where `auto` ends; None where it goes on to finer meshes than there are here."""
     model = climb.auto
     if model == "beam":
-        return Rung("beam")
+        return ModelMesh("beam")
     of_it = [
         r for r, m in climb.done
         if r.model == model and r.element == "curved" and r.level >= 0 and m.result
     ]  # fmt: skip
-    results = climb.results(Rung(model, "curved"))  # type: ignore[arg-type]
+    results = climb.results(ModelMesh(model, "curved"))  # type: ignore[arg-type]
     for n, rung in enumerate(of_it, 1):
         if climb.enough(model, results[:n]):
             return rung

@@ -63,7 +63,7 @@ class JointProblem:
 
 @dataclass(frozen=True)
 class JointRung:
-    """A mesh of a model; level: as of fea.solve.single_mesh.Rung. cells: of contact; fineness: of
+    """A mesh of a model; level: as of fea.solve.single_mesh.ModelMesh. cells: of contact; fineness: of
     CalculiX.
     """
 

@@ -21,7 +21,7 @@ from reports.tables.column import (
 
 
 @dataclass(frozen=True)
-class Zone:
+class ShownZone:
     """A zone with its number on the pin (one circle has one number in all cases); r its radius."""
 
     number: int
@@ -53,19 +53,19 @@ class Zone:
         return rest if rest and head in ("a", "an", "the") else self.found.kind
 
 
-def pin_zones(results: Results, pin: str) -> dict[str, list[Zone]]:
+def pin_zones(results: Results, pin: str) -> dict[str, list[ShownZone]]:
     """A pin's zones by case, numbered from its start."""
     cases = [p for p in results.pins if p.pin == pin]
     every = [zone for p in cases for zone in p.singular_at]
     # Cases differ in the point on the circle, not in the circle.
     order = sorted({_circle(z): z.location[2] for z in every}.items(), key=lambda item: item[1])
     numbers = {circle: i for i, (circle, _) in enumerate(order, start=1)}
-    return {p.case: [Zone(numbers[_circle(z)], z) for z in p.singular_at] for p in cases}
+    return {p.case: [ShownZone(numbers[_circle(z)], z) for z in p.singular_at] for p in cases}
 
 
-def circles(zones: Iterable[Zone]) -> list[Zone]:
+def circles(zones: Iterable[ShownZone]) -> list[ShownZone]:
     """One zone per number, preferably from a case in which it governs."""
-    found: dict[int, Zone] = {}
+    found: dict[int, ShownZone] = {}
     for zone in zones:
         if zone.number not in found or zone.found.governs:
             found[zone.number] = zone
@@ -82,7 +82,7 @@ class ZoneRow:
     """A zone of a pin in a case, with the units of the results."""
 
     pin: PinResult
-    zone: Zone
+    zone: ShownZone
     units: Units
 
 
@@ -133,7 +133,7 @@ def zones_table(results: Results) -> Table[ZoneRow]:
     return Table("singular_zones", COLUMNS, rows)
 
 
-def shown_zones(pin: PinResult, zones: list[Zone], units: Units) -> Table[ZoneRow]:
+def shown_zones(pin: PinResult, zones: list[ShownZone], units: Units) -> Table[ZoneRow]:
     """The zones of a pin in a case, for people."""
     heading = f"strength [{units.stress} {units.length}^exponent]"
     strength = read_only(heading, _intensity("along"))

@@ -12,7 +12,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.requirement import Requirement
 from fea.harmonic.model import HarmonicModel
-from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
@@ -28,7 +28,7 @@ def case(force: tuple[float, float, float], couple: tuple[float, float, float]) 
 
 def energy_on(loads: PinLoads, steel: Material) -> float:
     problem = Problem(ROD, replace(steel, poisson_ratio=0.0), ("start",), loads)
-    found = result_on(problem, Rung("harmonic"))
+    found = result_on(problem, ModelMesh("harmonic"))
     assert found.energy is not None
     return found.energy.of(loads)
 
@@ -111,7 +111,7 @@ def test_harmonic_beside_solid(cantilever_pin: Pin, steel: Material) -> None:
     loads = PinLoads("c", ("P1",), np.array([[[F, 0.5 * F, F]]]), np.array([0.0, T, T]))
     problem = Problem(cantilever_pin, steel, ("start",), loads)
     found = []
-    for rung in (Rung("harmonic", level=2), Rung("solid", level=2)):
+    for rung in (ModelMesh("harmonic", level=2), ModelMesh("solid", level=2)):
         energy = result_on(problem, rung).energy
         assert energy is not None
         found.append(energy.of(loads))

@@ -11,7 +11,7 @@ from fea.core.requirement import Requirement
 from fea.cut import region
 from fea.cut.evaluate import CutField
 from fea.cut.local_fields import LocalFields
-from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.solve.solve import solve_pin
 from fea.support.support import Solution
 from geometry import CutPin, Hole, Pin, Segment
@@ -43,7 +43,7 @@ def parts(found: Solution) -> tuple[LocalFields, ...]:
 def test_two_pieces_answer_as_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """Holes 0.6 diameters apart, each with its own symmetry; the error knows the rest."""
     pin = shaft(Hole(0.08, 0.004), Hole(0.096, 0.003, 0.5 * np.pi))
-    problem, rung = Problem(pin, STEEL, (), pulled([3e4], [0.0])), Rung("harmonic+local")
+    problem, rung = Problem(pin, STEEL, (), pulled([3e4], [0.0])), ModelMesh("harmonic+local")
     assert len(region.pieces(pin, ())) == 2
     two = result_on(problem, rung)
     monkeypatch.setattr(region, "MERGE_DISTANCE", 1.0)

@@ -12,7 +12,7 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.verdict import MeshHistory, judge
 from fea.solid.evaluate import SOLID_MESHES
-from fea.solve.single_mesh import Problem, Rung, result_on
+from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.solve.solve import solve_pin
 from geometry import ArgumentError, CutPin, Hole, Pin, Segment
 from geometry.mesh.elements import Element
@@ -21,14 +21,14 @@ from tests.support.errors import raises
 SHARP = Pin("S", (Segment(0.02, 0.03), Segment(0.02, 0.02), Segment(0.02, 0.02, connection="B")))
 LOAD = PinLoads("bending", ("B",), np.array([[[0.0, 500.0, 0.0]], [[0.0, 1000.0, 0.0]]]))
 ALL = (
-    Rung("beam"),
-    Rung("harmonic"),
-    *(Rung("solid", element, -1) for element in ("linear", "straight", "curved")),
+    ModelMesh("beam"),
+    ModelMesh("harmonic"),
+    *(ModelMesh("solid", element, -1) for element in ("linear", "straight", "curved")),
 )
 
 
 @pytest.mark.parametrize("rung", ALL, ids=lambda r: f"{r.model} {r.element}")
-def test_no_model_reads_stress_where_it_has_no_bound(rung: Rung, steel: Material) -> None:
+def test_no_model_reads_stress_where_it_has_no_bound(rung: ModelMesh, steel: Material) -> None:
     """Wide zones, so that the maximum of each would lie inside: the corner at z = 0.02 holds the
     largest bending moment of the thin shaft.
     """
@@ -50,8 +50,8 @@ def test_no_model_reads_stress_where_it_has_no_bound(rung: Rung, steel: Material
 def test_a_harmonic_rung_is_the_mesh_of_a_run(cantilever_pin: Pin, steel: Material) -> None:
     load = PinLoads("bending", ("P1",), np.array([[[0.0, 1000.0, 0.0]]]))
     problem = Problem(cantilever_pin, steel, ("start",), load)
-    first = result_on(problem, Rung("harmonic", level=0))
-    second = result_on(problem, Rung("harmonic", level=1), (first,))
+    first = result_on(problem, ModelMesh("harmonic", level=0))
+    second = result_on(problem, ModelMesh("harmonic", level=1), (first,))
     asked = Requirement(model="harmonic", meshes=2)
     (run,) = solve_pin(cantilever_pin, steel, ("start",), (load,), asked)
     assert [s.dofs for s in run.peak.history] == [first.unknowns, second.unknowns]
@@ -68,9 +68,9 @@ def test_finer_solid_meshes_are_nearer_to_the_harmonic_model(
     """
     load = PinLoads("bending", ("P1",), np.array([[[0.0, 1000.0, 0.0]]]))
     problem = Problem(cantilever_pin, steel, ("start",), load)
-    exact = result_on(problem, Rung("harmonic", level=3)).maximum
+    exact = result_on(problem, ModelMesh("harmonic", level=3)).maximum
     levels = (0, 3) if element == "linear" else (-1, 1)
-    results = [result_on(problem, Rung("solid", element, level)) for level in levels]
+    results = [result_on(problem, ModelMesh("solid", element, level)) for level in levels]
     coarse, fine = (abs(result.maximum / exact - 1.0) for result in results)
     assert results[0].unknowns < results[1].unknowns
     assert fine < 0.6 * coarse
@@ -86,11 +86,11 @@ def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
     """The rim of the clamp is left out with linear elements too, whose sides have no nodes."""
     pin = CutPin(Pin("H", (Segment(0.06, 0.02, connection="B"),)), (Hole(0.04, 0.004),))
     problem = Problem(pin, steel, ("start",), LOAD)
-    for rung in (Rung("solid", "linear"), Rung("solid")):
+    for rung in (ModelMesh("solid", "linear"), ModelMesh("solid")):
         result = result_on(problem, rung)
         x, y, z = result.location
         assert np.hypot(np.hypot(x, y) - 0.01, z) >= 0.1 * 0.02
-    for rung in (Rung("beam"), Rung("harmonic")):
+    for rung in (ModelMesh("beam"), ModelMesh("harmonic")):
         with raises(ArgumentError, "not-axisymmetric"):
             result_on(problem, rung)
 

@@ -12,7 +12,7 @@ import pytest
 
 from fea.core.mesh_result import MeshMaximum
 from fea.harmonic.evaluate import SECTION_MESHES
-from fea.solve.single_mesh import Rung
+from fea.solve.single_mesh import ModelMesh
 from pinstress import load_study
 from pinstress.cli.chart import _report_missed
 from pinstress.explore.chart.chart import ChartPlan, chart, plan_chart
@@ -201,7 +201,7 @@ def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) 
 @pytest.mark.slow
 def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
     """What it says is the same every time; its time and memory are its own."""
-    rung = Rung("harmonic", level=0)
+    rung = ModelMesh("harmonic", level=0)
     one, two = (measure(MeasureJob(plan.problem, rung, runs=n), MeasureLimits()) for n in (1, 2))
     assert one.result is not None
     assert one.result == two.result
@@ -213,13 +213,13 @@ def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
 @each(
     ("rung", "limits", "reason"),
     [
-        (Rung("solid", level=2), MeasureLimits(seconds=0.5), "exceeded the limit of 0.5 s"),
-        (Rung("solid", level=2), MeasureLimits(memory=20.0), "exceeded the limit of 20 MB"),
-        (Rung("solid", level=40), MeasureLimits(), "elements, because the thinnest part"),
+        (ModelMesh("solid", level=2), MeasureLimits(seconds=0.5), "exceeded the limit of 0.5 s"),
+        (ModelMesh("solid", level=2), MeasureLimits(memory=20.0), "exceeded the limit of 20 MB"),
+        (ModelMesh("solid", level=40), MeasureLimits(), "elements, because the thinnest part"),
     ],
 )
 def test_a_point_that_passes_a_limit_or_cannot_be_fails(
-    plan: ChartPlan, rung: Rung, limits: MeasureLimits, reason: str
+    plan: ChartPlan, rung: ModelMesh, limits: MeasureLimits, reason: str
 ) -> None:
     start = time.monotonic()
     found = measure(MeasureJob(plan.problem, rung), limits)
