@@ -63,8 +63,8 @@ class JointProblem:
 
 @dataclass(frozen=True)
 class JointRung:
-    """A mesh of a model; level: as of fea.solve.single_mesh.ModelMesh. cells: of contact; fineness: of
-    CalculiX.
+    """A mesh of a model; level: as of fea.solve.single_mesh.ModelMesh. cells: of contact;
+    fineness: of CalculiX.
     """
 
     model: Literal["contact", "foundation", "calculix"]
