@@ -3,8 +3,8 @@ BIN := .venv/bin
 LOCKBIN := .venv-lock/bin
 
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable coverage mutants check \
-	bench docs lock clean
+.PHONY: help setup demo test test-rest test-all test-browser test-peers test-portable coverage mutants check types \
+	bench docs wheel lock clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
@@ -14,8 +14,8 @@ setup: .venv/.ready ## make .venv with everything pinstress needs (run by the ta
 .venv/.ready: requirements.lock pyproject.toml scripts/setup.sh
 	@sh scripts/setup.sh
 
-PORTABLE = tests/pinstress/test_portable.py tests/pinbase/processes/test_workers.py \
-	$(addprefix tests/pinstress/,cli/test_output.py model/test_read_body.py test_import.py) \
+PORTABLE = tests/pinbase/processes/test_workers.py \
+	$(addprefix tests/pinstress/,cli/test_output.py study/model/test_read_body.py test_import.py) \
 	$(addprefix tests/fea/core/test_,linear.py memory.py) tests/loads/tables/test_regular_file.py
 
 # Status 1 means: done, but a requested accuracy was not reached (printed last).
@@ -23,29 +23,36 @@ demo: setup ## run studies/landing_gear.toml and print the path of its report
 	@status=0; PINSTRESS_CACHE=build/cache $(BIN)/pinstress run studies/landing_gear.toml || status=$$?; \
 	if [ $$status -gt 1 ]; then exit $$status; fi
 
-PYTEST = $(BIN)/python -m pytest -n auto
+# Compiled modules are kept, or every process would compile all it imports again.
+unexport PYTHONDONTWRITEBYTECODE
+# What remains of a file goes to a worker without work, so what its tests share is solved about once.
+PYTEST = $(BIN)/python -m pytest -n auto --dist worksteal
+# The files with tests of a mark: to import all others takes as long as some of these tests.
+marked = $(shell grep -rl 'mark\.$(1)\b' tests --include='*.py')
+# After a mark of the targets below: "or long" takes the long tests, too.
+WITH =
 
 test: setup ## run the quick tests; ARGS="..." goes to pytest
 	$(PYTEST) -m "not slow" $(ARGS)
 
 test-rest: setup ## run the slow ones: packaging, the fuzzer, every shipped study, slow validation
-	$(PYTEST) -m slow $(ARGS)
+	$(PYTEST) -m slow $(call marked,slow) $(ARGS)
 
-test-all: setup ## run both in one go
-	$(PYTEST) $(ARGS)
+test-all: setup ## run all tests, also the long ones that CI leaves out
+	$(PYTEST) -m "long or not long" $(ARGS)
+	@$(MAKE) --no-print-directory test-browser test-peers WITH="or long"
 
 test-browser: setup ## run the tests of the report in Chromium, which root gets installed
 	@sh scripts/tools.sh test-browser "Chromium or its driver" "chromium chromium-driver" \
 		chromium chromedriver
-	$(BIN)/python -m pytest -m browser $(ARGS)
+	$(PYTEST) --dist loadfile -m "browser $(WITH)" tests/browser $(ARGS)
 
 test-peers: setup ## run the comparisons with CalculiX, which root gets installed
 	@sh scripts/tools.sh test-peers CalculiX calculix-ccx ccx
-	$(BIN)/python -m pytest -m peers $(ARGS)
+	$(PYTEST) -m "peers $(WITH)" $(call marked,peers) $(ARGS)
 
 test-portable: setup ## run quick tests without what Linux alone has, as on Windows and macOS
-	PINSTRESS_PORTABLE=1 $(BIN)/python -m pytest -n auto -m "not slow" \
-	$(PORTABLE) $(ARGS)
+	PINSTRESS_PORTABLE=1 $(PYTEST) -m "not slow" $(PORTABLE) $(ARGS)
 
 coverage: setup ## branches of loads, geometry, fea that their own quick tests do not take; fails below 95 %
 	@for room in loads geometry fea; do $(BIN)/python -m pytest -q -m "not slow and not peers" --cov=$$room \
@@ -57,9 +64,11 @@ mutants: setup ## changes in files of formulas that no test notices (about an ho
 check: setup ## lint, format check, types, import contracts, strict docs build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
-	@$(MAKE) --no-print-directory docs
+	@$(MAKE) --no-print-directory --jobs 2 --output-sync types docs
+
+types: setup ## check types
+	$(BIN)/mypy
 
 bench: setup ## run all benchmarks and write their tables into docs/measured (about 17 minutes)
 	$(BIN)/pip install --quiet --require-hashes -r requirements-bench.lock
@@ -68,13 +77,17 @@ bench: setup ## run all benchmarks and write their tables into docs/measured (ab
 docs: setup ## build the documentation into build/docs; a warning is an error
 	$(BIN)/sphinx-build --quiet --nitpicky --fail-on-warning --keep-going -b html docs build/docs
 
+wheel: setup ## build the wheel into dist/
+	$(BIN)/python -m hatchling build -t wheel -d dist
+
 COMPILE = $(LOCKBIN)/uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest \
 	--generate-hashes --no-emit-index-url --no-annotate --custom-compile-command "make lock" $(LOCKFLAGS)
 
 # The second file has the additional packages of the benchmarks, in versions compatible with the first.
 lock: ## bring the lock files up to pyproject.toml; LOCKFLAGS=--upgrade takes the newest of all
 	@test -x $(LOCKBIN)/uv || { python3 -m venv .venv-lock && $(LOCKBIN)/pip install --quiet uv; }
-	$(COMPILE) --extra dev --output-file requirements.lock pyproject.toml
+	$(COMPILE) --extra cluster --extra fatigue --extra pdf --extra dev \
+		--output-file requirements.lock pyproject.toml
 	$(COMPILE) --extra bench --constraint requirements.lock --output-file requirements-bench.lock \
 		pyproject.toml
 

@@ -149,7 +149,7 @@ def survives(path: str, tree: ast.Module, tests: Sequence[str], limit: float) ->
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 1)
         os.dup2(nowhere, 2)
-        plain = ["-q", "-x", "-p", "no:randomly", "-p", "no:cacheprovider", "-p", "no:cov"]
+        plain = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:cov"]
         os._exit(int(pytest.main([*plain, "-m", "not slow and not peers", *tests])))
     end = time.monotonic() + limit
     while time.monotonic() < end:

@@ -18,6 +18,7 @@ ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "licences.md"
 LOCKS = ("requirements.lock", "requirements-bench.lock")
 RUN, DEVELOP = "to run", "to develop"
+EXTRAS = "cluster", "fatigue", "pdf"  # which users install
 OLDEST = {"extra": "", "python_version": "3.11", "python_full_version": "3.11.0"}
 # Only for other systems than Linux; as the metadata of their wheels say.
 ELSEWHERE = {
@@ -91,13 +92,16 @@ def needed(lines: Iterable[str], done: set[str]) -> set[str]:
 def page() -> str:
     """The whole page."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    before, run = recorded(), needed(project["dependencies"], set())
+    before, use = recorded(), dict.fromkeys(needed(project["dependencies"], set()), RUN)
+    for extra in EXTRAS:
+        lines = project["optional-dependencies"][extra]
+        use |= dict.fromkeys(needed(lines, set()) - set(use), f"extra `{extra}`")
     rows = []
     for name, version in locked().items():
         known = licence(name) or before.get(name, ("", "", ""))[1]
         if not known:
             raise SystemExit(f"{name}: its licence is not known; install it, or name it here")
-        rows.append(f"| {name} | {version} | {known} | {RUN if name in run else DEVELOP} |")
+        rows.append(f"| {name} | {version} | {known} | {use.get(name, DEVELOP)} |")
     return HEAD + "\n".join(rows) + "\n"
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from multiprocessing import resource_tracker
@@ -21,10 +23,11 @@ hold_threads()  # as the command does, whose numbers are compared
 from fea.core.material import Material
 from geometry import Pin, Segment
 from loads import Linkage
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 from pinstress import load_study
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.file import Study
+from tests.support.programs.once import Shipped, once
 from tests.support.programs.process_group import children
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
@@ -42,12 +45,12 @@ settings.load_profile("no clock")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Tests that need other programs are left out unless `-m` names them, and those of what Linux
-    alone has under PINSTRESS_PORTABLE=1.
+    """Tests that need other programs and long ones are left out unless `-m` names them, and those
+    of what Linux alone has under PINSTRESS_PORTABLE=1.
 
     Here and not in addopts, where any other `-m` would bring them back.
     """
-    without = ["peers", "browser", *(["linux"] if portable() else [])]
+    without = ["long", "peers", "browser", *(["linux"] if portable() else [])]
     for mark in without:
         if mark in config.getoption("markexpr"):
             continue
@@ -67,6 +70,25 @@ def _no_process_is_left() -> Iterator[None]:
         with suppress(ProcessLookupError):
             os.kill(process, signal.SIGKILL)
     assert not left, "the test has left a process behind"
+
+
+@pytest.fixture(scope="session")
+def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
+    """The folder of results of a shipped study, which the command has run once for all tests; the
+    file "status" beside it has how it ended.
+    """
+
+    def found(study: str) -> Path:
+        def run(folder: Path) -> None:
+            out, path = folder / "out", ROOT / "studies" / f"{study}.toml"
+            command = [sys.executable, "-m", "pinstress", "run", str(path), "--out", str(out)]
+            done = subprocess.run([*command, "--no-pictures"], capture_output=True, text=True)
+            assert done.returncode in (0, 1), done.stderr
+            (folder / "status").write_text(str(done.returncode))
+
+        return once(tmp_path_factory, f"study-{study}", run) / "out"
+
+    return found
 
 
 @pytest.fixture(scope="session")

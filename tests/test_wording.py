@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import click
-import pytest
 
 from pinstress.cli.commands import commands
 from tests.conftest import ROOT
+from tests.support.each import each
 
 # Folders of code whose docstrings, comments and messages are checked.
 CODE = ("reports", "pinstress", "assess", "fea", "geometry", "loads", "pinbase", "examples")
@@ -56,10 +56,6 @@ def modules() -> list[Path]:
     return sorted(path for folder in CODE for path in (ROOT / folder).rglob("*.py"))
 
 
-def _name(path: Path) -> str:
-    return path.relative_to(ROOT).as_posix()
-
-
 def words(path: Path) -> str:
     """The text of a file that people read: of a module its strings and comments."""
     text = path.read_text(encoding="utf-8")
@@ -84,7 +80,7 @@ def replaced(text: str) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("path", [*pages(), *modules()], ids=_name)
+@each("path", [*pages(), *modules()])
 def test_no_replaced_phrase(path: Path) -> None:
     assert replaced(words(path)) == []
 
@@ -97,7 +93,7 @@ def helps() -> Iterator[tuple[str, str]]:
         yield name, command.get_help(click.Context(command, info_name=name))
 
 
-@pytest.mark.parametrize(("name", "text"), list(helps()))
+@each(("name", "text"), list(helps()))
 def test_help_has_no_replaced_phrase_and_begins_with_an_example(name: str, text: str) -> None:
     assert replaced(text) == []
     assert f"Example: pinstress {name}" in text.split("\n\n")[1]
@@ -110,8 +106,6 @@ def test_the_list_of_commands_says_what_each_does() -> None:
         assert re.search(rf"^  {name} +[A-Z][a-z]+ .*\.$", listed, re.MULTILINE), name
 
 
-@pytest.mark.parametrize(
-    "phrase", ["nought", "what is asked for", "is told by", "Places without a maximum"]
-)
+@each("phrase", ["nought", "what is asked for", "is told by", "Places without a maximum"])
 def test_a_replaced_phrase_is_found(phrase: str) -> None:
     assert replaced(f"Here {phrase}\n is written.")

@@ -5,12 +5,12 @@ their displacements u and of the tractions t. With K u = f and the adjoint l, K 
 
     dJ/dp = J,x x' + J,t t' + l^T f' - (l^T K u),x x'
 
-for any parameter p, so that one solution l of each harmonic, with the stiffness that the stress
-itself took, serves all of them. Nodes move by x' as geometry.mesh.outline_motion says on the
-outline and harmonically inside. The maximum moves along the surface, over the circumference and in
-time too, but there it is stationary, or held by the edge of an excluded zone, which x' follows. So
-this is the derivative of the maximum on the mesh as it is moved, to round-off; its error is that of
-the mesh.
+for any parameter p, so that one solution l of each harmonic, with the stiffness of the stress
+itself, serves all of them. Nodes move by x': on the outline as given by
+geometry.mesh.outline_motion, inside harmonically. The maximum moves along the surface, over
+the circumference and in time too, but there it is stationary, or held by the edge of an excluded
+zone, which x' follows. So this is the derivative of the maximum on the moved mesh, to round-off;
+its error is that of the mesh.
 
 Source: Haftka & Gurdal, Elements of Structural Optimization, ch. 7 (adjoint method); Choi & Kim,
 Structural Sensitivity Analysis and Optimization 1, ch. 6 (shape).
@@ -58,12 +58,13 @@ from geometry.mesh.outline_motion import (
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats, Ints, Mask
 
-POISSON_STEP = 1e-3  # step of Poisson's ratio
-EXPONENT_STEP = 1e-4  # step of a pressure's exponent
+# Steps of central differences, chosen by judgement.
+POISSON_STEP = 1e-3  # of Poisson's ratio
+EXPONENT_STEP = 1e-4  # of a pressure's exponent
 
 
 def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
-    """Of the maximum at the only instant of the loads.
+    """The derivatives of the maximum at the only instant of the loads.
 
     Raises: SolveError.
     """
@@ -71,8 +72,12 @@ def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivati
 
 
 class Adjoint:
-    """All at the governing point and angle: `top`; `waves`: what acts there. among: points (S,)
-    that may govern, by default all; like: another one on the same mesh, whose matrices it shares.
+    """The adjoint solution at the governing point and angle of a solved case.
+
+    top: the maximum.
+    waves: the parts of harmonics that act there.
+    among: (S,) points that may govern, all by default.
+    like: another adjoint on the same mesh, whose matrices it shares.
     """
 
     def __init__(
@@ -81,8 +86,8 @@ class Adjoint:
         self.solved = solved
         self.fields = solved.solution.fields
         mesh = solved.solution.mesh
-        made = like and like.model
-        self.model: HarmonicModel = made or HarmonicModel(
+        shared_model = like and like.model
+        self.model: HarmonicModel = shared_model or HarmonicModel(
             solved.pin, mesh, solved.material, solved.clamps
         )
         if like and like.solved.zones == solved.zones:
@@ -90,6 +95,8 @@ class Adjoint:
         self.space, self.outline = self.model.space, self.model.outline
         self.around = reader(self.fields, solved.loads, solved.material.poisson_ratio)
         self.read_at = self.around.fields
+        # The governing point, instant and angle; then what acts there, how its stress is read, and
+        # the adjoint of that.
         outside = self.read_at.outside(solved.zones)
         self.top = self.around.top(outside if among is None else outside & among)
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
@@ -100,13 +107,13 @@ class Adjoint:
 
     @cached_property
     def fields_at(self) -> dict[UnitLoad, Floats]:
-        """Stress (6,) Pa at the governing point of each unit load."""
+        """Stress (6,), Pa, of each unit load at the governing point."""
         at = self.read_at.stress[self.top.point]
         return {load: at[:, k] for k, load in enumerate(self.fields.loads)}
 
     @property
     def _jumping(self) -> Floats:
-        """Tractions (E, 3, 3, K) of all unit loads: edges are apart where any of them jumps."""
+        """Tractions (E, 3, 3, K) of all unit loads: edges are separated where any of them jumps."""
         loads, out = self.fields.loads, [self.traction]
         acting = {load for wave in self.waves for load in wave.amounts}
         for n in sorted({load.n for load in loads}):
@@ -117,7 +124,7 @@ class Adjoint:
 
     @cached_property
     def u(self) -> Floats:
-        """(N, 3, K) m, of the waves."""
+        """Displacements (N, 3, K), m, of the waves."""
         rows = points_of_nodes(self.outline, len(self.space.nodes))
         index = {load: k for k, load in enumerate(self.fields.loads)}
         amounts = np.zeros((len(index), len(self.waves)))
@@ -128,7 +135,7 @@ class Adjoint:
 
     @cached_property
     def _harmonics(self) -> list[tuple[int, tuple[UnitLoad, ...], Floats, Ints]]:
-        """Of each: its unit loads (L), their amounts in its waves (L, W), the numbers of these."""
+        """The waves by harmonic: n, loads (L), amounts in the waves (L, W), waves' numbers."""
         out = []
         for n in np.unique(self.n):
             here = np.flatnonzero(self.n == n)
@@ -140,8 +147,9 @@ class Adjoint:
     def _forces(
         self, pin: Pin, outline: Outline, integrals: Floats | None = None, moved: bool = False
     ) -> tuple[Floats, Floats]:
-        """Of the waves: on the unknowns (3 N, K), and tractions (E, 3, 3, K). moved: but for the
-        forces of plain pressures.
+        """The forces of the waves on the unknowns (3 N, K), and their tractions (E, 3, 3, K).
+
+        moved: leave out the forces of plain pressures, which `_plain_pressures` covers.
         """
         forces = np.zeros((self.space.unknowns, len(self.waves)))
         tractions = np.zeros((*outline.nodes.shape, 3, len(self.waves)))
@@ -155,7 +163,7 @@ class Adjoint:
 
     @cached_property
     def _plain_pressures(self) -> tuple[Ints, Floats]:
-        """Edges (E,) under them, and what the adjoints make of their nodes' weights, (E, 3)."""
+        """Edges (E,) under plain pressures, and adjoint work per nodal weight, (E, 3)."""
         by_edge = np.zeros(self.outline.nodes.shape)
         for n, loads, amounts, here in self._harmonics:
             if not _plain(n, loads):
@@ -163,16 +171,17 @@ class Adjoint:
             p, m = (self._lambda[c::3, here] for c in (0, 1))  # a pressure works on their sum
             inwards = -around(n) * (p + m)
             for load, amount in zip(loads, amounts, strict=True):
-                own = inwards @ amount
+                nodal_work = inwards @ amount
                 for surface, pressure in load.parts:
                     rows = self.outline.rows[surface]
-                    by_edge[rows] += pressure * own[self.outline.nodes[rows]]
+                    by_edge[rows] += pressure * nodal_work[self.outline.nodes[rows]]
         rows = np.flatnonzero(by_edge.any(axis=1))
         return rows, by_edge[rows]
 
     def of_loads(self, k: int, loads: Sequence[UnitLoad]) -> Floats:
-        """What one more of each unit load (L,), of the harmonic and part of wave k, adds to the
-        stress.
+        """The stress, Pa, that one more of each unit load (L,) adds.
+
+        They are of the harmonic and part of wave k.
         """
         wave = self.waves[k]
         forces, traction = applied(self.model, self.solved.pin, self.outline, wave.n, loads)
@@ -184,7 +193,7 @@ class Adjoint:
 
     @cached_property
     def places(self) -> Floats:
-        """(Z, 3): r, z, radius of the zones, m."""
+        """r, z and radius of the zones, (Z, 3), m."""
         return np.array([[p.r, p.z, p.radius] for p in self.solved.zones]).reshape(-1, 3)
 
     @cached_property
@@ -197,14 +206,18 @@ class Adjoint:
         material: Material | None = None,
         point: ReadingPoint | None = None,
     ) -> float:
-        """Von Mises stress to first order, of displacements as they are."""
+        """The von Mises stress to first order, for the displacements as they are.
+
+        state, material, point: that may differ from those of the solution.
+        """
         u = self.u[self.point.nodes]
-        found = (point or self.point).stress(material or self.solved.material, state, self.n, u)
-        return float(sum(c.weight @ found[:, k] for k, c in enumerate(self.waves)))
+        stress = (point or self.point).stress(material or self.solved.material, state, self.n, u)
+        return float(sum(c.weight @ stress[:, k] for k, c in enumerate(self.waves)))
 
     def by_exponent(self) -> float:
-        """By the exponent of pressure at the edge of a lug from beside which stress is continued,
-        Pa.
+        """The derivative, Pa, by the exponent of pressure at the edge of a lug.
+
+        It is zero unless stress is extrapolated to that edge.
         """
         point = self.point
         if not isinstance(point, Continued):
@@ -217,7 +230,8 @@ class Adjoint:
         return float(rate(other, EXPONENT_STEP))
 
     def _solve(self) -> Floats:
-        """Adjoints (3 N, K)."""
+        """The adjoint displacements (3 N, K)."""
+        # The reading is linear in the displacements of its nodes: unit displacements give dJ/du.
         L, K = len(self.point.nodes), len(self.waves)
         unit = np.eye(3 * L).reshape(L, 3, 3 * L)
         out = np.zeros((self.space.unknowns, K))
@@ -225,14 +239,15 @@ class Adjoint:
         still = replace(self.state, traction=np.zeros((*self.traction.shape[:3], 3 * L)))
         for n in np.unique(self.n):
             here = np.flatnonzero(self.n == n)
-            found = self.point.stress(self.solved.material, still, np.full(3 * L, n), unit)
+            unit_stress = self.point.stress(self.solved.material, still, np.full(3 * L, n), unit)
             for k in here:
-                forces[self.point.nodes, :, k] = (self.waves[k].weight @ found).reshape(L, 3)
+                forces[self.point.nodes, :, k] = (self.waves[k].weight @ unit_stress).reshape(L, 3)
             rhs = np.stack([generalised(forces[:, :, k]) for k in here], axis=1)
             out[:, here] = self.model.displace(int(n), rhs)
         return out
 
     def derivatives(self, dimensions: tuple[Dimension, ...]) -> Derivatives:
+        """The derivatives by dimensions, loads and material."""
         by_dimension, without = self.by_dimension(dimensions)
         top, solved = self.top, self.solved
         r, z = (float(x) for x in self.read_at.points[top.point])
@@ -253,7 +268,7 @@ class Adjoint:
     def by_dimension(
         self, dimensions: tuple[Dimension, ...]
     ) -> tuple[dict[str, float], dict[str, str]]:
-        """Pa/m, by key, and why others have none."""
+        """Derivatives, Pa/m, by dimension, and the reasons why others have none."""
         motions: list[NodeMotion] = []
         without = {}
         for dimension in dimensions:
@@ -265,19 +280,20 @@ class Adjoint:
 
     @cached_property
     def outline_nodes(self) -> OutlineNodes:
-        """Those of the mesh."""
+        """The outline's nodes of the mesh."""
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         return OutlineNodes(self.solved.solution.mesh, self.solved.pin, reaches)
 
     @cached_property
     def interior(self) -> Interior:
-        """What moves the nodes inside."""
+        """The harmonic extension of the outline's motion to the nodes inside."""
         return Interior(self.space, self.outline_nodes.rows)
 
     def by_motions(self, motions: Sequence[NodeMotion]) -> dict[str, float]:
-        """By key, Pa/m."""
+        """Derivatives, Pa/m, by motions of the outline, by key."""
         if not motions:
             return {}
+        # The rate of l^T K u per coordinate of every node, found once for all motions.
         gradient = sum(
             shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
             for k, c in enumerate(self.waves)
@@ -290,12 +306,17 @@ class Adjoint:
             for i, motion in enumerate(some):
                 velocity = np.ascontiguousarray(every[:, :, i])
                 grown = integral_rate(self.space, velocity) if heavy else None
-                given = self._given(motion, velocity, grown)
-                out[motion.key] = given - float(np.sum(gradient * velocity))
+                direct = self._direct(motion, velocity, grown)
+                out[motion.key] = direct - float(np.sum(gradient * velocity))
         return out
 
-    def _given(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
-        """What forces, tractions and the reading change, with displacements as they are."""
+    def _direct(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
+        """The direct part of a derivative, with displacements as they are.
+
+        It is by forces, tractions and the reading.
+        velocity: (N, 2) of the nodes.
+        grown: (N,) rate of the shape functions' integrals, None without body loads.
+        """
         values = []
         for x, pin in zip(DIFFERENCE_STEPS, motion.pins, strict=True):
             step = x * motion.step
@@ -304,20 +325,21 @@ class Adjoint:
             integrals = None if grown is None else self.space.integrals + step * grown
             forces, tractions = self._forces(pin, outline, integrals, moved=True)
             state = SectionState(nodes, tractions, self._places_at(pin, step, velocity))
-            rows, own = self._plain_pressures
-            work = np.sum(self._lambda * forces) + np.sum(own * outline.weights(rows))
+            rows, pressure_work = self._plain_pressures
+            work = np.sum(self._lambda * forces) + np.sum(pressure_work * outline.weights(rows))
             values.append(np.array(work + self.read(state)))
         return float(rate_of(values, motion.step))
 
     @cached_property
     def _zone_nodes(self) -> list[int]:
-        """At which the zones are."""
+        """The node at each zone."""
         nodes = self.space.nodes
         return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
 
     def _places_at(self, pin: Pin, step: float, velocity: Floats) -> Floats:
-        """On a pin that is moved: zones are as large as the diameter there, or end where the next
-        fillet begins.
+        """The zones on a pin that is moved, (Z, 3), m.
+
+        Their radii are proportional to the diameter there, or end where the next fillet begins.
         """
         out, zones = self.places.copy(), self.solved.zones
         out[:, :2] += step * velocity[self._zone_nodes]
@@ -337,12 +359,12 @@ class Adjoint:
         return elasticity(self.solved.material)
 
     def _unknowns(self, k: int) -> Floats:
-        """(3 N,) p, m, w of wave k."""
+        """The unknowns p, m, w (3 N,) of wave k."""
         U, V, W = self.u[:, :, k].T
         return np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=1).ravel()
 
     def by_poisson(self) -> float:
-        """By Poisson's ratio, Pa."""
+        """The derivative by Poisson's ratio, Pa."""
         material = self.solved.material
         nu = material.poisson_ratio
         step = min(POISSON_STEP, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
@@ -358,18 +380,18 @@ class Adjoint:
         return float(rate(lambda x: np.array(self.read(self.state, other(x))), step)) - against
 
     def by_density(self) -> float:
-        """Pa/(kg/m^3)."""
+        """The derivative by density, Pa/(kg/m^3)."""
         density = self.solved.material.density
         if not density:
             return 0.0
         total = 0.0
         for wave in self.waves:
-            own = [x for load, x in wave.amounts.items() if load.kind == "body"]
+            amounts = [x for load, x in wave.amounts.items() if load.kind == "body"]
             at = [self.fields_at[load] for load in wave.amounts if load.kind == "body"]
-            total += sum(x * float(wave.weight @ s) for x, s in zip(own, at, strict=True))
+            total += sum(x * float(wave.weight @ s) for x, s in zip(amounts, at, strict=True))
         return total / density
 
 
 def _plain(n: int, loads: Iterable[UnitLoad]) -> bool:
-    """Whether loads of a harmonic are pressures that are what they are on any pin."""
+    """Whether loads of a harmonic are pressures that do not depend on the pin's shape."""
     return n > 1 and all(load.parts for load in loads)

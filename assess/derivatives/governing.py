@@ -1,4 +1,4 @@
-"""What loads add to the von Mises stress at the governing point, to first order."""
+"""The contribution of loads to the von Mises stress at the governing point, to first order."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fea.harmonic.superposition import Crest
 from geometry.mesh.outline_motion import rate
 from pinbase.arrays import Floats
 
-FORCE_STEP = 1e-3  # step of a force, of the largest
+FORCE_STEP = 1e-3  # of the largest force: step of central differences; chosen by judgement
 AXIS_NAMES = "xyz"
 PARITY_MASKS = COSINE_COMPONENTS.astype(np.float64), 1.0 - COSINE_COMPONENTS
 By = dict[tuple[str, str], float]
@@ -22,8 +22,10 @@ By = dict[tuple[str, str], float]
 
 @dataclass(frozen=True)
 class Wave:
-    """What goes as cos (part 0), or as sin (1), of psi at the governing angle, of one harmonic:
-    amounts of unit loads, and what each stress (6,) of it adds to von Mises.
+    """The part of one harmonic that varies as cos psi (part 0) or sin psi (1) at an angle.
+
+    amounts: of unit loads.
+    weight: (6,) derivative of von Mises stress by its stress components.
     """
 
     n: int
@@ -35,35 +37,42 @@ class Wave:
 def waves_of(
     at: dict[UnitLoad, Floats], loads: PinLoads, top: Crest
 ) -> tuple[tuple[Wave, ...], Floats]:
-    """At the governing angle, without those that add nothing; and the gradient (6,) of von Mises
-    stress there. at: stress (6,) Pa of each unit load at the governing point.
+    """The waves that act at the governing angle, and the gradient (6,) of von Mises stress there.
+
+    at: stress (6,), Pa, of each unit load at the governing point. Waves that add nothing are left
+    out.
     """
     acting = loads.coefficients()
+    # Loads by harmonic and by the part that varies as cosine or sine at the governing angle.
     amounts: dict[tuple[int, int], dict[UnitLoad, float]] = {}
     for load, both in acting.items():
         for part, amount in enumerate(rotated(load.n, both[0], top.angle).tolist()):
             if amount:
                 amounts.setdefault((load.n, part), {})[load] = amount
     stress = np.zeros(6)
-    for (_, part), mine in amounts.items():
-        for load, x in mine.items():
+    for (_, part), part_amounts in amounts.items():
+        for load, x in part_amounts.items():
             stress += x * PARITY_MASKS[part] * at[load]
     weight = von_mises_gradient(stress)
-    found = sorted(amounts.items(), key=lambda item: item[0])
-    waves = tuple(Wave(n, part, mine, PARITY_MASKS[part] * weight) for (n, part), mine in found)
+    ordered = sorted(amounts.items(), key=lambda item: item[0])
+    waves = tuple(
+        Wave(n, part, part_amounts, PARITY_MASKS[part] * weight)
+        for (n, part), part_amounts in ordered
+    )
     return waves, weight
 
 
 def rotated(n: int, both: Floats, angle: float) -> Floats:
-    """Of a load's phases, (2, ..), what goes as BACK does and what as the others do, (2, ..), at an
-    angle (rad).
-    """
+    """The cosine and the sine part (2, ..), at an angle (rad), of phases (2, ..) of harmonic n."""
     c, s = np.cos(n * angle), np.sin(n * angle)
     return np.asarray(np.stack([both[0] * c + both[1] * s, both[0] * s - both[1] * c]))
 
 
 def von_mises_gradient(stress: Floats) -> Floats:
-    """(6,) of stress (6,) Pa: rr, tt, zz, tz, rz, rt; zero of none."""
+    """The gradient (6,) of von Mises stress by stress (6,), Pa; zero for no stress.
+
+    Components are rr, tt, zz, tz, rz, rt.
+    """
     normal, shear = stress[:3], stress[3:]
     deviator = normal - normal.mean()
     value = np.sqrt(1.5 * (deviator @ deviator + 2.0 * shear @ shear))
@@ -73,36 +82,41 @@ def von_mises_gradient(stress: Floats) -> Floats:
 def by_loads(
     at: dict[UnitLoad, Floats], loads: PinLoads, weight: Floats, top: Crest
 ) -> tuple[By, By]:
-    """Pa/N and Pa/(N m) of forces and moments, by surface and axis, of the loads that were solved
-    in any case.
+    """Derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis.
+
+    Only loads that were solved in any case have one.
+    at: as in `waves_of`.
+    weight: (6,) gradient.
     """
-    found: tuple[By, By] = {}, {}
+    derivatives: tuple[By, By] = {}, {}
     before = loads.coefficients()
-    for kind, given in enumerate((loads.forces, loads.moments)):
-        step = FORCE_STEP * (float(np.abs(given).max()) or 1.0)
+    for kind, vectors in enumerate((loads.forces, loads.moments)):
+        step = FORCE_STEP * (float(np.abs(vectors).max()) or 1.0)
         for c, surface in enumerate(loads.surfaces):
+            # A cosine pressure without a force has no direction, so no derivative.
             if loads.distribution == "cosine" and not loads.forces[0, c, :2].any():
-                continue  # a pressure that comes from anywhere
+                continue
             for a, axis in enumerate(AXIS_NAMES):
-                one = np.zeros_like(given)
+                one = np.zeros_like(vectors)
                 one[:, c, a] = 1.0
                 stress = partial(_of_change, at, (loads, before), (weight, top.angle), (kind, one))
                 if np.isfinite(derivative := float(rate(stress, step))):
-                    found[kind][surface, axis] = derivative
-    return found
+                    derivatives[kind][surface, axis] = derivative
+    return derivatives
 
 
 def _of_change(
     at: dict[UnitLoad, Floats],
-    given: tuple[PinLoads, Mapping[UnitLoad, Floats]],
+    base: tuple[PinLoads, Mapping[UnitLoad, Floats]],
     where: tuple[Floats, float],
     change: tuple[int, Floats],
     times: float,
 ) -> Floats:
-    """What is added to von Mises stress, () Pa, at an angle with a gradient, by `times` more of a
-    force (0) or moment (1); NaN where it was not solved.
+    """The change of von Mises stress, Pa, by `times` more of a force (0) or moment (1).
+
+    NaN where a unit load that is needed was not solved.
     """
-    (weight, angle), (kind, one), (loads, before) = where, change, given
+    (weight, angle), (kind, one), (loads, before) = where, change, base
     if kind:
         more = replace(loads, moments=loads.moments + times * one)
     else:

@@ -1,4 +1,4 @@
-"""How stress is read at the governing point, by its number among those of a section's reading."""
+"""The reading of stress at the governing point, from its number among a section's points."""
 
 from __future__ import annotations
 
@@ -31,8 +31,10 @@ from pinbase.arrays import Floats
 def point_of(
     model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
 ) -> ReadingPoint:
-    """The point of a number among those that are read (fea.harmonic.stress_recovery: Reading; where
-    lugs press on the pin, fea.harmonic.free_surface: SurfacePoints). traction: (E, 3, 3, K) Pa.
+    """The reading point of a number (fea.harmonic.stress_recovery: Reading).
+
+    Where lugs press on the pin, numbers are those of fea.harmonic.free_surface: SurfacePoints.
+    traction: (E, 3, 3, K) Pa.
     """
     fields, pressed = solved.solution.fields, solved.loads.pressed
     if pressed is None:
@@ -54,7 +56,9 @@ def point_of(
 def _of_section(
     model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
 ) -> ReadingPoint:
+    """The reading point of a number among the points of a section."""
     space, outline, fields = model.space, model.outline, solved.solution.fields
+    # The order of points is that of Reading: skin, inner nodes, rims of zones, jumps.
     if number < fields.skin:
         edge, at = divmod(number, len(EDGE_STATIONS))
         clamped = outline.constrained(model.clamps)[edge]
@@ -74,7 +78,7 @@ def _of_section(
 
 
 def _on_rim(space: Section, zones: tuple[Zone, ...], at: Floats) -> FromInside:
-    """Of the zone on whose circle it is."""
+    """The reading point on the rim of the zone whose circle passes through it."""
     off = [abs(np.hypot(at[0] - p.r, at[1] - p.z) / p.radius - 1.0) for p in zones]
     zone = int(np.argmin(off))
     p, (r, z) = zones[zone], (float(x) for x in at)

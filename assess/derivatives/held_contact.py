@@ -1,16 +1,16 @@
-"""Contact of a pin with its lugs as long as the same cells touch: what everything adds to a sum of
-their pressures.
+"""Derivatives of contact between a pin and its lugs while the same cells touch.
 
 Forces f on the cells in contact and rigid motions m solve
 
-    gap + C f + G m = 0    G^T f = asked
+    gap + C f + G m = 0    G^T f = q
 
-which is symmetric. With the adjoints l and k of a stress S(f), C l + G k = dS/df and G^T l = 0,
+which is symmetric; q are the resultants of the links' loads. With the adjoints l and k of a stress
+S(f), C l + G k = dS/df and G^T l = 0,
 
-    dS = S' - l^T (gap' + C' f + G' m) + k^T (asked' - G'^T f)
+    dS = S' - l^T (gap' + C' f + G' m) + k^T (q' - G'^T f)
 
 so that shape, material and loads need no further solution of contact. All of it but the elasticity
-of the bodies (assess.derivatives.ring_work) follows from formulas, and is taken by differences.
+of the bodies (assess.derivatives.ring_work) follows from formulae, and is taken by differences.
 """
 
 from __future__ import annotations
@@ -26,15 +26,16 @@ from fea.support.contact.pressure_loads import waves_of_sectors
 from fea.support.contact.solve_joint import ContactModel
 from pinbase.arrays import Floats
 
-AMPLITUDE_TOLERANCE = 1e-13  # of the largest amplitude
-SWITCHING_TOLERANCE = (
-    1e-6  # of the largest pressure or gap: a cell that is about to open or to close
-)
+AMPLITUDE_TOLERANCE = 1e-13  # of the largest amplitude: smaller ones are round-off
+# Of the largest pressure or gap: a cell with less is about to open or to close.
+SWITCHING_TOLERANCE = 1e-6
 
 
 class FixedContact:
-    """At the only instant of loads of links. gradient: of the stress by the amplitudes of pressures
-    on the rings, (N + 1, R, 2). changing: how many cells are about to open or to close.
+    """Contact with fixed cells at the only instant of the links' loads, and its adjoint.
+
+    gradient: (N + 1, R, 2) of the stress by the amplitudes of pressures on the rings.
+    changing: number of cells that are about to open or to close.
 
     Raises: SolveError.
     """
@@ -45,8 +46,10 @@ class FixedContact:
         self._turn = rotation(pressed.angle)
         waves = waves_of_sectors(model.cells.sectors, model.cells.highest, pressed.angle)
         self._wanted = np.einsum("nrc,njc->rj", gradient, waves).ravel()
-        asked = self._asked(model, links)
-        self._at = self._contact.adjoint(pressed.active, self._wanted / self._contact.area, asked)
+        right_hand_side = self._right_hand_side(model, links)
+        self._at = self._contact.adjoint(
+            pressed.active, self._wanted / self._contact.area, right_hand_side
+        )
         self.changing = _close(pressed.pressure, pressed.active)
         self.changing += _close(pressed.gap, ~pressed.active)
         shape = pressed.pressure.shape
@@ -57,59 +60,63 @@ class FixedContact:
         tail = self._contact.tail_weights(count)
         self._tail = np.real(np.conj(self._l) * self._f) @ tail
         self._wavy = {
-            model.likeness(lug, ends): model.wavy[:, :, own, own].sum(axis=0)
-            for own, lug, ends in model.by_lug()
+            model.likeness(lug, ends): model.wavy[:, :, rings, rings].sum(axis=0)
+            for rings, lug, ends in model.by_lug()
         }
 
-    def _asked(self, model: ContactModel, links: PinLoads) -> Floats:
-        """Of the rigid motions, in the directions of the cells."""
+    def _right_hand_side(self, model: ContactModel, links: PinLoads) -> Floats:
+        """The right-hand side of the equilibrium, in the directions of the cells."""
         forces, couples = model.forces(links)[0], model.couples(links)[0]
         x, y = (couples @ self._turn).tolist()
         return self._contact.asked(forces @ self._turn, (x, y))
 
-    def held(self, model: ContactModel) -> float:
-        """The sum, Pa, on another shape (JointModel.reshaped), but for the elasticity of its
-        bodies; to first order in what is different.
+    def with_fixed_cells(self, model: ContactModel) -> float:
+        """The stress, Pa, on another shape (ContactModel.reshaped) with the same cells in contact.
+
+        To first order in what differs, without the elasticity of the bodies.
         """
         at, bands, sectors = self._at, model.bands, self._contact.sectors
         area = self._contact.cells_area(bands)
         tilt = [lug.tilt for lug in model.lugs]
         motions, tilts = self._contact.rigid(bands, tilt)
         opened = np.repeat(bands.gap, sectors) + motions @ at.motion + tilts @ (tilts.T @ at.force)
-        asked = self._asked(model, self._links)
+        right_hand_side = self._right_hand_side(model, self._links)
+        # The stress by the cell forces, less the adjoint work of the gaps.
         total = (self._wanted / area) @ at.force - at.by_gap @ opened
-        total += at.by_asked @ (asked - motions.T @ at.force)
+        # Equilibrium of the links' loads.
+        total += at.by_asked @ (right_hand_side - motions.T @ at.force)
+        # Short waves of pressure, whose flexibility is not part of `ring_work`.
         of_ring = area[::sectors]
         total -= self._tail @ (model.tail / of_ring)
         high = model.high
-        for own, lug, ends in model.by_lug():
-            known = self._wavy.get(model.likeness(lug, ends))
-            wavy = model.wavy_of(lug, ends).sum(axis=0) if known is None else known
-            lost, pressed = (x[own][:, high % sectors] for x in (self._l, self._f))
-            pressed = pressed / of_ring[own, None]
+        for rings, lug, ends in model.by_lug():
+            known_wavy = self._wavy.get(model.likeness(lug, ends))
+            wavy = model.wavy_of(lug, ends).sum(axis=0) if known_wavy is None else known_wavy
+            lost, pressed = (x[rings][:, high % sectors] for x in (self._l, self._f))
+            pressed = pressed / of_ring[rings, None]
             works = np.einsum("rn,nrs,sn->n", np.conj(lost), wavy, pressed)
             total -= float(self._factors[high] @ works.real)
         return float(total)
 
-    def pairs(self, own: slice = slice(None)) -> Iterator[Pair]:
-        """Of some rings, the pressures whose works are what their elasticity takes of the sum."""
+    def pairs(self, rings: slice = slice(None)) -> Iterator[Pair]:
+        """Pairs of pressures of some rings, whose works are the elastic part of the stress."""
         bands, area = self._model.bands, self._contact.area[:: self._contact.sectors]
         of_ring = bands.length * bands.radius
         for n in range(self._model.cells.highest + 1):
             p, l = self._f[:, n] / area, self._l[:, n] / of_ring  # noqa: E741
             for part in (np.real, np.imag):
                 if all(
-                    np.abs(part(x[own])).max() > AMPLITUDE_TOLERANCE * np.abs(x).max(initial=0.0)
+                    np.abs(part(x[rings])).max() > AMPLITUDE_TOLERANCE * np.abs(x).max(initial=0.0)
                     for x in (p, l)
                 ):
-                    yield Pair(n, float(self._factors[n]), part(p[own]), part(l[own]))
+                    yield Pair(n, float(self._factors[n]), part(p[rings]), part(l[rings]))
 
     def by_loads(self, links: PinLoads) -> float:
-        """What loads of links add to the sum through the pressures, Pa per one of these loads."""
-        return float(self._at.by_asked @ self._asked(self._model, links))
+        """The stress, Pa, that loads of the links add through the pressures."""
+        return float(self._at.by_asked @ self._right_hand_side(self._model, links))
 
 
 def _close(values: Floats, some: Mask) -> int:
-    """How many of some of the values are almost none."""
-    found = values[some]
-    return int((found < SWITCHING_TOLERANCE * found.max(initial=0.0)).sum())
+    """The number of some of the values that are almost zero."""
+    chosen = values[some]
+    return int((chosen < SWITCHING_TOLERANCE * chosen.max(initial=0.0)).sum())

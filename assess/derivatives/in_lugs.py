@@ -1,13 +1,12 @@
 """Derivatives of the largest stress of a pin in contact with its lugs: by shape, material, loads.
 
-As long as the same cells are in contact pressures are a smooth function of everything, and stress
-one of these and of the pin. Three adjoints serve all parameters: that of stress under given
-pressures (assess.derivatives.pressed_stress), of the surface on the mesh of the maximum, of a
-section by its forces; that of contact
-(assess.derivatives.held_contact); and the displacements of pin and lugs under the pressures and
-under the adjoint ones (assess.derivatives.ring_work), on the meshes of their flexibilities. So
-these are the derivatives of the maximum on all meshes as they are moved, with the cells of the
-solution.
+As long as the same cells are in contact, pressures are a smooth function of all parameters, and
+stress one of pressures and parameters. Three adjoints serve all parameters: that of stress under
+given pressures (assess.derivatives.pressed_stress), on the mesh of the maximum or of a section by
+its forces; that of contact (assess.derivatives.held_contact); and the displacements of pin and lugs
+under the pressures and under the adjoint ones (assess.derivatives.ring_work), on the meshes of
+their flexibilities. So these are the derivatives of the maximum on all moved meshes, with the cells
+of the solution.
 """
 
 from __future__ import annotations
@@ -42,16 +41,18 @@ from geometry.mesh.outline_motion import (
 )
 from pinbase.arrays import Floats
 
-JOINT_FORCE_STEP = 1e-4  # step of a force, of the largest
+JOINT_FORCE_STEP = 1e-4  # of the largest force: step of differences; contact is linear in it
 TRANSVERSE_AXES = "xy"
-SHAPE_ROUND_OFF = 1e-13  # of the size: what round-off moves
+SHAPE_ROUND_OFF = 1e-13  # of the size: smaller motions are round-off
 Joint = tuple[Pin, Material, tuple[Lug, ...]]
 
 
 @dataclass(frozen=True)
 class JointParameter:
-    """Anything of a pin in its lugs, by a key; scale: what steps of it are parts of; changed: the
-    joint with another value of it.
+    """A parameter of a pin in its lugs.
+
+    scale: of which its steps are parts.
+    changed: gives the joint with another value of it.
     """
 
     key: str
@@ -62,11 +63,16 @@ class JointParameter:
 
 @dataclass(frozen=True)
 class JointDerivatives:
-    """Of the largest stress `maximum`, Pa. by_parameter: per unit of it, by key; without: why
-    others have none. by_force: Pa/N, of the force of each link, by connection and axis of the pin,
-    what is out of balance then being shared by the links; by_moment: Pa/(N m), about its axis.
-    tied_places, tied_times as assess.derivatives.records.Derivatives has them; changing: how many
-    cells are about to open or to close, with which the derivatives hold on one side only.
+    """Derivatives of the largest stress `maximum`, Pa, of a pin in its lugs.
+
+    by_parameter: per unit of it, by key.
+    without: why others have none.
+    by_force: Pa/N, by the force of each link, by connection and axis of the pin, the imbalance then
+    being shared by the links.
+    by_moment: Pa/(N m), about its axis.
+    tied_places, tied_times: as in assess.derivatives.records.Derivatives.
+    changing: number of cells that are about to open or to close, with which the derivatives hold on
+    one side only.
     """
 
     maximum: float
@@ -88,23 +94,28 @@ def joint_derivatives(
     alone: bool = False,
     place: Place = "surface",
 ) -> JointDerivatives:
-    """Of the maximum of a place under pressures at one instant. solved: the pin with its bands cut
-    into rings under them; links: the loads that they carry; alone: the parameters, without loads
-    and ties.
+    """The derivatives of the maximum of a place under pressures at one instant.
+
+    solved: the pin with its bands cut into rings.
+    links: the loads that the rings carry.
+    alone: the parameters only, without loads and ties.
 
     Raises: MeshError, SolveError.
     """
     of = OfSections if place == "section" else OfSurface
-    found = _InLugs(of(solved, model, links), model, links)
-    return found.derivatives(tuple(parameters), alone)
+    joint = _InLugs(of(solved, model, links), model, links)
+    return joint.derivatives(tuple(parameters), alone)
 
 
 class _InLugs:
+    """The adjoints of a pin in its lugs."""
+
     def __init__(self, stress: PressedStress, model: ContactModel, links: PinLoads) -> None:
         self.stress, self.model, self.links = stress, model, links
         self.contact = FixedContact(model, links, stress.by_pressures())
 
     def derivatives(self, parameters: tuple[JointParameter, ...], alone: bool) -> JointDerivatives:
+        """The derivatives by parameters and, unless `alone`, by loads, with ties."""
         changes, without = [], {}
         for parameter in parameters:
             try:
@@ -131,21 +142,25 @@ class _InLugs:
 
     @cached_property
     def lug_works(self) -> dict[str, RingWork]:
-        """By connection; of equal lugs one."""
+        """The works of each lug's flexibility, by connection; equal lugs share one."""
         model, out = self.model, dict[str, RingWork]()
         for key, equal in model.alike().items():
-            pairs = {x.connection: tuple(self.contact.pairs(own)) for own, x, _ in equal}
+            pairs = {x.connection: tuple(self.contact.pairs(rings)) for rings, x, _ in equal}
             out |= dict.fromkeys(pairs, RingWork(model.on_lugs[key], pairs))
         return out
 
     @cached_property
     def _flexible(self) -> OutlineNodes:
-        """The nodes of the mesh of the pin's flexibility."""
+        """The outline's nodes of the mesh of the pin's flexibility."""
         return OutlineNodes(self.pin_work.space.section, self.model.pin)
 
     def _change(self, parameter: JointParameter) -> JointStep:
-        """Raises: OtherShapeError."""
+        """The joint with steps of a parameter.
+
+        Raises: OtherShapeError if no step keeps the mesh's shape.
+        """
         model, key = self.model, parameter.key
+        # The largest step first; a smaller one where the joint or its mesh would have another form.
         for part in RELATIVE_STEPS:
             step = part * parameter.scale
             values = [parameter.value + x * step for x in DIFFERENCE_STEPS]
@@ -169,17 +184,19 @@ class _InLugs:
         raise OtherShapeError
 
     def _by(self, changes: Sequence[JointStep]) -> dict[str, float]:
-        """By key."""
-        out = self.stress.held(changes)
+        """Derivatives by parameter, by its key."""
+        # Under fixed pressures; then what changes the pressures: flexibility of the pin by shape
+        # and material, gaps and equilibrium, flexibility of the lugs.
+        out = self.stress.at_fixed_pressures(changes)
         shapes = [x.flexible for x in changes if x.flexible is not None]
         if shapes:
             moved = np.stack([motion.velocity for motion in shapes], axis=2)
             interior = Interior(self.pin_work.space, self._flexible.rows)
-            each = np.moveaxis(interior.velocity(moved), 2, 0)
-            for motion, velocity in zip(shapes, each, strict=True):
+            velocities = np.moveaxis(interior.velocity(moved), 2, 0)
+            for motion, velocity in zip(shapes, velocities, strict=True):
                 out[motion.key] += self.pin_work.by_shape("", velocity)
         for change in changes:
-            total = float(change.rate(self.contact.held))
+            total = float(change.rate(self.contact.with_fixed_cells))
             if any(one.material != self.model.material for one in change.models):
                 D = change.rate(lambda one: elasticity(one.material))
                 total += self.pin_work.by_material("", [D])
@@ -188,18 +205,18 @@ class _InLugs:
         return out
 
     def _acts(self, what: str) -> bool:
-        """Whether there is any along the axis."""
+        """Whether any force along the axis, or moment about it, acts."""
         return bool(getattr(self.links, what)[..., 2].any())
 
     def _by_lug(self, change: JointStep, lug: Lug) -> float:
-        """What the elasticity of a lug adds."""
+        """The contribution of a lug's elasticity."""
         name = lug.connection
         number = self.model.lugs.index(lug)
         others = [one.lugs[number] for one in change.models]
         work, total = self.lug_works[name], 0.0
         if any(_made_of(one) != _made_of(lug) for one in others):
-            each = [[elasticity(part) for part in _made_of(one)] for one in others]
-            rates = [rate_of(parts, change.step) for parts in zip(*each, strict=True)]
+            elasticities = [[elasticity(part) for part in _made_of(one)] for one in others]
+            rates = [rate_of(parts, change.step) for parts in zip(*elasticities, strict=True)]
             total += work.by_material(name, rates)
         at = _knots(self.model, lug)
         knots = [_knots(*both) for both in zip(change.models, others, strict=True)]
@@ -210,6 +227,8 @@ class _InLugs:
         ):
             return total
         moved = [rate_of([one[k] for one in knots], change.step) for k in (0, 1)]
+        # Nodes keep their places between radii and stations of the lug: their velocities are
+        # interpolated.
         nodes = work.space.nodes
         each_way = [np.interp(nodes[:, k], at[k], moved[k]) for k in (0, 1)]
         velocity, lengths = np.stack(each_way, axis=1), [float(z[-1]) for _, z in knots]
@@ -217,7 +236,7 @@ class _InLugs:
         return total + work.by_reaction(name, velocity, lengths, change.step)
 
     def _by_forces(self) -> By:
-        """Of the links across, in which contact is linear, and along the axis where any act."""
+        """Derivatives by forces of the links: transverse ones, and axial ones where any act."""
         links, out = self.links, dict[tuple[str, str], float]()
         step = JOINT_FORCE_STEP * float(np.abs(links.forces).max())
         before = self.contact.by_loads(links)
@@ -232,24 +251,24 @@ class _InLugs:
         return out
 
     def _by_moments(self) -> By:
-        """About the axis, where any act."""
+        """Derivatives by moments about the axis, where any act."""
         links = self.links
         turns = enumerate(links.surfaces if self._acts("moments") else ())
         return {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
 
     def _by_one(self, what: str, c: int) -> float:
-        """Of a link's force along the axis or moment about it."""
+        """The derivative by a link's force along the axis or moment about it."""
         none = np.zeros_like(self.links.forces)
         one = none.copy()
         one[:, c, 2] = 1.0
         both = (one, none) if what == "forces" else (none, one)
-        given = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
-        along = others_along(self.model.pin, self.model.rings, given).coefficients()
+        unit = replace(self.links, forces=both[0], moments=both[1], body=none[:, 0])
+        along = others_along(self.model.pin, self.model.rings, unit).coefficients()
         return self.stress.of_amounts({load: both[0] for load, both in along.items()})
 
 
 def _made_of(lug: Lug) -> tuple[Material, ...]:
-    """The parts of its section."""
+    """The materials of a lug's section, from the inside out."""
     return (lug.material,) if lug.bushing is None else (lug.bushing.material, lug.material)
 
 

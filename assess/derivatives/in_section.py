@@ -1,9 +1,9 @@
-"""Derivatives of the largest stress of a pin's sections, with respect to all that it depends on.
+"""Derivatives of the largest stress of a pin's sections with respect to all that it depends on.
 
-The stress of a section follows from a beam in closed form (fea.section), so that it is found anew
+The stress of a section follows from a beam in closed form (fea.section), so it is evaluated again
 with a little more of a dimension or of the material, at the same place of the same cell: along the
-pin the maximum is stationary or held by the cell's end, across it and about it likewise. Loads add
-to it as they add to the section forces.
+pin the maximum is stationary or held by the cell's end, and likewise across it and about it. Loads
+add to it as they add to the section forces.
 """
 
 from __future__ import annotations
@@ -36,13 +36,16 @@ from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
 
 OTHER_EDGES_REASON = "with a little more or less of it the section has other edges"
-POISSON_STEP = 1e-3  # step of Poisson's ratio
+POISSON_STEP = 1e-3  # of Poisson's ratio: step of central differences; chosen by judgement
 
 
 @dataclass(frozen=True)
 class SectionPoint:
-    """Where stress is read in a cell of a beam: parts of the way along it, and from bore to
-    outside; rad.
+    """The place in a cell of a beam where stress is read.
+
+    along: part of the way along the cell.
+    across: part of the way from bore to outside.
+    angle: rad.
     """
 
     cell: int
@@ -53,7 +56,7 @@ class SectionPoint:
 
     @classmethod
     def of(cls, at: AtSection, forces: InternalForces) -> SectionPoint:
-        """Where the largest is."""
+        """The place of the largest section stress."""
         a, b = forces.stations[at.cell : at.cell + 2].tolist()
         inner, wall = at.section.inner, at.section.outer - at.section.inner
         return cls(
@@ -61,7 +64,10 @@ class SectionPoint:
         )
 
     def per_unit(self, pin: Pin, forces: InternalForces, nu: float) -> dict[UnitLoad, Floats]:
-        """Stress (6,) Pa of each unit load: rr, tt, zz, tz, rz, rt. Raises: OtherShapeError."""
+        """Stress (6,), Pa, of each unit load: rr, tt, zz, tz, rz, rt.
+
+        Raises: OtherShapeError.
+        """
         if len(forces.sections) != self.cells:
             raise OtherShapeError
         a, b = forces.stations[self.cell : self.cell + 2].tolist()
@@ -72,7 +78,7 @@ class SectionPoint:
         return {load: stress[:, k] for k, load in enumerate(forces.loads)}
 
     def stress(self, at: dict[UnitLoad, Floats], loads: Loads) -> Floats:
-        """(6,) Pa, by loads of one instant."""
+        """Stress (6,), Pa, by loads of one instant."""
         out = np.zeros(6)
         for load, both in loads.coefficients().items():
             if load in at:
@@ -82,10 +88,11 @@ class SectionPoint:
 
 
 class GoverningSection:
-    """Of a pin as it was solved under loads of one instant, at its largest section stress.
+    """The largest section stress of a pin as it was solved under loads of one instant.
 
-    at: stress (6,) Pa of each unit load there, of all forces and moments on the surfaces of the
-    loads; weight: the gradient (6,) of von Mises stress.
+    at: stress (6,), Pa, of each unit load there, of all forces and moments on the surfaces of the
+    loads.
+    weight: (6,) gradient of von Mises stress.
     """
 
     def __init__(self, solved: SolvedCase, loads: PinLoads) -> None:
@@ -96,35 +103,36 @@ class GoverningSection:
         )
         both = loads, every
         self.answer = SectionField(solved.pin, solved.material, solved.clamps, both)
-        self.found = self.answer.place(loads)
-        self.point = SectionPoint.of(self.found, self.answer.forces)
+        self.largest = self.answer.place(loads)
+        self.point = SectionPoint.of(self.largest, self.answer.forces)
         self.at = self.point.per_unit(solved.pin, self.answer.forces, solved.material.poisson_ratio)
         units = dict.fromkeys(u for one in both for u in one.coefficients())
         self.at |= {u: np.zeros(6) for u in units if not loads_sections(u)}
-        self.top = Crest(self.found.value, 0, 0, self.point.angle)
+        self.top = Crest(self.largest.value, 0, 0, self.point.angle)
         self.weight = waves_of(self.at, loads, self.top)[1]
 
     @property
     def maximum(self) -> float:
-        """Pa."""
-        return self.found.value
+        """The largest section stress, Pa."""
+        return self.largest.value
 
     @property
     def location(self) -> tuple[float, float, float]:
-        """(x, y, z), m."""
-        r, angle = self.found.r, self.found.angle
-        return r * float(np.cos(angle)), r * float(np.sin(angle)), self.found.z
+        """Its location (x, y, z), m."""
+        r, angle = self.largest.r, self.largest.angle
+        return r * float(np.cos(angle)), r * float(np.sin(angle)), self.largest.z
 
     def value(self, pin: Pin, material: Material, loads: PinLoads) -> float:
-        """Von Mises stress, Pa, at that place of another pin, to first order. Raises:
-        OtherShapeError.
+        """Von Mises stress, Pa, at that place of another pin, to first order.
+
+        Raises: OtherShapeError.
         """
         forces = stepped_beam(pin, material, acting(loads), self.solved.clamps)
         at = self.point.per_unit(pin, forces, material.poisson_ratio)
         return float(self.weight @ self.point.stress(at, loads))
 
     def of_amounts(self, amounts: dict[UnitLoad, Floats]) -> float:
-        """What amounts (2,) of unit loads, by phase, add to it, Pa."""
+        """The stress, Pa, that amounts (2,) of unit loads, by phase, add."""
         total = np.zeros(6)
         for load, both in amounts.items():
             for part, amount in enumerate(rotated(load.n, both, self.point.angle).tolist()):
@@ -132,40 +140,43 @@ class GoverningSection:
         return float(self.weight @ total)
 
     def by_loads(self) -> tuple[By, By]:
-        """Pa/N and Pa/(N m) of forces and moments, by surface and axis."""
+        """Derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis."""
         return by_loads(self.at, self.loads, self.weight, self.top)
 
     def by_density(self) -> float:
-        """Pa/(kg/m^3), of the pin's own weight."""
-        own = {u: x[0] for u, x in self.loads.coefficients().items() if u.kind == "body"}
+        """The derivative by density through the pin's own weight, Pa/(kg/m^3)."""
+        body_loads = {u: x[0] for u, x in self.loads.coefficients().items() if u.kind == "body"}
         density = self.solved.material.density
-        return self.of_amounts(own) / density if density and own else 0.0
+        return self.of_amounts(body_loads) / density if density and body_loads else 0.0
 
     def by_poisson(self) -> float:
-        """By Poisson's ratio, Pa."""
+        """The derivative by Poisson's ratio, Pa."""
         material = self.solved.material
         nu = material.poisson_ratio
 
         def other(x: float) -> Floats:
-            made = replace(material, poisson_ratio=nu + x)
-            return np.array(self.value(self.solved.pin, made, self.loads))
+            changed = replace(material, poisson_ratio=nu + x)
+            return np.array(self.value(self.solved.pin, changed, self.loads))
 
         return float(rate(other, min(POISSON_STEP, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))))
 
     def by_pin(self, pins: Sequence[Pin], step: float) -> float:
-        """Along pins at PLACES times a step, under the same loads. Raises: OtherShapeError."""
+        """The derivative along pins at DIFFERENCE_STEPS times a step, under the same loads.
+
+        Raises: OtherShapeError.
+        """
         material = self.solved.material
         return float(rate_of([np.array(self.value(x, material, self.loads)) for x in pins], step))
 
     @property
     def tied_places(self) -> tuple[tuple[float, float], ...]:
-        """As assess.derivatives.records.Derivatives has them."""
+        """Other places (r, z), m, with nearly the same stress."""
         around = self.answer.around(self.loads)
         return competing_places(around, (), around.top(self.answer.all), self.solved.error)
 
     @property
     def tied_times(self) -> tuple[float, ...]:
-        """Likewise."""
+        """Other times with nearly the same stress."""
         return crests(self._over_time, self.solved, self.maximum, on_sections)
 
     @property
@@ -176,12 +187,12 @@ class GoverningSection:
 
 
 def on_sections(loads: PinLoads) -> PinLoads:
-    """What sections feel of them."""
+    """The part of loads that sections carry."""
     return loads.on_rings if isinstance(loads, PressureLoads) else loads
 
 
 def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> Derivatives:
-    """Of the largest section stress at the only instant of the loads."""
+    """The derivatives of the largest section stress at the only instant of the loads."""
     section = GoverningSection(solved, solved.loads)
     by_dimension, without = dict[str, float](), dict[str, str]()
     for dimension in dimensions:
@@ -197,7 +208,10 @@ def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> 
 
 
 def _by_dimension(section: GoverningSection, dimension: Dimension) -> float:
-    """Pa/m. Raises: OtherShapeError where there is no such pin on both sides of it."""
+    """The derivative by a dimension, Pa/m.
+
+    Raises: OtherShapeError where there is no such pin on both sides of it.
+    """
     for part in RELATIVE_STEPS:
         step = part * dimension.value
         try:

@@ -1,5 +1,6 @@
-"""Derivatives of the largest stress in each part of a pin, on one mesh and with one adjoint's
-matrices, so that what may govern next is known beside what governs.
+"""Derivatives of the largest stress in each part of a pin, on one mesh and with shared matrices.
+
+So what may govern next is known beside what governs.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Parts = Sequence[tuple[str, Mask]]
 
 @dataclass(frozen=True)
 class PartTop:
-    """The largest stress, at any instant of a case, outside its zones in a part of the pin."""
+    """The largest stress at any instant of a case in a part of the pin, outside its zones."""
 
     part: str
     case: str
@@ -32,7 +33,10 @@ class PartTop:
 
 
 def halves(stations: Sequence[float], points: Floats) -> Parts:
-    """The near and the far half of every segment between stations (m): points (S, 2) in each."""
+    """The near and the far half of every segment, with the points (S, 2) in each.
+
+    stations: m, ends of the segments.
+    """
     out = []
     last = len(stations) - 2
     for k, (a, b) in enumerate(pairwise(stations)):
@@ -46,7 +50,10 @@ def halves(stations: Sequence[float], points: Floats) -> Parts:
 
 
 class PartsOfSection:
-    """Of the cases of a pin that were solved on one mesh, by some dimensions."""
+    """The largest stress in parts of a pin, for cases solved on one mesh, and its slopes.
+
+    dimensions: with respect to which slopes are taken.
+    """
 
     def __init__(self, dimensions: tuple[Dimension, ...]) -> None:
         self._dimensions = dimensions
@@ -54,7 +61,7 @@ class PartsOfSection:
         self._motions: dict[tuple[object, ...], list[NodeMotion]] = {}
 
     def tops(self, solved: SolvedCase, loads: PinLoads, parts: Parts) -> list[PartTop]:
-        """Of all parts with points. loads: of all instants."""
+        """The largest stress in each part that has points. loads: of all instants."""
         around = reader(solved.solution.fields, loads, solved.material.poisson_ratio)
         outside = around.fields.outside(solved.zones)
         return [
@@ -63,12 +70,12 @@ class PartsOfSection:
             if (outside & mask).any()
         ]
 
-    def slopes(self, solved: SolvedCase, loads: PinLoads, found: PartTop, mask: Mask) -> Floats:
-        """Of a part's largest stress by the dimensions (n,), Pa/m; 0 by one that has no derivative.
+    def slopes(self, solved: SolvedCase, loads: PinLoads, part_top: PartTop, mask: Mask) -> Floats:
+        """Derivatives (n,), Pa/m, of a part's largest stress by the dimensions, or 0.
 
         Raises: SolveError.
         """
-        now = replace(solved, loads=loads.at(np.array([found.top.instant])), history=None)
+        now = replace(solved, loads=loads.at(np.array([part_top.top.instant])), history=None)
         adjoint = Adjoint(now, mask, self._first)
         self._first = self._first or adjoint
         zones = tuple(solved.zones)
@@ -78,6 +85,7 @@ class PartsOfSection:
         return np.array([by_key.get(d.key, 0.0) for d in self._dimensions])
 
     def _moving(self, adjoint: Adjoint) -> list[NodeMotion]:
+        """The outline's motions by the dimensions that have one."""
         out = []
         for dimension in self._dimensions:
             try:

@@ -1,5 +1,6 @@
-"""The largest stress of a pin under given pressures of its lugs: what these add to it, and what
-changes of the joint do while they stay. Of the surface, and of sections.
+"""The largest stress of a pin under given pressures of its lugs, of the surface or of sections.
+
+It gives the derivative by these pressures, and by changes of the joint while they stay.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class JointStep:
-    """Of a parameter, by its key: the joint at PLACES times a step (m, or its unit) more of it.
-    flexible: the motion of the outline on the mesh of the pin's flexibility, None where the pin
-    stays.
+    """The joint at DIFFERENCE_STEPS times a step (m, or its unit) of a parameter, by its key.
+
+    flexible: motion of the outline on the mesh of the pin's flexibility, None where the pin stays.
     """
 
     key: str
@@ -38,16 +39,16 @@ class JointStep:
 
     @property
     def pins(self) -> tuple[Pin, ...]:
-        """With their rings."""
+        """The pins with their rings."""
         return tuple(one.pin for one in self.models)
 
     def rate(self, of: Callable[[ContactModel], Floats | float]) -> Floats:
-        """Of what the joint has."""
+        """The derivative of a quantity of the joint."""
         return rate_of([np.asarray(of(one)) for one in self.models], self.step)
 
 
 class PressedStress(Protocol):
-    """A stress, Pa, by pressures at one instant."""
+    """A stress, Pa, under pressures at one instant."""
 
     @property
     def maximum(self) -> float: ...
@@ -59,20 +60,26 @@ class PressedStress(Protocol):
     def tied_times(self) -> tuple[float, ...]: ...
 
     def by_pressures(self) -> Floats:
-        """Gradient by the amplitudes of pressures on the rings, (N + 1, R, 2)."""
+        """The gradient (N + 1, R, 2) by the amplitudes of pressures on the rings."""
 
     def require(self, change: JointStep) -> None:
-        """Raises: OtherShapeError where a change gives another shape."""
+        """Check that a change keeps the shape.
 
-    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
-        """Of each change, by its key, what it does under the same pressures."""
+        Raises: OtherShapeError.
+        """
+
+    def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
+        """The derivative by each change, by its key, under the same pressures."""
 
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
-        """What amounts (2,) of unit loads along the axis and about it, by phase, add."""
+        """The stress, Pa, that amounts (2,) of unit loads, by phase, add.
+
+        They act along the axis and about it.
+        """
 
 
 class OfSurface:
-    """The largest over the surface of a pin (assess.derivatives.derivatives)."""
+    """The largest stress over the surface of a pin (assess.derivatives.derivatives)."""
 
     def __init__(self, solved: SolvedCase, model: ContactModel, links: PinLoads) -> None:
         self._solved, self._model, self._links = solved, model, links
@@ -98,8 +105,8 @@ class OfSurface:
         for k, wave in enumerate(adjoint.waves):
             if wave.n < len(out):
                 loads = [UnitLoad("", "pressure", wave.n, ((name, 1.0),)) for name in model.rings]
-                each = rotated(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
-                out[wave.n] += adjoint.of_loads(k, loads)[:, None] * each
+                parts = rotated(wave.n, np.eye(2), adjoint.top.angle)[wave.part]
+                out[wave.n] += adjoint.of_loads(k, loads)[:, None] * parts
         return out
 
     def require(self, change: JointStep) -> None:
@@ -107,7 +114,7 @@ class OfSurface:
             nodes = self._adjoint.outline_nodes
             self._motions[change.key] = nodes.among(change.key, change.pins, change.step)
 
-    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+    def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
         moved = [self._motions[x.key] for x in changes if x.flexible is not None]
         out = self._adjoint.by_motions(moved)
         for x in changes:
@@ -115,7 +122,7 @@ class OfSurface:
         return out
 
     def _by_material(self, change: JointStep) -> float:
-        """Of the pin; and of a lug, by the exponent of the pressure at its edge."""
+        """The part by the pin's material, and by the exponent of pressure at a lug's edge."""
         adjoint, point, total = self._adjoint, self._adjoint.point, 0.0
         if isinstance(point, Continued):
             more = change.rate(lambda one: one.on_shaft.exponent[point.cusp.ring])
@@ -128,13 +135,13 @@ class OfSurface:
         return total
 
     def _by_shares(self, change: JointStep) -> float:
-        """Of what acts along the axis and about it, which rings take by their lengths."""
+        """The part by loads along the axis and about it, which rings share by their lengths."""
         links = self._links
         along = links.forces[..., 2].any() or links.moments[..., 2].any()
         if change.flexible is None or not along:
             return 0.0
-        each = [others_along(x.pin, x.rings, links).coefficients() for x in change.models]
-        rates = {load: rate_of([x[load][0] for x in each], change.step) for load in each[0]}
+        amounts = [others_along(x.pin, x.rings, links).coefficients() for x in change.models]
+        rates = {load: rate_of([x[load][0] for x in amounts], change.step) for load in amounts[0]}
         return self.of_amounts(rates)
 
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
@@ -148,8 +155,9 @@ class OfSurface:
 
 
 class OfSections:
-    """The largest over the sections of a pin (assess.derivatives.in_section), which feel the
-    resultants of the pressures alone.
+    """The largest stress over the sections of a pin (assess.derivatives.in_section).
+
+    Sections carry the resultants of the pressures alone.
     """
 
     def __init__(self, solved: SolvedCase, model: ContactModel, links: PinLoads) -> None:
@@ -169,18 +177,21 @@ class OfSections:
         area = np.array([model.pin.band(name).area for name in model.rings])
         for c, name in enumerate(model.rings):
             load = UnitLoad(name, "force", 1)
-            each = [self._section.of_amounts({load: one}) for one in np.eye(2)]
-            out[1, c] = -0.5 * area[c] * np.array(each)
+            parts = [self._section.of_amounts({load: one}) for one in np.eye(2)]
+            out[1, c] = -0.5 * area[c] * np.array(parts)
         return out
 
     def require(self, change: JointStep) -> None:
         self._value(change.models[0])
 
-    def held(self, changes: Sequence[JointStep]) -> dict[str, float]:
+    def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
         return {x.key: float(x.rate(self._value)) for x in changes}
 
     def _value(self, model: ContactModel) -> float:
-        """Under the same pressures. Raises: OtherShapeError."""
+        """The stress of another joint under the same pressures.
+
+        Raises: OtherShapeError.
+        """
         on_rings = resultants(model.pin, model.rings, self._waves, self._links)
         return self._section.value(model.pin, model.material, on_rings)
 

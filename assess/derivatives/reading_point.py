@@ -1,10 +1,10 @@
-"""The stress that is read at one point of a section's mesh, as a function of what is near it.
+"""The stress that is read at one point of a section's mesh, as a function of nearby quantities.
 
-A point is read as fea.harmonic.stress_recovery reads it: on the surface from the strains of its
-edge and the ones before and after it; inside, on clamped surfaces and on rims of excluded zones
-from the samples of the nearest elements; where a pressure ends from samples further on. Where lugs
-press on the surface it may be a combination of such (fea.harmonic.free_surface). Nodes may move,
-and then the point moves with them.
+A point is read as in fea.harmonic.stress_recovery: on the surface from the strains of its edge and
+the ones before and after it; inside, on clamped surfaces and on rims of excluded zones from the
+samples of the nearest elements; where a pressure ends from samples further on. Where lugs press on
+the surface it may be a combination of these (fea.harmonic.free_surface). Nodes may move, and then
+the point moves with them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial import cKDTree
 
-from fea.core.local_fit import FIT_SAMPLES, at_one_place
+from fea.core.local_fit import FIT_SAMPLES, fit_weights
 from fea.core.material import Material
 from fea.harmonic.assembly import Section, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes
@@ -33,8 +33,11 @@ _TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
 
 @dataclass(frozen=True)
 class SectionState:
-    """A section with nodes (N, 2), m, and tractions (E, 3, 3, K), Pa, on its outline's edges.
-    places: (Z, 3) r, z and radius of the excluded zones, m.
+    """A section that may differ from the solved one.
+
+    nodes: (N, 2) m.
+    traction: (E, 3, 3, K) Pa, on its outline's edges.
+    places: (Z, 3) m, r, z and radius of the excluded zones.
     """
 
     nodes: Floats
@@ -43,23 +46,31 @@ class SectionState:
 
 
 class ReadingPoint(Protocol):
-    """A point, and the numbers (L,) of the nodes on whose displacements its stress depends."""
+    """A point at which stress is read.
+
+    nodes: (L,) numbers of the nodes on whose displacements its stress depends.
+    """
 
     @property
     def nodes(self) -> Ints: ...
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
-        """Amplitudes (6, K) Pa of displacements u (L, 3, K), m, of these nodes, of harmonics n
-        (K,).
+        """Stress amplitudes (6, K), Pa.
+
+        n: (K,) harmonics.
+        u: (L, 3, K) m, displacements of the point's nodes.
         """
         ...
 
 
 @dataclass(frozen=True)
 class OnSkin:
-    """Some points (P,) of the skin. edges: those they are on, and the ones before and after these
-    that go on smoothly; neighbours: of each before and after it, numbers among these or -1. of:
-    (P,) the edge of each point, likewise; at: (P,) which of its five it is.
+    """Points (P,) of the skin.
+
+    edges: the edges they are on, and the ones before and after these that go on smoothly.
+    neighbours: before and after each edge, as numbers among these, or -1.
+    of: (P,) the edge of each point, likewise.
+    at: (P,) which of its five points it is.
     """
 
     outline: Outline
@@ -79,25 +90,25 @@ class OnSkin:
     def each(
         self, material: Material, state: SectionState, n: Ints, u: Floats
     ) -> tuple[Floats, Floats]:
-        """Where the points are, (P, 2) m, and the stress there, (P, 6, K) Pa."""
+        """The points (P, 2), m, and the stress there, (P, 6, K), Pa."""
         x = state.nodes[self.outline.nodes[self.edges]]
         traction = state.traction[self.edges]
-        found = on_edges(material, n, x, u[self._local], traction, self.neighbours)
-        return found.points[self.of, self.at], found.stress[self.of, self.at]
+        skin = on_edges(material, n, x, u[self._local], traction, self.neighbours)
+        return skin.points[self.of, self.at], skin.stress[self.of, self.at]
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
-        """Of the only point."""
+        """The stress of the only point."""
         return np.asarray(self.each(material, state, n, u)[1][0])
 
 
 def on_skin(outline: Outline, traction: Floats, edges: Ints, at: Ints) -> OnSkin:
     """Points `at` of edges. traction: (E, 3, 3, K) Pa, whose jumps separate edges."""
     x = outline.every_node[outline.nodes]
-    both = [found[edges] for found in smooth_neighbours(outline, x, traction)]
+    both = [neighbour[edges] for neighbour in smooth_neighbours(outline, x, traction)]
     every = np.unique(np.concatenate([edges, *(some[some >= 0] for some in both)]))
     local = []
-    for found in smooth_neighbours(outline, x, traction):
-        near = found[every]
+    for neighbour in smooth_neighbours(outline, x, traction):
+        near = neighbour[every]
         known = np.isin(near, every) & np.isin(every, edges)
         local.append(np.where(known, np.searchsorted(every, near), -1))
     return OnSkin(outline, every, (local[0], local[1]), np.searchsorted(every, edges), at)
@@ -105,8 +116,9 @@ def on_skin(outline: Outline, traction: Floats, edges: Ints, at: Ints) -> OnSkin
 
 @dataclass(frozen=True)
 class Relieved:
-    """A point in the middle of a ring, without the local stress of its pressure
-    (fea.harmonic.free_surface).
+    """A point in the middle of a ring, without the local stress of its pressure.
+
+    See fea.harmonic.free_surface.
     """
 
     point: OnSkin
@@ -116,15 +128,15 @@ class Relieved:
         return self.point.nodes
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
-        found = self.point.stress(material, state, n, u)
-        return np.asarray(found - relief(material.poisson_ratio)[:, None] * found[0])
+        on_skin_stress = self.point.stress(material, state, n, u)
+        return np.asarray(
+            on_skin_stress - relief(material.poisson_ratio)[:, None] * on_skin_stress[0]
+        )
 
 
 @dataclass(frozen=True)
 class Continued:
-    """The edge of a lug, at a node, by points of the skin beside it; exponent: of the pressure
-    there.
-    """
+    """The edge of a lug, at a node, to which stress is extrapolated from beside it."""
 
     points: OnSkin
     cusp: Cusp
@@ -135,26 +147,26 @@ class Continued:
         return self.points.nodes
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
-        at, found = self.points.each(material, state, n, u)
+        at, beside = self.points.each(material, state, n, u)
         weights = self.cusp.weights(at[:, 1], float(state.nodes[self.edge, 1]))
-        return np.asarray(np.einsum("p,pck->ck", weights, found))
+        return np.asarray(np.einsum("p,pck->ck", weights, beside))
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Some of a section's samples: `which` (S,), three to an element."""
+    """Some of a section's samples, by their numbers `which` (S,), three to an element."""
 
     space: Section
     which: Ints
 
     @cached_property
     def elements(self) -> Ints:
-        """(m,) of all that they are in."""
+        """Numbers (m,) of the elements that contain them."""
         return np.unique(self.which // 3)
 
     @cached_property
     def nodes(self) -> Ints:
-        """(L,) of these elements."""
+        """Numbers (L,) of the nodes of these elements."""
         return np.unique(self.space.elements[self.elements])
 
     @cached_property
@@ -163,8 +175,11 @@ class Samples:
         return rows, self.which % 3
 
     def read(self, material: Material, nodes: Floats, n: Ints, u: Floats) -> tuple[Floats, Floats]:
-        """Where they are (S, 2), m, and the stress there (S, 6, K), Pa, of the displacements u
-        (L, 3, K) of harmonics n (K,).
+        """The sample points (S, 2), m, and the stress there, (S, 6, K), Pa.
+
+        nodes: (N, 2) m of the section.
+        n: (K,) harmonics.
+        u: (L, 3, K) m.
         """
         members = self.space.elements[self.elements]
         x, moved = nodes[members], u[np.searchsorted(self.nodes, members)]
@@ -189,8 +204,9 @@ def _reference(space: Section) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class FromInside:
-    """Parts of values that are continued from the nearest samples to places: at `on` (node numbers)
-    or, without, at `place` (r, z) on the rim of a zone.
+    """A value extrapolated from the nearest samples to places, as a weighted sum.
+
+    on: numbers of the nodes that are the places; without any, `place` (r, z) on the rim of a zone.
     """
 
     samples: tuple[Samples, ...]
@@ -208,11 +224,11 @@ class FromInside:
         out = np.zeros((6, u.shape[2]))
         places = [state.nodes[k] for k in self.on] or [self._on_rim(state)]
         for samples, share, place in zip(self.samples, self.shares, places, strict=True):
-            mine = u[np.searchsorted(self.nodes, samples.nodes)]
-            at, found = samples.read(material, state.nodes, n, mine)
+            displacements = u[np.searchsorted(self.nodes, samples.nodes)]
+            at, sampled = samples.read(material, state.nodes, n, displacements)
             distance = np.hypot(*(at - place).T)
-            weights = at_one_place(at - place, 1.0 - (distance / distance[-1]) ** 2)
-            out += share * np.einsum("s,sck->ck", weights, found)
+            weights = fit_weights(at - place, 1.0 - (distance / distance[-1]) ** 2)
+            out += share * np.einsum("s,sck->ck", weights, sampled)
         return out
 
     def _on_rim(self, state: SectionState) -> Floats:
@@ -241,27 +257,27 @@ class AtJump:
         before, after = self.jump.before, self.jump.after
         edges = self.outline.nodes
         x = state.nodes[[edges[before, 0], edges[before, 1], edges[after, 1]]]
-        at, found = self.samples.read(material, state.nodes, n, u)
+        at, sampled = self.samples.read(material, state.nodes, n, u)
         normal, weights, field = at_edge((x[0], x[1], x[2]), at, material.poisson_ratio)
         more = state.traction[after, 0] - state.traction[before, 1]
-        smooth = np.einsum("s,sck->ck", weights, found)
+        smooth = np.einsum("s,sck->ck", weights, sampled)
         return np.asarray(smooth + field[self.direction][:, None] * (normal @ more[[0, 2]]))
 
 
 def nearest(space: Section, places: Sequence[Floats]) -> tuple[Samples, ...]:
-    """Those from which fea.core.local_fit.continuation takes the value at each place."""
+    """The samples from which fea.core.local_fit.continuation takes the value at each place."""
     count = min(FIT_SAMPLES, len(space.samples))
     tree = cKDTree(space.samples)
     return tuple(Samples(space, np.asarray(tree.query(place, count)[1])) for place in places)
 
 
 def at_node(space: Section, node: int) -> FromInside:
-    """An inner node."""
+    """The reading point of an inner node."""
     return FromInside(nearest(space, [space.nodes[node]]), (1.0,), (node,))
 
 
 def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside:
-    """Point `at` of a clamped edge or one on the axis."""
+    """The reading point `at` of a clamped edge or one on the axis."""
     parts = shapes(EDGE_STATIONS[at : at + 1])[0]
     some = [(float(p), int(k)) for p, k in zip(parts, outline.nodes[edge], strict=True) if p]
     on = tuple(k for _, k in some)
@@ -269,5 +285,5 @@ def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside
 
 
 def on_axis(space: Section, r: float) -> bool:
-    """Whether a radius (m) is nothing."""
+    """Whether a radius (m) is that of the axis."""
     return bool(r < ON_AXIS_TOLERANCE * space.nodes[:, 0].max())

@@ -1,4 +1,4 @@
-"""What is differentiated, and the derivatives."""
+"""The case that is differentiated, and its derivatives."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ from geometry import Pin
 
 @dataclass(frozen=True)
 class SolvedCase:
-    """A pin of a material, clamped at surfaces (by the pin's names), as it was solved on one mesh
-    under loads of one instant; zones: the singularities that are left out. error: of the maximum,
-    relative. history: the loads at all instants of the case, if there are more.
+    """A pin as it was solved on one mesh under loads of one instant.
+
+    clamps: surfaces, by the pin's names.
+    zones: the singularities that are left out.
+    error: of the maximum, relative.
+    history: the loads at all instants of the case, if there are more.
     """
 
     pin: Pin
@@ -30,15 +33,19 @@ class SolvedCase:
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Of the largest von Mises stress `maximum`, Pa, at `location` (x, y, z), m, at the governing
-    instant.
+    """Derivatives of the largest von Mises stress `maximum`, Pa, at the governing instant.
 
-    by_dimension: Pa/m, by the key of each dimension; without: why others have none. by_force,
-    by_moment: Pa/N and Pa/(N m), by surface and axis of the pin ("x", "y", "z"), the other loads as
-    they are. poisson_ratio: Pa; youngs_modulus: 0, because a pin under given loads has the same
-    stress with any; density: Pa/(kg/m^3), of its own weight. tied_places, tied_times: others, (r,
-    z) in m and s, whose stress is within the error of the maximum. One of them may govern as soon
-    as anything changes, so that the derivatives hold on one side only.
+    location: (x, y, z), m.
+    by_dimension: Pa/m, by the key of each dimension.
+    without: why others have none.
+    by_force, by_moment: Pa/N and Pa/(N m), by surface and axis of the pin ("x", "y", "z"), the
+    other loads as they are.
+    poisson_ratio: Pa.
+    youngs_modulus: 0, because a pin under given loads has the same stress with any.
+    density: Pa/(kg/m^3), by its own weight.
+    tied_places, tied_times: others, (r, z) in m and s, whose stress is within the error of the
+    maximum. One of them may govern as soon as anything changes, so that the derivatives hold on one
+    side only.
     """
 
     maximum: float

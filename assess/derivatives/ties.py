@@ -1,4 +1,4 @@
-"""Other places and times at which stress is as large as the maximum, as far as is known."""
+"""Other places and times at which stress is as large as the maximum, within its error."""
 
 from __future__ import annotations
 
@@ -20,13 +20,16 @@ def competing_places(
     top: Crest,
     error: float,
 ) -> tuple[tuple[float, float], ...]:
-    """(r, z), m, at the governing instant, well apart; error: of the maximum, relative."""
+    """Well separated places (r, z), m, with nearly the maximum at the governing instant.
+
+    error: of the maximum, relative.
+    """
     fields = around.fields
     return high_places(around, fields.points, fields.outside(zones), top, 1.0 - error)[1:]
 
 
 def competing_times(solved: SolvedCase, maximum: float) -> tuple[float, ...]:
-    """Of crests in time other than the governing one, s, each at its highest."""
+    """Times, s, of other crests that are nearly as high as the governing one."""
     return crests(HarmonicField(solved.solution, solved.zones), solved, maximum)
 
 
@@ -36,7 +39,10 @@ def crests(
     maximum: float,
     felt: Callable[[PinLoads], PinLoads] = lambda loads: loads,
 ) -> tuple[float, ...]:
-    """The same of any answer; felt: what it notices of loads."""
+    """Times, s, of other crests of any field's maximum over time.
+
+    felt: gives the part of the loads that acts on the field.
+    """
     every, times = solved.history, solved.loads.times
     if every is None or every.times is None or times is None:
         return ()

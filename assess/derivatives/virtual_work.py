@@ -1,4 +1,4 @@
-"""How the work of stresses on virtual displacements changes when the nodes of a section move.
+"""The change of the work of stresses on virtual displacements when the nodes of a section move.
 
 The stiffness K of a harmonic does the work l^T K u = integral of e(l)^T D e(u) r dA about the axis,
 where strains are linear in G = (u,r u,z u/r) of every unknown. If all points move by V, shape
@@ -13,7 +13,7 @@ problem exactly, is the integral of W : grad V + w V_r / r with
     w    = e      - sum over unknowns of (G_3(l) P_3(u) + G_3(u) P_3(l))
 
 e the density of the work and P the stresses that work on G. It is linear in V: a vector of the
-nodes, found once for all ways to move them.
+nodes, found once for all motions.
 """
 
 from __future__ import annotations
@@ -26,13 +26,15 @@ from fea.core.linear_solver import ConstrainedSystem
 from fea.harmonic.assembly import Section, around, strain_map
 from pinbase.arrays import Floats, Ints
 
-ELEMENT_BATCH = 8192  # elements at once
-MOTION_BATCH = 32  # motions at once
+ELEMENT_BATCH = 8192  # elements at once: limits memory
+MOTION_BATCH = 32  # motions at once: limits memory
 
 
 def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> Floats:
-    """Rate (N, 2) of adjoint^T K u, N m per m, with the coordinates r, z of every node; u, adjoint
-    (3 N,): unknowns of harmonic n. D: fea.harmonic.assembly.elasticity, (6, 6) or of each element.
+    """The rate (N, 2) of adjoint^T K u, N m per m, with the coordinates r, z of every node.
+
+    u, adjoint: (3 N,) unknowns of harmonic n.
+    D: (6, 6), or that of each element, as fea.harmonic.assembly.elasticity.
     """
     out = np.zeros((len(space.nodes), 2))
     for here, gradients, weights, (G, L) in _parts(space, (u, adjoint)):
@@ -51,7 +53,7 @@ def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats
 
 
 def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float:
-    """adjoint^T K u, N m, of such a D."""
+    """The work adjoint^T K u, N m; arguments as for `shape_gradient`."""
     total = 0.0
     for here, _, weights, (G, L) in _parts(space, (u, adjoint)):
         total += float(np.einsum("mq,mqca,mqca->", weights, L, _conjugate(D, here, n, G)))
@@ -61,9 +63,7 @@ def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float
 def _parts(
     space: Section, unknowns: tuple[Floats, ...]
 ) -> Iterator[tuple[slice, Floats, Floats, list[Floats]]]:
-    """Elements, chunk by chunk, with the gradients of their shape functions, their weights, and
-    G (M, Q, 3, 3) of each vector of unknowns.
-    """
+    """Batches of elements with gradients, weights, and G (M, Q, 3, 3) of each vector."""
     gradients, weights = space.quadrature
     at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
     for k in range(0, len(weights), ELEMENT_BATCH):
@@ -75,24 +75,24 @@ def _parts(
 def _conjugate(D: Floats, here: slice, n: int, G: Floats) -> Floats:
     """The stresses (M, Q, 3, 3) that work on G: derivatives of half e^T D e."""
     E = strain_map(n).reshape(6, 9)
-    own = D[here] if D.ndim > 2 else D
-    return np.asarray((G.reshape(*G.shape[:2], 9) @ (E.T @ own @ E)).reshape(G.shape))
+    elastic = D[here] if D.ndim > 2 else D
+    return np.asarray((G.reshape(*G.shape[:2], 9) @ (E.T @ elastic @ E)).reshape(G.shape))
 
 
 def integral_rate(space: Section, velocity: Floats) -> Floats:
-    """Rate (N,) of Section.integrals, m^3 per unit, with the nodes' velocities (N, 2)."""
+    """The rate (N,) of Section.integrals, m^3 per unit, with the nodes' velocities (N, 2)."""
     gradients, weights = space.quadrature
     value = gradients[:, :, 2] * space.radii[..., None]
     v = velocity[space.elements]
     rate = np.einsum("mqai,mia->mq", gradients[:, :, :2], v)
     rate += np.einsum("mqi,mi->mq", gradients[:, :, 2], v[..., 0])
-    found = np.einsum("mq,mqi->mi", weights * rate, value)
+    rates = np.einsum("mq,mqi->mi", weights * rate, value)
     count = len(space.nodes)
-    return np.bincount(space.elements.ravel(), found.ravel(), count).astype(np.float64)
+    return np.bincount(space.elements.ravel(), rates.ravel(), count).astype(np.float64)
 
 
 class Interior:
-    """Velocities of all nodes of a section from those of its outline: harmonic functions."""
+    """Velocities of all nodes of a section from those of its outline, by harmonic functions."""
 
     def __init__(self, space: Section, outline: Ints) -> None:
         gradients, weights = space.quadrature
@@ -106,7 +106,7 @@ class Interior:
         self._system = ConstrainedSystem(self._matrix)
 
     def velocity(self, on_outline: Floats) -> Floats:
-        """(N, 2, P) of those of the outline's nodes (B, 2, P)."""
+        """Velocities (N, 2, P) of all nodes from those of the outline's nodes, (B, 2, P)."""
         count = on_outline.shape[2]
         out = np.zeros((len(self._free), 2 * count))
         out[self._outline] = on_outline.reshape(len(self._outline), -1)

@@ -27,15 +27,18 @@ from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
-SHOWN_PROBABILITIES = (0.1, 0.5, 0.9)  # failure probabilities
-TRESCA_RATIO = 2.0 / 3.0**0.5  # Tresca's stress over von Mises stress, at most
+SHOWN_PROBABILITIES = (0.1, 0.5, 0.9)  # of failure, at which lives are reported
+TRESCA_RATIO = 2.0 / 3.0**0.5  # largest ratio of Tresca's stress to von Mises stress
 MIN_SHOWN_AMPLITUDE = 0.01  # of the largest amplitude: smaller ones are not shown
 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """occurrences: of cases per unit. probability: of failure at which damage is found, by default
-    that of the S-N data. life: in units, for which the pin is designed.
+    """The load spectrum of a pin and how its damage is assessed.
+
+    occurrences: of cases per unit (a flight, say).
+    probability: of failure at which damage is assessed, by default that of the S-N data.
+    life: design life, in units.
     """
 
     occurrences: Mapping[str, float]
@@ -46,7 +49,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class FatigueMaterial:
-    """What a method needs: an S-N curve, Findley's mean stress sensitivity, FKM's data."""
+    """Fatigue data of a material: an S-N curve, Findley's mean stress sensitivity, data for FKM."""
 
     curve: SnCurve | None = None
     sensitivity: float | None = None
@@ -54,8 +57,14 @@ class FatigueMaterial:
 
 
 @dataclass(frozen=True)
-class _Found:
-    """Damage per unit at a probability (None: the asked one), and the cycles behind it."""
+class _MethodResult:
+    """Damage per unit at each probability (None: the requested one), and the cycles behind it.
+
+    amplitude, mean: Pa, of the largest cycle.
+    equivalent: (C,) Pa.
+    units: until the spectrum repeats.
+    normal: of the critical plane.
+    """
 
     damage: dict[float | None, float]
     amplitude: float
@@ -68,8 +77,7 @@ class _Found:
 def assess(
     history: PointHistory, spectrum: Spectrum, material: FatigueMaterial
 ) -> PointFatigue | None:
-    """Damage at a point; None where no case of the spectrum acts, or no data are given for the
-    method.
+    """The damage at a point; None where no case of the spectrum acts or the method has no data.
 
     Raises: ArgumentError where the method cannot see the history and the critical plane, which can,
     lacks data (`unseen-history`).
@@ -80,13 +88,13 @@ def assess(
     often, seen = [spectrum.occurrences[c.case] for c in cases], course(cases)
     method, note = _method(spectrum, seen, material)
     if method == "fkm-p-ram":
-        found = _by_fkm(seen.cases, often, spectrum, material)
+        result = _by_fkm(seen.cases, often, spectrum, material)
     elif method == "critical-plane":
-        found = _by_plane([c.stress for c in cases], often, spectrum, material)
+        result = _by_plane([c.stress for c in cases], often, spectrum, material)
     else:
-        found = _by_sign(seen.cases, often, spectrum, material)
-    damage = found.damage[None]
-    shown, counts = _collective(found.equivalent, found.units)
+        result = _by_sign(seen.cases, often, spectrum, material)
+    damage = result.damage[None]
+    shown, counts = _collective(result.equivalent, result.units)
     return PointFatigue(
         pin=history.pin,
         point=history.point,
@@ -95,31 +103,31 @@ def assess(
         method=method,
         damage=damage,
         life=_life(damage),
-        lives=tuple(_life(found.damage[p]) for p in SHOWN_PROBABILITIES if p in found.damage),
+        lives=tuple(_life(result.damage[p]) for p in SHOWN_PROBABILITIES if p in result.damage),
         utilisation=None if spectrum.life is None else damage * spectrum.life,
-        amplitude=found.amplitude,
-        mean=found.mean,
+        amplitude=result.amplitude,
+        mean=result.mean,
         amplitudes=shown,
         counts=counts,
         note="; ".join(filter(None, (history.chosen, note))),
-        normal=None if found.normal is None else history.in_pin_axes(found.normal),
+        normal=None if result.normal is None else history.in_pin_axes(result.normal),
     )
 
 
 def _method(
     spectrum: Spectrum, seen: SignedCourse, material: FatigueMaterial
 ) -> tuple[Method, str]:
-    """The method that sees the history, and why, if it is not the asked one."""
-    asked, curve = spectrum.method, material.curve
-    if asked == "critical-plane":
-        return asked, ""
+    """The method that sees the history, and the reason if it is not the requested one."""
+    requested, curve = spectrum.method, material.curve
+    if requested == "critical-plane":
+        return requested, ""
     if seen.stands:
-        return asked, seen.note
+        return requested, seen.note
     if _harmless(TRESCA_RATIO * seen.largest, spectrum, material):
-        return asked, "the stress is not proportional, but does no damage in any direction"
+        return requested, "the stress is not proportional, but does no damage in any direction"
     why = (
         f"the stress is not proportional (off by {100.0 * seen.unseen:.0f} % of its largest value, "
-        f"above {100.0 * MAX_RULE_ERROR:.0f} %), which {asked} cannot see"
+        f"above {100.0 * MAX_RULE_ERROR:.0f} %), which {requested} cannot see"
     )
     needs = ""
     if curve is None:
@@ -134,7 +142,7 @@ def _method(
 
 
 def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> bool:
-    """Whether cycles of this amplitude, Pa, at stress ratio -1 do no damage."""
+    """Whether cycles of an amplitude, Pa, at stress ratio -1 do no damage."""
     if spectrum.method == "fkm-p-ram":
         assert material.fkm is not None
         both = np.array([0.0, largest, -largest, 0.0])
@@ -144,52 +152,57 @@ def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> 
 
 
 def _life(damage: float) -> float | None:
+    """Units until damage 1; None without damage."""
     return 1.0 / damage if damage > 0.0 and isfinite(damage) else (0.0 if damage else None)
 
 
 def _by_sign(
     courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
-) -> _Found:
+) -> _MethodResult:
+    """Damage by rainflow of a signed stress and an S-N curve."""
     curve, order = material.curve, flight(often)
     assert curve is not None
     cycles = rainflow(order.sequence([case_by_case(course)[0] for course in courses]))
     equivalent = curve.equivalent(cycles.amplitude, cycles.mean)
     damage = _damage(curve, equivalent, order.units, spectrum.probability)
-    return _Found(damage, *_largest(cycles, equivalent), equivalent, order.units)
+    return _MethodResult(damage, *_largest(cycles, equivalent), equivalent, order.units)
 
 
 def _by_plane(
     courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
-) -> _Found:
+) -> _MethodResult:
+    """Damage by Findley's critical plane."""
     curve, order = material.curve, flight(often)
     assert curve is not None
     life = curve.life(spectrum.probability)
     worst = worst_plane(courses, order, findley_k(material.sensitivity or 0.0), life)
     damage = _damage(curve, worst.equivalent, order.units, spectrum.probability)
     largest = _largest(worst.shear, worst.equivalent)
-    return _Found(damage, *largest, worst.equivalent, order.units, worst.normal)
+    return _MethodResult(damage, *largest, worst.equivalent, order.units, worst.normal)
 
 
 def _by_fkm(
     courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
-) -> _Found:
+) -> _MethodResult:
+    """Damage by the FKM guideline's P_RAM."""
     order, data = flight(often), material.fkm
     assert data is not None
     sequence = order.sequence([case_by_case(course)[0] for course in courses])
     cycles = rainflow(sequence)
 
-    found: dict[float | None, float] = dict.fromkeys((None, *SHOWN_PROBABILITIES), 0.0)
+    damage: dict[float | None, float] = dict.fromkeys((None, *SHOWN_PROBABILITIES), 0.0)
     if sequence.any():
+        # The sequence ends at zero; lives at other probabilities follow from that at 50 %.
         whole = np.append(sequence, 0.0)
         middle = p_ram_life(whole, data)
-        asked = middle
+        requested = middle
         if spectrum.probability not in (None, 0.5):
-            asked = p_ram_life(whole, data, spectrum.probability)
-        if not asked.infinite:
-            found[None] = _per_unit(asked.repetitions, order.units)
+            requested = p_ram_life(whole, data, spectrum.probability)
+        if not requested.infinite:
+            damage[None] = _per_unit(requested.repetitions, order.units)
         if not middle.infinite and middle.at is not None:
-            found |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN_PROBABILITIES}
-    return _Found(found, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
+            damage |= {p: _per_unit(middle.at(p), order.units) for p in SHOWN_PROBABILITIES}
+    return _MethodResult(damage, *_largest(cycles, cycles.amplitude), cycles.amplitude, order.units)
 
 
 def _per_unit(repetitions: float, units: int) -> float:
@@ -199,7 +212,7 @@ def _per_unit(repetitions: float, units: int) -> float:
 def _damage(
     curve: SnCurve, equivalent: Floats, units: int, probability: float | None
 ) -> dict[float | None, float]:
-    """Per unit, at the asked probability and, with a scatter, at those that are shown."""
+    """Damage per unit at the requested probability and, with a scatter, at the reported ones."""
     every = (None, *SHOWN_PROBABILITIES) if curve.scatter > 1.0 else (None,)
     return {
         p: curve.damage(equivalent, 1.0 / units, probability if p is None else p) for p in every
@@ -215,11 +228,11 @@ def _largest(cycles: Cycles, equivalent: Floats) -> tuple[float, float]:
 
 
 def _collective(equivalent: Floats, units: int) -> tuple[Floats, Floats]:
-    """Different amplitudes (C,) Pa, the largest first, and how often each occurs per unit."""
+    """Distinct amplitudes (C,), Pa, the largest first, and the occurrences of each per unit."""
     largest = equivalent.max(initial=0.0)
     if not isfinite(largest):
         largest = float(equivalent[equivalent < inf].max(initial=0.0))
-    kept = equivalent[(equivalent >= MIN_SHOWN_AMPLITUDE * largest) & (equivalent < inf)]
+    shown = equivalent[(equivalent >= MIN_SHOWN_AMPLITUDE * largest) & (equivalent < inf)]
     scale = largest * 1e-6 or 1.0
-    values, counts = np.unique(np.round(kept / scale), return_counts=True)
+    values, counts = np.unique(np.round(shown / scale), return_counts=True)
     return values[::-1] * scale, counts[::-1] / units

@@ -1,16 +1,16 @@
-"""Findley's critical plane: the shear amplitude and a part of the largest normal stress, on the
-plane where their damage is largest.
+"""Findley's critical plane: shear amplitude plus a part of the largest normal stress, where worst.
 
     f = tau_a + k sigma_n,max      equivalent amplitude 2 f / (k + sqrt(1 + k^2))
 
-of every cycle of the shear stress in a direction of a plane. That is the amplitude of alternating
-tension with the same f. k is such that pulsating tension has the amplitude times 1 + M, with the
-mean stress sensitivity M: uniaxial stress of ratios -1 and 0 has the damage of the signed von Mises
-stress.
+of every cycle of the shear stress in a direction of a plane. The equivalent amplitude is that of
+alternating tension with the same f. k is such that pulsating tension has the amplitude times 1 + M,
+with the mean stress sensitivity M: uniaxial stress of ratios -1 and 0 has the damage of the signed
+von Mises stress.
 
 The cycles are counted in all directions of all planes of a grid (assess.fatigue.many_planes). From
 each of its maxima that may be the largest, planes and directions are turned in ever smaller steps.
-Damage is within 0.5 % of what a grid of 2 degrees finds, or above it (benchmarks: planes).
+Damage is within 0.5 % of what a grid of 2 degrees finds, or above it (`python -m benchmarks
+planes`).
 
 Source: Findley, J. Eng. Ind. 81 (1959) 301.
 """
@@ -32,20 +32,22 @@ from assess.fatigue.sn_curve import Life
 from fea.core.voigt import TENSOR_TO_VOIGT
 from pinbase.arrays import Floats
 
+# Sizes of the search; `python -m benchmarks planes` compares it with a grid of 2 degrees.
 PLANE_STEP = 9.0  # degrees between planes of the grid
-DIRECTION_STEP = 15.0  # and between directions in them
-NEIGHBOUR_ANGLE = 1.5 * PLANE_STEP  # planes with which a maximum of the grid is compared
-STARTS_PER_RANKING = 8  # maxima by each way of ranking them
-STEP_HALVINGS = 6  # times, from half of PLANE_STEP to below 0.1 degrees
-FINAL_PLANES = 3  # whose cycles are counted one by one
+DIRECTION_STEP = 15.0  # degrees between directions in a plane
+NEIGHBOUR_ANGLE = 1.5 * PLANE_STEP  # degrees, to planes with which a maximum is compared
+STARTS_PER_RANKING = 8  # maxima from which the search starts, by each ranking
+STEP_HALVINGS = 6  # from half of PLANE_STEP to below 0.1 degrees
+FINAL_PLANES = 3  # planes whose cycles are counted one by one
 FRAME_ROTATIONS = np.array(list(product((0.0, 1.0, -1.0), repeat=3)))  # about the axes of a frame
 ZERO_STRESS = np.zeros((1, 6))
 
 
 @dataclass(frozen=True)
 class PlaneCycles:
-    """Cycles of shear stress, with their equivalent amplitudes (C,) Pa at stress ratio -1, on the
-    plane of a normal (3,).
+    """The cycles of shear stress on the plane of a normal (3,).
+
+    equivalent: (C,) Pa, amplitudes at stress ratio -1.
     """
 
     equivalent: Floats
@@ -54,7 +56,7 @@ class PlaneCycles:
 
 
 def findley_k(sensitivity: float) -> float:
-    """k of Findley for a mean stress sensitivity M of 0 or more, below 1."""
+    """Findley's k for a mean stress sensitivity M from 0 to below 1."""
 
     def excess(k: float) -> float:
         pulsating, alternating = (m * k + np.hypot(1.0, m * k) for m in (2.0, 1.0))
@@ -64,22 +66,26 @@ def findley_k(sensitivity: float) -> float:
 
 
 def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -> PlaneCycles:
-    """The plane and the direction in it with the largest damage, by an S-N curve, of stress (T, 6)
-    Pa in cases; where there is none, with the largest cycle.
+    """The plane and direction with the largest damage, or without damage the largest cycle.
+
+    cases: stress (T, 6), Pa, of each case.
+    life: S-N curve.
     """
 
     def rank(frames: Floats) -> OnPlanes:
         return on_planes(cases, flight, (frames[:, 0], frames[:, 1]), k, life)
 
     grid = _grid()
+    # A pattern search from each maximum of the grid: turn the frame by a step about all axes, keep
+    # the best, halve the step.
     frames = grid.reshape(-1, 3, 3)[_starts(grid, rank(grid.reshape(-1, 3, 3)))]
     for n in range(1, STEP_HALVINGS + 1):
         turned = Rotation.from_rotvec(
             0.5**n * PLANE_STEP * FRAME_ROTATIONS, degrees=True
         ).as_matrix()
         near = (turned[:, None] @ frames).swapaxes(0, 1)  # (starts, turns, 3, 3)
-        found = rank(near.reshape(-1, 3, 3))
-        ranks = (x.reshape(len(frames), -1) for x in (-found.largest, -found.damage))
+        on_near = rank(near.reshape(-1, 3, 3))
+        ranks = (x.reshape(len(frames), -1) for x in (-on_near.largest, -on_near.damage))
         best = [np.lexsort(keys)[0] for keys in zip(*ranks, strict=True)]
         frames = near[np.arange(len(frames)), best]
     last = rank(frames).order()[:FINAL_PLANES]
@@ -90,14 +96,15 @@ def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -
     return max(every, key=lambda p: (life.damage(p.equivalent).sum(), p.equivalent.max(initial=0)))
 
 
-def _starts(grid: Floats, found: OnPlanes) -> list[int]:
-    """Maxima over neighbours on the grid, the largest by each way of ranking them; one of those
-    that are equal, as they are all around a tension.
+def _starts(grid: Floats, on_grid: OnPlanes) -> list[int]:
+    """The maxima over neighbours on the grid, the largest ones by each ranking.
+
+    Of equal maxima one is taken; around a tension they are equal all round.
     """
     normals = grid[:, 0, 0]
     near = np.abs(normals @ normals.T) > np.cos(np.radians(NEIGHBOUR_ANGLE))
     chosen: dict[int, None] = {}
-    for rank in (found.damage, found.softer, found.largest):
+    for rank in (on_grid.damage, on_grid.softer, on_grid.largest):
         value = rank.reshape(grid.shape[:2])
         best = value.max(axis=1)
         top = best >= np.where(near, best, 0.0).max(axis=1)
@@ -113,6 +120,11 @@ def _starts(grid: Floats, found: OnPlanes) -> list[int]:
 def _counted(
     tensors: Sequence[Floats], flight: Flight, plane: tuple[Floats, Floats], k: float
 ) -> PlaneCycles:
+    """The cycles on one plane, counted by rainflow, with the largest normal stress within each.
+
+    tensors: stress (T, 3, 3), Pa, of each case, with zero before and after.
+    plane: normal and direction.
+    """
     normal, way = plane
     shears, tops = [], []
     for stress in tensors:
@@ -125,8 +137,8 @@ def _counted(
     largest = np.array(
         [top[a : b + 1].max() for a, b in zip(cycles.first, cycles.last, strict=True)]
     )
-    found = cycles.amplitude + k * np.maximum(largest, 0.0)
-    return PlaneCycles(2.0 / (k + np.hypot(1.0, k)) * found, cycles, normal)
+    findley = cycles.amplitude + k * np.maximum(largest, 0.0)
+    return PlaneCycles(2.0 / (k + np.hypot(1.0, k)) * findley, cycles, normal)
 
 
 @cache

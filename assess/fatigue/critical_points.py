@@ -3,12 +3,12 @@
 Damage follows the range of stress, not its peak, and is larger where the mean is tensile. So the
 surface is searched for local maxima of `a + 0.3 m` over all cases, zero load included: m is the
 signed von Mises stress of the tensor in the middle of the range of each component, and a the
-largest von Mises stress of the difference from it, which sees stress that changes its sign or its
-direction. Singular zones are left out; where lugs press on the pin, points have the stress that
-assess.fatigue.pressed_points says. The points of the largest von Mises stress are added to them.
+largest von Mises stress of the difference from it, which registers stress that changes its sign or
+its direction. Singular zones are left out; where lugs press on the pin, points have the stress
+given by assess.fatigue.pressed_points. The points of the largest von Mises stress are added.
 
-One mesh is searched, that of the case with the largest stress; of other cases' meshes the nearest
-node answers.
+One mesh is searched, that of the case with the largest stress; on other cases' meshes the nearest
+node is read.
 """
 
 from __future__ import annotations
@@ -25,20 +25,21 @@ from fea.core.voigt import von_mises
 from fea.support.support import Solution
 from pinbase.arrays import Floats, Ints
 
+# The search is coarse first, then fine at its maxima. Its sizes are chosen by judgement.
 SEARCH_ANGLES, FINAL_ANGLES = 16, 72  # angles about the axis
-SEARCH_INSTANTS, FINAL_INSTANTS = 12, 48  # instants
+SEARCH_INSTANTS, FINAL_INSTANTS = 12, 48  # instants of each case
 MEAN_STRESS_SENSITIVITY = 0.3  # usual mean stress sensitivity of steel
-MAX_POINTS = 4  # local maxima
-MIN_SCORE = 0.3  # of the largest: lower ones are no candidates
-MIN_SPACING = 0.25  # of the distance from the axis: so far apart local maxima are
-MERGE_DISTANCE = 0.05  # of that: nearer points are one
-STRIDE = 2  # of the points one in so many is compared with others
+MAX_POINTS = 4  # local maxima that are assessed
+MIN_SCORE = 0.3  # of the largest score: points below it are no candidates
+MIN_SPACING = 0.25  # of the distance from the axis, between local maxima
+MERGE_DISTANCE = 0.05  # of the distance from the axis: nearer points are one
+STRIDE = 2  # one point of the surface in so many is searched
 MAX_CANDIDATES = 500  # points whose neighbours are compared
 NEIGHBOURS = 9  # points about a local maximum that are compared at all angles
-SCORE_BATCH = 16_384  # points and angles, by cases, at once
+SCORE_BATCH = 16_384  # points and angles, times cases, at once: limits memory
 
 
-MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum is none
+MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum of principal stresses is zero
 
 
 @dataclass(frozen=True)
@@ -66,9 +67,7 @@ class _Case:
 
 
 def stress_histories(pin: str, solutions: Sequence[Solution]) -> tuple[PointHistory, ...]:
-    """At the critical points of a pin, from the solutions of its cases; none where no case was
-    solved.
-    """
+    """The stress histories at the critical points of a pin; none where no case was solved."""
     cases = [
         _Case(solution, known)
         for solution in solutions
@@ -95,17 +94,19 @@ def _tuple(point: Floats) -> tuple[float, float, float]:
 
 
 def _at(place: _Place, cases: Sequence[_Case]) -> tuple[CaseHistory, ...]:
-    found = []
+    """The stress of every case at a place."""
+    histories = []
     for case in cases:
         known, loads = case.known, case.solution.loads
         row = _nearest(known, place.point[None])
         stress = known.at(row, np.array([place.angle]), np.arange(known.count))[0]
         signed, plain = signed_von_mises(stress), von_mises(stress)
-        found.append(CaseHistory(loads.case, loads.times, stress, plain, signed))
-    return tuple(found)
+        histories.append(CaseHistory(loads.case, loads.times, stress, plain, signed))
+    return tuple(histories)
 
 
 def _places(cases: Sequence[_Case]) -> list[_Place]:
+    """The critical places, those that nearly coincide merged."""
     out: list[_Place] = []
     for place in (*_local_maxima(cases), *_governing(cases)):
         near = MERGE_DISTANCE * float(np.hypot(*place.point[:2]))
@@ -115,7 +116,7 @@ def _places(cases: Sequence[_Case]) -> list[_Place]:
 
 
 def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
-    """Where von Mises stress of the surface is largest in each case."""
+    """The places of the largest von Mises stress of the surface, case by case."""
     for case in cases:
         peak = case.solution.peak
         at = peak.location if peak.places is None else peak.places.surface.location
@@ -130,6 +131,7 @@ def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
 
 
 def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
+    """The places of the local maxima of the score, the largest first."""
     base = max(cases, key=lambda case: case.solution.peak.max_von_mises or 0.0).known
     rows = np.flatnonzero(base.surface)
     if not len(rows):
@@ -142,6 +144,7 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
     for k in order:
         if len(chosen) == MAX_POINTS or score[k] <= MIN_SCORE * score[order[0]]:
             return
+        # A candidate with a better or an already chosen neighbour is no local maximum of its own.
         near = tree.query_ball_point(points[k], MIN_SPACING * radius[k])
         if score[near].max() > score[k] or set(near) & set(chosen):
             continue
@@ -156,8 +159,11 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
 
 
 def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) -> Floats:
-    """Amplitude and a part of the mean, (P, A) Pa, at points (P,) and angles (A,) over all cases,
-    zero load included.
+    """Amplitude plus a part of the mean, (P, A), Pa, over all cases, zero load included.
+
+    points: (P, 3) m.
+    turns: number A of angles about the axis.
+    instants: of each case, at most.
     """
     turns = turns if cases[0].known.revolved else 1
     angles = np.tile(2.0 * np.pi * np.arange(turns) / turns, len(points))
@@ -176,12 +182,14 @@ def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) ->
 
 
 def _nearest(known: StressPoints, points: Floats) -> Ints:
+    """Rows of the known points nearest to points (P, 3)."""
     return np.asarray(KDTree(known.points).query(points)[1], dtype=np.int64)
 
 
 def signed_von_mises(stress: Floats) -> Floats:
-    """Von Mises stress (...) of stresses (..., 6), with the sign of the principal stress that is
-    largest by magnitude.
+    """The von Mises stress (...) of stresses (..., 6), signed.
+
+    The sign is that of the principal stress that is largest by magnitude.
 
     The largest and smallest principal stress sum to 2 p - 2 sqrt(J2 / 3) cos(lode - 2 pi / 3),
     whose sign is that of the larger one. In pure shear both are equal and the sign is open; it is

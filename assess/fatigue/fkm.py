@@ -25,9 +25,13 @@ PA_PER_MPA, M_PER_MM = 1e6, 1e-3
 
 @dataclass(frozen=True)
 class FkmMaterial:
-    """ultimate: R_m, Pa. roughness: R_z, m. plastic: K_p, limit load over the load at yield.
-    area, gradient: highly stressed surface (m^2) and related stress gradient (1/m), which support
-    the notch; by default they do not.
+    """Data of a material and a notch for the FKM guideline.
+
+    ultimate: R_m, Pa.
+    roughness: R_z, m.
+    plastic: K_p, limit load over the load at yield.
+    area, gradient: highly stressed surface (m^2) and related stress gradient (1/m), which give the
+    notch its support; none by default.
     """
 
     group: MaterialGroup
@@ -40,9 +44,11 @@ class FkmMaterial:
 
 @dataclass(frozen=True)
 class FkmLife:
-    """Cycles and repetitions of the sequence until failure; infinite: below the endurance limit.
-    at: repetitions at failure probabilities, from the scatter of the guideline without its least
-    safety factor; only of a life at 50 %.
+    """Cycles and repetitions of the sequence until failure.
+
+    infinite: below the endurance limit.
+    at: repetitions by failure probability, from the scatter of the guideline without its least
+    safety factor; only for a life at 50 %.
     """
 
     cycles: float
@@ -57,30 +63,32 @@ def p_ram_life(
     probability: float = 0.5,
     loads: tuple[float, float | None] = (50.0, None),
 ) -> FkmLife:
-    """Life of a point under a sequence of elastic stress (T,) Pa, repeated, at a failure
-    probability of at most 50 %. loads: probability P_L (%) that they do not exceed it, and their
-    standard deviation (Pa).
+    """The life of a point under a sequence of elastic stress (T,), Pa, that is repeated.
+
+    probability: of failure, at most 50 %.
+    loads: probability P_L (%) that loads do not exceed the sequence, and their standard deviation
+    (Pa).
     """
     import pandas
     from pylife.strength.fkm_nonlinear.assessment_nonlinear_standard import (
         perform_fkm_nonlinear_assessment,
     )
 
-    asked = _parameters(material) | {"P_A": probability, "P_L": loads[0]}
+    parameters = _parameters(material) | {"P_A": probability, "P_L": loads[0]}
     if loads[1] is not None:
-        asked["s_L"] = loads[1] / PA_PER_MPA
+        parameters["s_L"] = loads[1] / PA_PER_MPA
     with quiet():
-        found = perform_fkm_nonlinear_assessment(
-            pandas.Series(asked), pandas.Series(sequence / PA_PER_MPA), calculate_P_RAJ=False
+        assessment = perform_fkm_nonlinear_assessment(
+            pandas.Series(parameters), pandas.Series(sequence / PA_PER_MPA), calculate_P_RAJ=False
         )
-        infinite = bool(found["P_RAM_is_life_infinite"])
-    cycles, curve = found["P_RAM_collective"], found["P_RAM_woehler_curve"]
-    bearable = found.get("P_RAM_N_max_bearable")
+        infinite = bool(assessment["P_RAM_is_life_infinite"])
+    cycles, curve = assessment["P_RAM_collective"], assessment["P_RAM_woehler_curve"]
+    bearable = assessment.get("P_RAM_N_max_bearable")
 
     def at(wanted: float) -> float:
         with quiet():
             bearable(wanted)  # which leaves the damage at this probability
-        calculated = found["P_RAM_damage_calculator"].collective
+        calculated = assessment["P_RAM_damage_calculator"].collective
         return _repetitions(calculated, calculated["D"].to_numpy(dtype=float))
 
     parameter, closed = (cycles[x].to_numpy() for x in ("P_RAM", "is_closed_hysteresis"))
@@ -94,9 +102,11 @@ def p_ram_life(
 
 
 def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
-    """Of the sequence until failure, by equation 2.6-90 of the guideline from the damage (C,) in
-    its first and its second run; within these by the part of their damage, where pyLife has none. A
-    cycle in compression, without P_RAM, does no damage.
+    """Repetitions of the sequence until failure, by equation 2.6-90 of the guideline.
+
+    damage: (C,) of the cycles in the first and the second run. Within these runs the part of their
+    damage counts, for which pyLife has no rule. A cycle in compression, without P_RAM, does no
+    damage.
     """
     run = cycles["run_index"].to_numpy()
     first, second = (float(np.nansum(damage[run == n])) for n in (1, 2))
@@ -106,7 +116,7 @@ def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
 
 
 def _parameters(material: FkmMaterial) -> dict[str, object]:
-    """As pyLife calls them, in MPa and mm."""
+    """The parameters by pyLife's names, in MPa and mm."""
     return {
         "MatGroupFKM": material.group,
         "FinishingFKM": "none",

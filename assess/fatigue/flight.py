@@ -22,16 +22,19 @@ import numpy as np
 from pinbase.arrays import Floats, Ints
 from pinbase.errors import ArgumentError
 
-MAX_REPEAT_UNITS = 1000  # at most so many until the spectrum repeats itself
+MAX_REPEAT_UNITS = 1000  # units until the spectrum repeats itself
 MAX_SEQUENCE_CASES = 10_000  # cases in the sequence
-OCCURRENCE_TOLERANCE = 1e-9
-RAINFLOW_PASSES = 3
+OCCURRENCE_TOLERANCE = 1e-9  # relative, of an occurrence from its fraction
+RAINFLOW_PASSES = 3  # passes through the sequence, of which the last is counted
 
 
 @dataclass(frozen=True)
 class Flight:
-    """Numbers of the cases in their order until the spectrum repeats itself, and how many units
-    these are. ends: of each unit in that order; by default they are one.
+    """The order of cases until the spectrum repeats itself.
+
+    order: their numbers.
+    units: how many units these are.
+    ends: of each unit in the order; by default there is one.
     """
 
     order: tuple[int, ...]
@@ -45,14 +48,17 @@ class Flight:
         return (self.order[a:b] for a, b in pairwise((0, *ends)))
 
     def sequence(self, cases: Sequence[Floats]) -> Floats:
-        """Of what there is of every case, one after the other."""
+        """The values of all cases in their order, joined."""
         return np.concatenate([cases[k] for k in self.order])
 
 
 @dataclass(frozen=True)
 class Cycles:
-    """Amplitudes and means (C,) Pa; first, last: (C,) places of the sequence, repeated
-    RAINFLOW_PASSES times, between which each cycle is.
+    """The cycles of a sequence.
+
+    amplitude, mean: (C,) Pa.
+    first, last: (C,) places, in the sequence repeated RAINFLOW_PASSES times, between which each
+    cycle is.
     """
 
     amplitude: Floats
@@ -62,10 +68,10 @@ class Cycles:
 
 
 def flight(occurrences: Sequence[float]) -> Flight:
-    """The order of cases that occur so often per unit.
+    """The order of cases with these occurrences per unit.
 
-    Raises: ArgumentError where these are no fractions of 1000 or fewer units (`not-a-fraction`), or
-    the sequence is too long (`too-many-occurrences`).
+    Raises: ArgumentError where occurrences are no fractions of 1000 or fewer units
+    (`not-a-fraction`), or the sequence is too long (`too-many-occurrences`).
     """
     exact = [Fraction(n).limit_denominator(MAX_REPEAT_UNITS) for n in occurrences]
     units = lcm(*(n.denominator for n in exact))
@@ -85,7 +91,8 @@ def flight(occurrences: Sequence[float]) -> Flight:
             f"the spectrum has more than {MAX_SEQUENCE_CASES:,} cases until it repeats itself",
             "too-many-occurrences",
         )
-    each = [
+    # Spread each case evenly: unit u gets the whole numbers between u n and (u + 1) n.
+    units_of_cases = [
         tuple(
             case
             for case, n in enumerate(exact)
@@ -93,11 +100,15 @@ def flight(occurrences: Sequence[float]) -> Flight:
         )
         for unit in range(units)
     ]
-    return Flight(tuple(chain.from_iterable(each)), units, tuple(accumulate(map(len, each))))
+    return Flight(
+        tuple(chain.from_iterable(units_of_cases)),
+        units,
+        tuple(accumulate(map(len, units_of_cases))),
+    )
 
 
 def turning_points(values: Floats) -> Ints:
-    """Numbers of the first, the last and all turning points of a course (T,)."""
+    """Numbers of the first, the last and all turning points of a history (T,)."""
     rows = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
     slope = np.sign(np.diff(values[rows]))
     inner = rows[1:-1][slope[1:] != slope[:-1]]
@@ -105,8 +116,9 @@ def turning_points(values: Floats) -> Ints:
 
 
 def case_by_case(course: Floats) -> tuple[Floats, Ints]:
-    """Turning points of a case's course (T,), from zero and back to it without the last zero; and
-    the numbers at which they are in the course with a zero before and after it.
+    """The turning points of a case's history (T,), which starts from zero and returns to it.
+
+    The last zero is left out. Also their places in the history with a zero before and after it.
     """
     whole = np.concatenate([[0.0], course, [0.0]])
     turns = turning_points(whole)
@@ -114,7 +126,7 @@ def case_by_case(course: Floats) -> tuple[Floats, Ints]:
 
 
 def rainflow(sequence: Floats) -> Cycles:
-    """Cycles of a sequence (T,) that begins at zero and repeats itself."""
+    """The cycles of a sequence (T,) that begins at zero and repeats itself."""
     from pylife.stress.rainflow import FourPointDetector, FullRecorder
 
     recorder = FullRecorder()

@@ -1,9 +1,9 @@
 """Damage on many planes and in many directions at once, for a search among them.
 
 Rainflow cannot be vectorised over the instants, but over the planes: all of them take a step at the
-same time, each with a stack of turning points of its own. What repeats itself in the spectrum is
-counted three times at most, the third time for all others: from then on four-point counting closes
-the same cycles every time.
+same time, each with its own stack of turning points. Repeated parts of the spectrum are counted
+three times at most, the third time for all others: from then on four-point counting closes the same
+cycles every time.
 """
 
 from __future__ import annotations
@@ -19,17 +19,19 @@ from assess.fatigue.flight import RAINFLOW_PASSES, Flight
 from assess.fatigue.sn_curve import Life
 from pinbase.arrays import Floats, Ints, Mask
 
-PLANE_INSTANT_BATCH = 1_000_000  # planes and instants
-MIN_SHEAR_STEP = 1e-6  # of the largest shear stress of a case: smaller steps are none
-INITIAL_STACK_DEPTH = 16  # of the stacks at first
+PLANE_INSTANT_BATCH = 1_000_000  # planes times instants at once: limits memory
+MIN_SHEAR_STEP = 1e-6  # of the largest shear stress of a case: smaller steps are round-off
+INITIAL_STACK_DEPTH = 16  # turning points that a stack holds at first
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class OnPlanes:
-    """Damage (M,) until the spectrum repeats itself, the same with a knee that is lower by SOFTER
-    (sn_curve), and the largest equivalent amplitude, Pa.
+    """The damage (M,) on planes until the spectrum repeats itself.
+
+    softer: the same with a knee that is lower by SOFTENED_KNEE_RATIO (sn_curve).
+    largest: equivalent amplitude, Pa.
     """
 
     damage: Floats
@@ -37,15 +39,18 @@ class OnPlanes:
     largest: Floats
 
     def order(self) -> Ints:
-        """Of the planes, the worst first."""
+        """Numbers of the planes, the worst first."""
         return np.lexsort((-self.largest, -self.damage))
 
 
 def on_planes(
     cases: Sequence[Floats], flight: Flight, planes: tuple[Floats, Floats], k: float, life: Life
 ) -> OnPlanes:
-    """Of stress (T, 6) Pa in cases that begin and end at zero, on planes with normals (M, 3) and
-    directions of the shear stress in them (M, 3), by Findley's k.
+    """Damage on planes with normals (M, 3) and directions of the shear stress in them (M, 3).
+
+    cases: stress (T, 6), Pa, of each, which begins and ends at zero.
+    k: Findley's.
+    life: S-N curve.
     """
     normals, ways = planes
     longest = max(len(stress) for stress in cases)
@@ -55,6 +60,8 @@ def on_planes(
         here = slice(start, start + size)
         across, along = _components(normals[here], ways[here]), _components(normals[here])
         count = _Count(len(across), k, life)
+        # Cycles that close within a case are counted once for all its occurrences; what is left of
+        # its turning points then goes through the whole spectrum.
         left = [
             count.alone(_turns(across @ stress.T, along @ stress.T), flight.order.count(case))
             for case, stress in enumerate(cases)
@@ -63,13 +70,14 @@ def on_planes(
             for case, weight in _blocks(flight):
                 for point in zip(*left[case], strict=True):
                     count.step(*point, weight if n == RAINFLOW_PASSES - 1 else 0)
-        parts.append(count.found)
+        parts.append(count.totals)
     return OnPlanes(*(np.concatenate(x) for x in zip(*parts, strict=True)))
 
 
 def _components(normals: Floats, ways: Floats | None = None) -> Floats:
-    """What the components of a stress count (M, 6) in its part along `ways` on planes; by default
-    along their normals.
+    """The weights (M, 6) of stress components in the stress along `ways` on planes.
+
+    By default along their normals.
     """
     a, b = normals.T, (normals if ways is None else ways).T
     shear = [a[i] * b[j] + a[j] * b[i] for i, j in ((1, 2), (0, 2), (0, 1))]
@@ -77,8 +85,10 @@ def _components(normals: Floats, ways: Floats | None = None) -> Floats:
 
 
 def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
-    """Turning points of (M, T) shear stress, from zero and back to it without the last zero, and
-    the largest normal stress from each up to the next: (K, M), filled up with the last point.
+    """Turning points of shear stress and the largest normal stress up to the next, (K, M).
+
+    shear, normal: (M, T) Pa. They start from zero and return to it, without the last zero; shorter
+    rows are filled up with the last point.
     """
     zero = np.zeros((len(shear), 1))
     grain = MIN_SHEAR_STEP * float(np.abs(shear).max(initial=0.0)) or 1.0
@@ -93,11 +103,11 @@ def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
     largest = np.maximum.reduceat(top.ravel(), np.flatnonzero(turn))
     row, column = np.nonzero(turn)
     place = np.cumsum(turn, axis=1)[row, column] - 1
-    kept = column < whole.shape[1] - 1
-    row, place = row[kept], place[kept]
+    inner = column < whole.shape[1] - 1
+    row, place = row[inner], place[inner]
     values = np.full((int(place.max()) + 1, len(shear)), np.nan)
     tops = np.zeros_like(values)
-    values[place, row], tops[place, row] = whole[turn][kept], largest[kept]
+    values[place, row], tops[place, row] = whole[turn][inner], largest[inner]
     for one, two in pairwise(values):
         np.copyto(two, one, where=np.isnan(two))
     return values, np.maximum(tops, 0.0)
@@ -111,7 +121,7 @@ def _blocks(flight: Flight) -> Iterator[tuple[int, int]]:
 
 
 def _thrice(items: Iterable[T]) -> Iterator[tuple[T, int]]:
-    """Each item of a run once, but no more than three of them, of which the last is for all."""
+    """Each item of a run once, at most three of them, the last of which stands for the rest."""
     for item, run in groupby(items):
         n = sum(1 for _ in run)
         yield from ((item, 1) for _ in range(min(n, 2)))
@@ -120,9 +130,10 @@ def _thrice(items: Iterable[T]) -> Iterator[tuple[T, int]]:
 
 
 class _Count:
-    """Four-point rainflow of M courses side by side. Of each, `value` are the turning points that
-    still wait (depth, M), `raw` the largest normal stress up to the next point of the course, and
-    `top` that up to the next one that waits.
+    """Four-point rainflow of M histories side by side.
+
+    Each has a stack of turning points that are still open: `value` (depth, M), with the largest
+    normal stress up to the next point of the history, `raw`, and up to the next open point, `top`.
     """
 
     def __init__(self, size: int, k: float, life: Life) -> None:
@@ -131,28 +142,35 @@ class _Count:
             np.zeros((INITIAL_STACK_DEPTH, size)) for _ in range(3)
         )
         self._n = np.zeros(size, dtype=np.int64)
-        self.found = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.totals = np.zeros(size), np.zeros(size), np.zeros(size)
 
     def alone(self, turns: tuple[Floats, Floats], often: int) -> tuple[Floats, Floats, Floats]:
-        """Count the cycles that close within a case wherever it stands, `often` times: what of its
-        turning points is left for `step`, (K, M) each.
+        """Count the cycles that close within a case wherever it occurs, `often` times.
+
+        Returns what is left of its turning points for `step`, (K, M) each.
         """
-        own = _Count(len(self._n), self._k, self._life)
-        own.found = self.found
+        within = _Count(len(self._n), self._k, self._life)
+        within.totals = self.totals
         for value, top in zip(*turns, strict=True):
-            own.step(value, top, top, often)
-        count = int(own._n.max())
-        beyond = np.arange(count)[:, None] >= own._n
-        last = own._value[own._n - 1, np.arange(len(own._n))]
-        value = np.where(beyond, last, own._value[:count])
-        raw, top = (np.where(beyond, 0.0, kind[:count]) for kind in (own._raw, own._top))
+            within.step(value, top, top, often)
+        count = int(within._n.max())
+        beyond = np.arange(count)[:, None] >= within._n
+        last = within._value[within._n - 1, np.arange(len(within._n))]
+        value = np.where(beyond, last, within._value[:count])
+        raw, top = (np.where(beyond, 0.0, kind[:count]) for kind in (within._raw, within._top))
         return value, raw, top
 
     def step(self, x: Floats, raw: Floats, top: Floats, weight: int) -> None:
-        """Go on to a value; weight: how many times the cycles count that it closes."""
+        """Advance to the next value of each history.
+
+        x, raw, top: (M,).
+        weight: how many times the cycles that it closes count.
+        """
         n = self._n
         every = np.arange(len(n))
         last = self._value[n - 1, every]  # what it is without any does not matter
+        # A repeated value raises the normal stress alone; one further in the same direction
+        # replaces the last point; a reversal may close cycles.
         same = (n > 0) & (x == last)
         onward = ~same & (n > 1) & ((x - last) * (last - self._value[n - 2, every]) > 0.0)
         self._raise(self._raw, same, 1, raw)
@@ -165,11 +183,13 @@ class _Count:
         self._push(np.flatnonzero(~same), x, raw, top)
 
     def _raise(self, kind: Floats, which: Mask, back: int, top: Floats) -> None:
+        """Raise entries of a stack, `back` from its top, to at least `top`."""
         at = np.flatnonzero(which)
         row = self._n[at] - back
         kind[row, at] = np.maximum(kind[row, at], top[at])
 
     def _push(self, at: Ints, x: Floats, raw: Floats, top: Floats) -> None:
+        """Push a point on the stacks, which grow if needed."""
         row = self._n[at]
         if len(at) and row.max() >= len(self._value):
             more = ((0, len(self._value)), (0, 0))
@@ -180,12 +200,14 @@ class _Count:
         self._n[at] += 1
 
     def _close(self, at: Ints, weight: int) -> Ints:
-        """Take out the cycle before the last point, where there is one; those that may have
-        another.
+        """Remove the cycle before the last point of each history, where there is one.
+
+        Returns the histories that may have another one.
         """
         n = self._n[at]
         a, b, c, d = (self._value[n - j, at] for j in (4, 3, 2, 1))
         size = np.abs(b - c)
+        # Four-point rule: the inner range b-c lies within both ranges beside it.
         closes = (size <= np.abs(a - b)) & (size <= np.abs(c - d))
         at, n, size, d = at[closes], n[closes], size[closes], d[closes]
         tops = [self._top[n - j, at] for j in (4, 3, 2)]
@@ -199,8 +221,9 @@ class _Count:
         return at[n > 5]
 
     def _add(self, at: Ints, findley: Floats, weight: int) -> None:
+        """Add the damage of cycles with Findley's f to the totals."""
         equivalent = 2.0 / (self._k + np.hypot(1.0, self._k)) * findley
-        damage, softer, largest = self.found
+        damage, softer, largest = self.totals
         damage[at] += weight * self._life.damage(equivalent)
         softer[at] += weight * self._life.softer(equivalent)
         largest[at] = np.maximum(largest[at], equivalent)

@@ -1,11 +1,12 @@
 """Stress for fatigue at points on which lugs press at some instants.
 
 A point of a band is free under one load and pressed under the opposite one. While it is free its
-stress is read; while a lug presses on it, it has that of the same fibre without the pressure's
-(fea.harmonic.free_surface), and at the edge of a lug, where that is not known either, that of the
-nearest point of the outline at the same angle where it is. So an alternating load has its whole
-range beside an edge: to keep the last free value would halve it, and the pressure of cells would
-make ranges that are a matter of cells. What contact adds by itself, fretting, is none of it.
+stress is read. While a lug presses on it, it has the stress of the same fibre without that of the
+pressure (fea.harmonic.free_surface), and at the edge of a lug, where that is not known either, the
+stress of the nearest point of the outline at the same angle where it is. So an alternating load has
+its whole range beside an edge: keeping the last free value would halve it, and the pressure of
+cells would make ranges that depend on the cells. Effects of contact itself (fretting) are not
+included.
 """
 
 from __future__ import annotations
@@ -22,15 +23,14 @@ from fea.harmonic.free_surface import FreeSurface, SurfacePoints
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
-AXIAL_DISTANCE_WEIGHT = (
-    0.1  # of a distance along the pin counts, so that neighbours have the same angle
-)
+# Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
+AXIAL_DISTANCE_WEIGHT = 0.1
 
 Stress = Callable[[Ints, Floats, Ints], Floats]
 
 
 class StandIns:
-    """By which points of a surface of revolution others are replaced, where they are not read."""
+    """Points of a surface of revolution that replace others where these are not read."""
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.free, self._x = FreeSurface(of, pressed), of.fields.points
@@ -42,26 +42,27 @@ class StandIns:
         self._known: dict[int, Mask] = {}
 
     def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
-        """Of points (J,) at angles (J,), rad, those (J,) that stand for them at an instant."""
+        """The points (J,) that stand for points (J,) at angles (J,), rad, at an instant."""
         arc, out = (
             np.rint(angles / (2.0 * np.pi) * ARC_COUNT).astype(np.int64) % ARC_COUNT,
             rows.copy(),
         )
         some = np.flatnonzero(self.free.masked(rows))
-        own, place = np.unique(rows[some], return_inverse=True)
-        read = self.free.read(own, np.full(len(own), instant))[place, arc[some]]
+        point, place = np.unique(rows[some], return_inverse=True)
+        read = self.free.read(point, np.full(len(point), instant))[place, arc[some]]
         lost = some[~read]
         here, place = np.unique(rows[lost], return_inverse=True)
+        # The nearest substitute that is readable at the same angle; without one the point stays.
         apart = np.linalg.norm(self._x[here][:, None] - self._x[self._may], axis=2)
         order = np.argsort(apart, axis=1, kind="stable")[place]
-        found = self._readable(instant)[order, arc[lost][:, None]]
-        first = order[np.arange(len(lost)), found.argmax(axis=1)]
-        known = found.any(axis=1)
+        readable = self._readable(instant)[order, arc[lost][:, None]]
+        first = order[np.arange(len(lost)), readable.argmax(axis=1)]
+        known = readable.any(axis=1)
         out[lost[known]] = self._may[first[known]]
         return out
 
     def _readable(self, instant: int) -> Mask:
-        """On which arcs (M, BINS) what may stand for others is read."""
+        """The arcs (M, ARC_COUNT) on which possible substitutes are read at an instant."""
         if instant not in self._known:
             at = np.full(len(self._may), instant)
             self._known[instant] = self.free.read(self._may, at)
@@ -69,13 +70,13 @@ class StandIns:
 
 
 class CutStandIns:
-    """The same of the surface of a pin with cuts, by its points in space."""
+    """Points of the surface of a pin with cuts that replace others where these are not read."""
 
     def __init__(self, answer: CutField, pressed: PressedArcs) -> None:
         cut, pieces = answer.surface, answer.solution.pieces
-        each = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
-        first = len(cut.points) - sum(len(x) for x in each)
-        outline = np.concatenate([np.ones(first, dtype=bool), *each])
+        on_outline = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
+        first = len(cut.points) - sum(len(x) for x in on_outline)
+        outline = np.concatenate([np.ones(first, dtype=bool), *on_outline])
         self.pressed, self._stress = pressed, cut.stress
         self.free = FreePoints.of(cut.points, outline, pressed.rings)
         self.amid = np.flatnonzero(self.free.amid >= 0)
@@ -88,7 +89,7 @@ class CutStandIns:
         self._may: Mask = cut.read[rows]
 
     def rows(self, rows: Ints, instant: int) -> Ints:
-        """Of points (J,), those (J,) of `stress` that stand for them at an instant."""
+        """The rows (J,) of `stress` that stand for points (J,) at an instant."""
         read = self._both.read(self.pressed, instant)
         lost, out = np.flatnonzero(~read[rows]), rows.copy()
         may = np.flatnonzero(read & self._may)
@@ -99,17 +100,18 @@ class CutStandIns:
 
 
 def replaced(stress: Stress, stands: Callable[[Ints, Floats, int], Ints]) -> Stress:
-    """Stress (J, T, 6) at points, angles and instants, where others stand for some at an instant
-    with that of these.
+    """A function that gives stress (J, T, 6) with substitutes for points where they are not read.
+
+    stands: gives the points that stand for others at an instant.
     """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
         out = stress(rows, angles, instants)
         for k, t in enumerate(instants.tolist()):
-            found = stands(rows, angles, t)
-            some = np.flatnonzero(found != rows)
+            substitutes = stands(rows, angles, t)
+            some = np.flatnonzero(substitutes != rows)
             if len(some):
-                out[some, k] = stress(found[some], angles[some], np.array([t]))[:, 0]
+                out[some, k] = stress(substitutes[some], angles[some], np.array([t]))[:, 0]
         return out
 
     return at

@@ -1,12 +1,12 @@
-"""Whether a single course of stress stands for a history of all its components.
+"""Whether a single signed stress represents a history of all its components.
 
-A rule for such a course takes the stress at every instant as an amount of one tensor. The deviator
-times sqrt(3/2), whose length is the von Mises stress, should then go to and fro on a line through
-zero: `unseen` is how far it is, at most, from the place on that line where the rule takes it to be,
+A rule for such a history takes the stress at every instant as a multiple of one tensor. The
+deviator times sqrt(3/2), whose length is the von Mises stress, should then move on a line through
+zero: `unseen` is its largest distance from the place on that line where the rule takes it to be,
 over the largest von Mises stress. It is 2 where the sign of a torsion does not register, and about
 1.4 for components 90 degrees out of phase.
 
-In pure shear the principal stresses are equal, so that none gives the von Mises stress its sign
+In pure shear the principal stresses are equal, so that neither gives the von Mises stress its sign
 (assess.fatigue.critical_points). There the side of zero on the line does; the larger side counts as
 tension, the safe choice.
 """
@@ -22,14 +22,17 @@ from assess.fatigue.records import CaseHistory
 from fea.core.voigt import VON_MISES, von_mises
 from pinbase.arrays import Floats
 
-MAX_RULE_ERROR = 0.05  # of the largest stress: a rule may be so far off
+MAX_RULE_ERROR = 0.05  # of the largest stress, allowed error of a rule; chosen by judgement
 SIGNED_SHEAR_RULE = "alternating shear, signed by its direction"
 
 
 @dataclass(frozen=True)
 class SignedCourse:
-    """Stress with a sign, (T,) Pa in each case. largest: von Mises stress, Pa. unseen: what the
-    course leaves out, over that. note: how it was signed, if not by the largest principal stress.
+    """Signed stress (T,), Pa, of each case.
+
+    largest: von Mises stress, Pa.
+    unseen: error of the representation, over that.
+    note: how it was signed, if not by the largest principal stress.
     """
 
     cases: list[Floats]
@@ -39,12 +42,12 @@ class SignedCourse:
 
     @property
     def stands(self) -> bool:
-        """Whether it stands for the history."""
+        """Whether it represents the history."""
         return self.unseen <= MAX_RULE_ERROR
 
 
 def course(cases: Sequence[CaseHistory]) -> SignedCourse:
-    """Of all cases of a history; what it leaves out is for the caller to look at."""
+    """The signed stress of all cases of a history; its error is for the caller to judge."""
     stress = np.concatenate([case.stress for case in cases])
     signed = np.concatenate([case.signed for case in cases])
     size = von_mises(stress)
@@ -53,6 +56,7 @@ def course(cases: Sequence[CaseHistory]) -> SignedCourse:
         return SignedCourse([case.signed for case in cases], 0.0, 0.0)
     values, vectors = np.linalg.eigh(VON_MISES)
     deviator = stress @ (vectors * np.sqrt(np.maximum(values, 0.0)))  # (T, 6)
+    # The line through zero that fits the deviators best: their first principal direction.
     line = np.linalg.svd(deviator, full_matrices=False)[2][0]
     place = deviator @ line
     side = np.sign(place[np.abs(place).argmax()])

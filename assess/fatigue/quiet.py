@@ -1,4 +1,4 @@
-"""Calls of pyLife without what it prints and warns of: what matters of it is in the results."""
+"""Calls of pyLife without its printing and warnings; what matters of them is in the results."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from contextlib import contextmanager, redirect_stdout
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """No warning and nothing printed: pyLife 2.3 uses what pandas 3 deprecates, takes roots of
-    negative numbers for cycles in compression, and prints hints on P_RAJ.
+    """A context without warnings and printing.
+
+    pyLife 2.3 uses what pandas 3 deprecates, takes roots of negative numbers for cycles in
+    compression, and prints hints on P_RAJ.
     """
     with warnings.catch_warnings(), redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")

@@ -1,4 +1,4 @@
-"""What is known of fatigue: histories of stress at points, and the damage there."""
+"""Results of fatigue: histories of stress at points, and the damage there."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from pinbase.dimensions import Floats, Point, Stress, Stresses, Times
 
 @dataclass(frozen=True)
 class CaseHistory:
-    """Stress (T, 6) Pa at a point in one case, and its von Mises stress without and with a sign
-    (assess.fatigue.critical_points), (T,) Pa. times: None without a motion. Components are rr, tt,
-    zz, tz, rz, rt of a body of revolution; xx, yy, zz, yz, xz, xy of any other.
+    """The stress at a point in one case.
+
+    stress: (T, 6) Pa; rr, tt, zz, tz, rz, rt for a body of revolution; xx, yy, zz, yz, xz, xy for
+    any other.
+    von_mises, signed: (T,) Pa, without and with a sign (assess.fatigue.critical_points).
+    times: (T,) s, None without a motion.
     """
 
     case: str
@@ -24,9 +27,11 @@ class CaseHistory:
 
 @dataclass(frozen=True)
 class PointHistory:
-    """A critical point of a pin, numbered from 1, in all cases that were solved with it. location:
-    in the pin's axes. chosen: why, in words. cylindrical: whether stresses have the components of a
-    body of revolution.
+    """A critical point of a pin, numbered from 1, with its stress in all solved cases.
+
+    location: in the pin's axes.
+    chosen: the reason, in words.
+    cylindrical: whether stresses have the components of a body of revolution.
     """
 
     pin: str
@@ -37,7 +42,7 @@ class PointHistory:
     cylindrical: bool = False
 
     def in_pin_axes(self, direction: Floats) -> tuple[float, float, float]:
-        """A direction (3,) in the axes of the stresses."""
+        """A direction (3,) in the pin's axes, from one in the axes of the stresses."""
         first, second, z = direction.tolist()
         angle = math.atan2(self.location[1], self.location[0]) if self.cylindrical else 0.0
         c, s = math.cos(angle), math.sin(angle)
@@ -46,14 +51,20 @@ class PointHistory:
 
 @dataclass(frozen=True)
 class PointFatigue:
-    """Damage per unit of the spectrum (a flight, say) at a point, at the failure probability that
-    the study asks for; life: units until damage 1, None where there is no damage; lives: the same
-    at 10, 50 and 90 %, empty without a scatter. utilisation: damage times the design life.
+    """Damage at a point per unit of the spectrum (a flight, say).
 
-    amplitude, mean: of the largest cycle, uncorrected. amplitudes: of all cycles with damaging
-    potential, corrected for the mean, (C,) Pa, the largest first; counts: of each per unit.
-    method: of the equivalent stress. note: what was found on the way. normal: of the critical
-    plane, in the pin's axes; amplitude and mean are those of its shear stress.
+    It is for the failure probability that the study requests.
+    life: units until damage 1, None without damage.
+    lives: the same at 10, 50 and 90 %, empty without a scatter.
+    utilisation: damage times the design life.
+    amplitude, mean: of the largest cycle, uncorrected.
+    amplitudes: (C,) Pa, of all cycles that may do damage, corrected for the mean, the largest
+    first.
+    counts: of each per unit.
+    method: of the equivalent stress.
+    note: remarks on the assessment.
+    normal: of the critical plane, in the pin's axes; amplitude and mean are then those of its shear
+    stress.
     """
 
     pin: str

@@ -29,26 +29,28 @@ if TYPE_CHECKING:
 
 MeanStress = Literal["none", "fkm", "goodman", "swt", "walker"]
 
-SOFTENED_KNEE_RATIO = 0.95  # of the knee
+SOFTENED_KNEE_RATIO = 0.95  # of the knee's amplitude: ranks planes that do no damage
 
 
 @dataclass(frozen=True)
 class Life:
-    """An S-N curve at one failure probability, for many cycles in little time: knee: amplitude, Pa,
-    and cycles; slopes: above and below it.
+    """An S-N curve at one failure probability, for many cycles in little time.
+
+    knee: amplitude, Pa, and cycles.
+    slopes: above and below it.
     """
 
     knee: tuple[float, float]
     slopes: tuple[float, float]
 
     def damage(self, equivalent: Floats) -> Floats:
-        """Of each cycle of equivalent amplitudes (C,) Pa."""
+        """The damage (C,) of each cycle, by its equivalent amplitude (C,), Pa."""
         ratio, (above, below) = equivalent / self.knee[0], self.slopes
         low = np.minimum(ratio, 1.0) ** below if isfinite(below) else 0.0
         return np.asarray(np.where(ratio >= 1.0, ratio**above, low) / self.knee[1])
 
     def softer(self, equivalent: Floats) -> Floats:
-        """The same, with the slope above the knee down to SOFTENED_KNEE_RATIO of it."""
+        """The damage (C,) if the slope above the knee went on to SOFTENED_KNEE_RATIO of it."""
         ratio, damage = equivalent / self.knee[0], self.damage(equivalent)
         near = ratio ** self.slopes[0] / self.knee[1]
         return np.asarray(np.where((ratio >= SOFTENED_KNEE_RATIO) & (ratio < 1.0), near, damage))
@@ -56,9 +58,15 @@ class Life:
 
 @dataclass(frozen=True)
 class SnCurve:
-    """knee: amplitude S_D, Pa, and cycles N_D. slope: k above the knee, slope_below: below it.
-    scatter: T_N, 1 for none. probability: of failure, for which the curve stands. rule: of mean
-    stress, with its parameter: M, R_m (Pa), or g.
+    """A stress-life curve.
+
+    knee: amplitude S_D, Pa, and cycles N_D.
+    slope: k above the knee.
+    slope_below: below it.
+    scatter: T_N, 1 for none.
+    probability: of failure, for which the curve holds.
+    rule: of mean stress.
+    parameter: of the rule, M, R_m (Pa), or g.
     """
 
     knee: tuple[float, float]
@@ -70,7 +78,7 @@ class SnCurve:
     parameter: float = 0.0
 
     def equivalent(self, amplitude: Floats, mean: Floats) -> Floats:
-        """Amplitudes at stress ratio -1, Pa, of cycles (C,)."""
+        """Amplitudes (C,), Pa, at stress ratio -1, of cycles with amplitudes and means (C,), Pa."""
         top = np.maximum(amplitude + mean, 0.0)
         if self.rule == "fkm":
             from pylife.strength.meanstress import fkm_goodman
@@ -88,8 +96,9 @@ class SnCurve:
         return amplitude
 
     def cycles(self, amplitude: Floats, probability: float | None = None) -> Floats:
-        """Cycles to failure (C,), infinite below a knee without a slope; probability: by default
-        that of the curve.
+        """Cycles to failure (C,), infinite below a knee without a slope.
+
+        probability: of failure, by default that of the curve.
         """
         import pylife.materiallaws.woehlercurve  # noqa: F401, which teaches pandas
 
@@ -98,7 +107,7 @@ class SnCurve:
             return np.asarray(self._series().woehler.cycles(amplitude, wanted), dtype=float)
 
     def life(self, probability: float | None = None) -> Life:
-        """At a failure probability, by default that of the curve."""
+        """The curve at a failure probability, by default its own."""
         import pylife.materiallaws.woehlercurve  # noqa: F401, which teaches pandas
 
         wanted = self.probability if probability is None else probability
@@ -109,7 +118,11 @@ class SnCurve:
     def damage(
         self, equivalent: Floats, counts: Floats | float = 1.0, probability: float | None = None
     ) -> float:
-        """Of cycles of equivalent amplitudes (C,) Pa, each occurring `counts` times."""
+        """The damage of cycles with equivalent amplitudes (C,), Pa.
+
+        counts: occurrences of each.
+        probability: of failure, by default that of the curve.
+        """
         if not len(equivalent):
             return 0.0
         with np.errstate(divide="ignore"):  # an infinite amplitude has no life

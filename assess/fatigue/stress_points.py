@@ -1,4 +1,4 @@
-"""Stress at any points of a pin and all instants of a case, of every model alike."""
+"""Stress at any points of a pin and at all instants of a case, the same for every model."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ from pinbase.arrays import Floats, Ints, Mask
 
 @dataclass(frozen=True)
 class StressPoints:
-    """Points (S, 3) m where a model knows the stress, of a body of revolution those at theta = 0.
+    """Points (S, 3), m, where a model knows the stress, of a body of revolution at theta = 0.
 
     surface: (S,) those at which fatigue is looked for: on the surface, outside of singularities.
-    at: the stress (J, T, 6) Pa at points (J,) turned by angles (J,), rad, at some instants (T,) by
-    their numbers. Of bodies that are not of revolution angles count for nothing.
+    count: of instants.
+    at: gives the stress (J, T, 6), Pa, at points (J,) turned by angles (J,), rad, at instants (T,)
+    by their numbers. Angles have no effect on bodies that are not of revolution.
     """
 
     points: Floats
@@ -37,7 +38,7 @@ class StressPoints:
 
 
 def stress_points(answer: StressField | None, loads: PinLoads) -> StressPoints | None:
-    """Of a solution and the loads of its case; None where nothing was solved."""
+    """The stress points of a solution in its case; None where nothing was solved."""
     if isinstance(answer, HarmonicField):
         return _harmonic(answer, loads)
     if isinstance(answer, BeamField | FoundationField):
@@ -52,7 +53,7 @@ def stress_points(answer: StressField | None, loads: PinLoads) -> StressPoints |
 
 
 def _harmonic(answer: HarmonicField, loads: PinLoads) -> StressPoints:
-    """Of the surface, where lugs press on it as pressed_points has it."""
+    """The stress points of the surface; where lugs press on it, by the rules of pressed_points."""
     if loads.pressed is None:
         fields = answer.fields
         surface = fields.outside(answer.singularities)
@@ -60,16 +61,17 @@ def _harmonic(answer: HarmonicField, loads: PinLoads) -> StressPoints:
         at = _of_fields(fields, loads)
         return StressPoints(_at_zero(fields.points), surface, True, len(loads), at)
     of = surface_points(answer.fields, loads.pressed.rings, answer.solution.nu)
-    stands, own = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
+    stands, plain = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
     at = replaced(_of_fields(of.fields, loads), stands.rows)
-    surface = of.fields.outside(answer.singularities)[own]
+    surface = of.fields.outside(answer.singularities)[plain]
     return StressPoints(
-        _at_zero(of.fields.points[own]), surface, True, len(loads),
-        lambda rows, angles, instants: at(own[rows], angles, instants),
+        _at_zero(of.fields.points[plain]), surface, True, len(loads),
+        lambda rows, angles, instants: at(plain[rows], angles, instants),
     )  # fmt: skip
 
 
 def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
+    """A function that gives the stress of unit fields under loads."""
     acting = loads.coefficients()
     units = [k for k, load in enumerate(fields.loads) if load in acting]
     n = np.array([fields.loads[k].n for k in units])
@@ -79,6 +81,7 @@ def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
     even = COSINE_COMPONENTS[:, None]
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        # Cosine and sine parts by phase, as psi = n theta - p pi / 2 has them.
         turns = np.outer(angles, n)[:, None, :]
         c, s = np.cos(turns), np.sin(turns)
         unit, now = fields.stress[rows][:, :, units], amounts[instants]
@@ -90,6 +93,7 @@ def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
 
 
 def _cut(answer: CutField, loads: PinLoads) -> StressPoints:
+    """The stress points of a pin with cuts."""
     cut, amounts = answer.surface, answer.coefficients(loads)
     if loads.pressed is None:
         return _solid(cut.points, cut.stress, cut.read, amounts)
@@ -100,7 +104,10 @@ def _cut(answer: CutField, loads: PinLoads) -> StressPoints:
 
 
 def _beam(points: Floats, stress: Floats, count: int) -> StressPoints:
-    """Of stresses (3, S, 6, T): constant, times cos theta, times sin theta."""
+    """The stress points of a beam.
+
+    stress: (3, S, 6, T) Pa, constant, times cos theta, times sin theta.
+    """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
         constant, cosine, sine = stress[:, rows][..., instants]
@@ -111,7 +118,7 @@ def _beam(points: Floats, stress: Floats, count: int) -> StressPoints:
 
 
 def _solid(points: Floats, stress: Floats, surface: Mask, amounts: Floats) -> StressPoints:
-    """Of unit stresses (S, 6, L) and their amounts (T, L)."""
+    """The stress points of unit stresses (S, 6, L) in amounts (T, L)."""
 
     def at(rows: Ints, _: Floats, instants: Ints) -> Floats:
         return np.asarray((stress[rows] @ amounts[instants].T).swapaxes(1, 2))

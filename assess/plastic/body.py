@@ -20,8 +20,12 @@ from pinbase.arrays import Floats, Ints, Mask
 
 @dataclass(frozen=True)
 class Elements:
-    """M elements with K nodes and Q quadrature points each. nodes: (N, 3) m. numbers: (M, K) nodes.
-    gradients: (M, Q, K, 3) of the shape functions, 1/m. weights: (M, Q) m^3.
+    """M elements with K nodes and Q quadrature points each.
+
+    nodes: (N, 3) m.
+    numbers: (M, K) node numbers.
+    gradients: (M, Q, K, 3) of the shape functions, 1/m.
+    weights: (M, Q) m^3.
     """
 
     nodes: Floats
@@ -30,20 +34,22 @@ class Elements:
     weights: Floats
 
     def strain(self, displacement: Floats) -> Floats:
-        """(M, Q, 6) with tensor shears, of a displacement (N, 3) m."""
+        """Strains (M, Q, 6), with tensor shears, of a displacement (N, 3), m."""
         h = self.gradients.swapaxes(2, 3) @ displacement[self.numbers][:, None]
         return np.stack([(h[..., a, b] + h[..., b, a]) / 2.0 for a, b in VOIGT_TO_TENSOR], -1)
 
     def volume_change(self, displacement: Floats) -> Floats:
-        """(M, Q), of a displacement (N, 3) m."""
+        """The volumetric strain (M, Q) of a displacement (N, 3), m."""
         u = displacement[self.numbers].reshape(len(self.numbers), -1, 1)
         return np.asarray((self.gradients.reshape(*self.weights.shape, -1) @ u)[..., 0])
 
 
 @dataclass(frozen=True)
 class Ties:
-    """unknown: (3 N,) the free unknown of component 3 n + c, -1 where that is zero. sign: (3 N,) 1
-    or -1.
+    """The relation of displacement components to free unknowns.
+
+    unknown: (3 N,) the free unknown of component 3 n + c, -1 where that is zero.
+    sign: (3 N,) 1 or -1.
     """
 
     unknown: Ints
@@ -51,19 +57,19 @@ class Ties:
 
     @cached_property
     def matrix(self) -> sp.csr_matrix:
-        """(3 N, U): components from unknowns."""
+        """The matrix (3 N, U) that takes unknowns to components."""
         rows = np.flatnonzero(self.unknown >= 0)
         shape = len(self.unknown), int(self.unknown.max()) + 1
         return sp.csr_matrix((self.sign[rows], (rows, self.unknown[rows])), shape=shape)
 
     @cached_property
     def first(self) -> Ints:
-        """(U,) the first component of each free unknown."""
-        found: Ints = np.unique(self.unknown, return_index=True)[1]
-        return found[-self.matrix.shape[1] :]
+        """The first component (U,) that belongs to each free unknown."""
+        components: Ints = np.unique(self.unknown, return_index=True)[1]
+        return components[-self.matrix.shape[1] :]
 
     def without(self, unknowns: Ints) -> Ties:
-        """With some unknowns zero as well."""
+        """The ties with some unknowns zero as well."""
         left = np.ones(self.matrix.shape[1], dtype=bool)
         left[unknowns] = False
         number = np.append(np.where(left, np.cumsum(left) - 1, -1), -1)
@@ -71,28 +77,28 @@ class Ties:
 
 
 def untied(nodes: int) -> Ties:
-    """Every component of every node is its own unknown."""
+    """Ties by which every component of every node is its own unknown."""
     return Ties(np.arange(3 * nodes), np.ones(3 * nodes))
 
 
 class FlowingBody:
-    """Elements of a material with ties; U unknowns."""
+    """A body of elements with ties and a flow rule; U free unknowns."""
 
     def __init__(self, elements: Elements, ties: Ties, rule: FlowRule) -> None:
         self.elements, self.ties, self.rule = elements, ties, rule
         self.size: int = ties.matrix.shape[1]
 
     def displacement(self, unknowns: Floats) -> Floats:
-        """(N, 3) m."""
+        """The displacement (N, 3), m, of unknowns (U,)."""
         return np.asarray(self.ties.matrix @ unknowns).reshape(-1, 3)
 
     def at_rest(self) -> Flow:
-        """Before any load: zero everywhere, with the elastic tangent."""
+        """The state before any load: zero everywhere, with the elastic tangent."""
         points = self.elements.weights.shape
         return self.rule.step(np.zeros((*points, 6)), np.zeros((*points, 6)), np.zeros(points))
 
     def flow(self, unknowns: Floats, before: Flow) -> Flow:
-        """From the state before a step to its end."""
+        """The state at the end of a step to unknowns (U,), from the state before it."""
         strain = self.elements.strain(self.displacement(unknowns))
         return self.rule.step(strain, before.plastic, before.equivalent)
 
@@ -101,24 +107,26 @@ class FlowingBody:
         weighted = stress * self.elements.weights[..., None]
         return self.gathered(np.einsum("mqri,mqr->mi", self._b, weighted, optimize=True))
 
-    def gathered(self, each: Floats) -> Floats:
-        """Forces (U,) on the unknowns of those of the elements' nodes (M, 3 K), N."""
-        whole = np.bincount(self._dofs.ravel(), each.ravel(), minlength=len(self.ties.unknown))
+    def gathered(self, element_forces: Floats) -> Floats:
+        """Forces (U,), N, on the unknowns from nodal forces of the elements (M, 3 K), N."""
+        whole = np.bincount(
+            self._dofs.ravel(), element_forces.ravel(), minlength=len(self.ties.unknown)
+        )
         return np.asarray(self.ties.matrix.T @ whole)
 
     def stiffness(self, tangent: Floats) -> sp.csr_matrix:
-        """(U, U) N/m of a tangent (M, Q, 6, 6) Pa."""
+        """The stiffness matrix (U, U), N/m, of a tangent (M, Q, 6, 6), Pa."""
         b, points = self._b, self.elements.weights[..., None, None]
         db = (tangent * points) @ b
         flat = len(b), -1, b.shape[-1]
         return self.assembled(b.reshape(flat).swapaxes(1, 2) @ db.reshape(flat))
 
-    def assembled(self, each: Floats) -> sp.csr_matrix:
-        """(U, U) N/m of the elements' matrices (M, 3 K, 3 K), which may be overwritten."""
+    def assembled(self, element_matrices: Floats) -> sp.csr_matrix:
+        """The matrix (U, U), N/m, of element matrices (M, 3 K, 3 K), which may be overwritten."""
         sign = self.ties.sign[self._dofs]
-        each *= sign[:, :, None] * sign[:, None, :]
-        place, kept, indices, indptr = self._pattern
-        data = np.bincount(place, each[kept], minlength=len(indices))
+        element_matrices *= sign[:, :, None] * sign[:, None, :]
+        place, free, indices, indptr = self._pattern
+        data = np.bincount(place, element_matrices[free], minlength=len(indices))
         return sp.csr_matrix((data, indices, indptr), shape=(self.size, self.size))
 
     @cached_property
@@ -129,7 +137,7 @@ class FlowingBody:
 
     @cached_property
     def _b(self) -> Floats:
-        """Strains with doubled shears (M, Q, 6, 3 K) of displacements."""
+        """The matrices (M, Q, 6, 3 K) from displacements to strains with doubled shears."""
         g = self.elements.gradients
         out = np.zeros((*g.shape[:2], 6, *g.shape[2:]))
         for row, (a, b) in enumerate(VOIGT_TO_TENSOR):
@@ -139,11 +147,15 @@ class FlowingBody:
 
     @cached_property
     def _pattern(self) -> tuple[Ints, Mask, Ints, Ints]:
-        """Where in the matrix entries of the elements go; which of them; its columns and rows."""
+        """The sparsity pattern of the matrix.
+
+        It is the place of each free entry of the elements, the mask of free entries, columns, and
+        row pointer.
+        """
         unknown = self.ties.unknown[self._dofs].astype(np.int64)
         row = np.broadcast_to(unknown[:, :, None], (*unknown.shape, unknown.shape[1]))
         column = row.swapaxes(1, 2)
-        kept = (row >= 0) & (column >= 0)
-        entries, place = np.unique(row[kept] * self.size + column[kept], return_inverse=True)
+        free = (row >= 0) & (column >= 0)
+        entries, place = np.unique(row[free] * self.size + column[free], return_inverse=True)
         pointer = np.searchsorted(entries, np.arange(self.size + 1) * self.size).astype(np.int64)
-        return place, kept, entries % self.size, pointer
+        return place, free, entries % self.size, pointer

@@ -1,4 +1,4 @@
-"""How much processor time a limit load may take that nobody has asked for."""
+"""The processor time that a limit load may take when nobody has asked for it."""
 
 from __future__ import annotations
 
@@ -13,17 +13,23 @@ class OutOfTimeError(Exception):
 
 @dataclass(frozen=True)
 class Budget:
-    """seconds: of processor time of this thread from `begin` on, which is when it is made."""
+    """Processor time that may be spent.
+
+    seconds: of this thread from `begin` on, which is the moment of construction.
+    """
 
     seconds: float = math.inf
     begin: float = field(default_factory=lambda: time.thread_time())
 
     @property
     def spent(self) -> float:
-        """s."""
+        """Processor time since `begin`, s."""
         return time.thread_time() - self.begin
 
     def require(self, more: float = 0.0) -> None:
-        """Raises: OutOfTimeError where so many seconds are not left."""
+        """Check that the budget has at least `more` seconds left.
+
+        Raises: OutOfTimeError.
+        """
         if not self.spent + more <= self.seconds:
             raise OutOfTimeError

@@ -22,16 +22,19 @@ from pinbase.arrays import Floats
 # Part of the elastic stiffness in the tangent: keeps it positive definite at the limit load, where
 # Newton's method then converges linearly, by this ratio. The solution does not depend on it.
 ELASTIC_SHARE = 1e-6
-VOIGT_WEIGHTS = np.array(
-    [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
-)  # shears count twice in a product of tensors
+# Shears count twice in a product of tensors.
+VOIGT_WEIGHTS = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 _IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_IDENTITY, _IDENTITY) / 3.0
 
 
 class Flow(NamedTuple):
-    """Of points (...): stress (..., 6) Pa, plastic strain (..., 6), equivalent plastic strain
-    (...), and their tangent (..., 6, 6) Pa for strains with doubled shears.
+    """The state of points (...) after a step.
+
+    stress: (..., 6) Pa.
+    plastic: plastic strain (..., 6) with tensor shears.
+    equivalent: equivalent plastic strain (...).
+    tangent: (..., 6, 6) Pa, consistent with the step, for strains with doubled shears.
     """
 
     stress: Floats
@@ -58,8 +61,9 @@ class FlowRule:
 
     @cached_property
     def curve(self) -> tuple[Floats, Floats]:
-        """Equivalent plastic strain and yield stress (Pa) where straight pieces meet; constant
-        after the last.
+        """Equivalent plastic strains and yield stresses (Pa) at the ends of the straight pieces.
+
+        The yield stress is constant after the last.
         """
         strength = self.material.yield_strength
         assert strength is not None
@@ -69,41 +73,56 @@ class FlowRule:
 
     @property
     def strongest(self) -> float:
-        """Largest yield stress, Pa."""
+        """The largest yield stress, Pa."""
         return float(self.curve[1][-1])
 
     def step(self, strain: Floats, plastic: Floats, equivalent: Floats) -> Flow:
-        """After a step to a strain (..., 6) with tensor shears from a plastic strain (..., 6) and
-        an equivalent plastic strain (...).
+        """The state after a fully implicit step to a total strain, by radial return.
+
+        strain: (..., 6) total, with tensor shears, at the end of the step.
+        plastic: (..., 6) plastic strain at its start.
+        equivalent: (...) equivalent plastic strain at its start.
+
+        Source: Simo & Hughes, boxes 3.1 and 3.2.
         """
         shear = self.material.lame[1]
+        # Elastic predictor: no plastic flow in the step. Flow then changes the deviator alone.
         trial = self.material.stress(strain - plastic)
         pressure = trial[..., :3].sum(-1, keepdims=True) / 3.0
         deviator = trial - pressure * _IDENTITY
         mises = np.sqrt(1.5 * (deviator**2 @ VOIGT_WEIGHTS))
+        # Plastic corrector: s(a) + 3 G a = q + 3 G a0 for the equivalent plastic strain a at the
+        # end. The left side is piecewise linear and rises, so interpolation inverts it exactly;
+        # where the trial state is below yield, a stays at a0.
         strains, stresses = self.curve
         line = stresses + 3.0 * shear * strains
         driving = mises + 3.0 * shear * equivalent
         after = np.maximum(np.interp(driving, line, strains), equivalent)
-        left = np.where(after > equivalent, np.interp(after, strains, stresses), mises)
-        ratio = np.divide(left, mises, out=np.ones_like(mises), where=mises > 0.0)
-        unit = deviator / np.where(mises > 0.0, mises, 1.0)[..., None]
+        yield_stress = np.where(after > equivalent, np.interp(after, strains, stresses), mises)
+        # The deviator returns radially: it keeps its direction and shrinks to the yield stress.
+        remaining = np.divide(yield_stress, mises, out=np.ones_like(mises), where=mises > 0.0)
+        direction = deviator / np.where(mises > 0.0, mises, 1.0)[..., None]
+        # Consistent tangent: the slope H of the hardening piece on which the step ends.
         slope = np.append(np.diff(stresses) / np.diff(strains), 0.0)
         piece = np.searchsorted(line, driving, side="right") - 1
         hardening = slope[np.maximum(piece, 0)]
         flowing = after > equivalent
-        normal = np.where(flowing, ratio - hardening / (3.0 * shear + hardening), 0.0)
-        flow = 1.5 * (after - equivalent)[..., None] * unit
+        normal = np.where(flowing, remaining - hardening / (3.0 * shear + hardening), 0.0)
+        # Plastic strain grows along the deviator (normality); 3/2 relates it to the equivalent one.
+        flow = 1.5 * (after - equivalent)[..., None] * direction
         return Flow(
-            stress=ratio[..., None] * deviator + pressure * _IDENTITY,
+            stress=remaining[..., None] * deviator + pressure * _IDENTITY,
             plastic=plastic + flow,
             equivalent=after,
-            tangent=self._tangent(ratio, normal, unit),
+            tangent=self._tangent(remaining, normal, direction),
         )
 
     def _tangent(self, ratio: Floats, normal: Floats, unit: Floats) -> Floats:
-        """ratio, normal: parts of the elastic shear stiffness of all deviators, and that is missing
-        along the flow; unit: deviators (..., 6) of a Mises stress of one.
+        """The consistent tangent (..., 6, 6), Pa, for strains with doubled shears.
+
+        ratio: (...) part of the elastic shear stiffness that all deviators keep.
+        normal: (...) part that is missing along the flow.
+        unit: (..., 6) deviators of a Mises stress of one.
         """
         lam, shear = self.material.lame
         bulk = lam + 2.0 * shear / 3.0
@@ -113,8 +132,9 @@ class FlowRule:
         return np.asarray((1.0 - ELASTIC_SHARE) * softer + ELASTIC_SHARE * elastic)
 
     def dissipation(self, strain: Floats) -> Floats:
-        """Largest work per volume (...), Pa, that flow by a strain (..., 6) can take: of its
-        deviator.
+        """The largest plastic work per volume (...), Pa, that a strain increment (..., 6) can take.
+
+        It is the strongest yield stress times the equivalent strain of its deviator.
         """
         deviator = strain - strain[..., :3].mean(-1, keepdims=True) * _IDENTITY
         return np.asarray(self.strongest * np.sqrt(2.0 / 3.0 * (deviator**2 @ VOIGT_WEIGHTS)))

@@ -36,7 +36,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea.beam.line_load import acting, shares
-from fea.beam.plastic_interaction import bent_and_pulled, plastic_torque
+from fea.beam.plastic_interaction import bending_and_axial_use, plastic_torque
 from fea.beam.round_section import Circle
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, Span, stepped_beam
 from fea.core.material import Material
@@ -44,15 +44,18 @@ from fea.core.pin_loads import Loads
 from geometry import Pin
 from pinbase.arrays import Floats, Mask
 
-MIN_HINGE_DISTANCE = 0.75  # of a diameter, between a clamp and the hinge next to it
-HINGE_ERROR = 0.15  # of the factor: an allowance, docs/past-yield.md
-SECTIONS_PER_CELL = 101  # sections looked at in a cell
+# Diameters between a clamp and the hinge next to it: where the solid has it, too.
+MIN_HINGE_DISTANCE = 0.75
+# Of the factor: an allowance, checked against solids of the landing gear (docs/past-yield.md).
+HINGE_ERROR = 0.15
+SECTIONS_PER_CELL = 101  # sections that are checked in each cell
 
 
 @dataclass(frozen=True)
 class BeamBounds:
-    """Bounds of the load factor at every instant, (T,); infinite where nothing acts. slip: the
-    upper bound by slip alone, which holds for the solid as well: what slips is rigid.
+    """Bounds of the load factor at every instant, (T,); infinite where nothing acts.
+
+    slip: the upper bound by slip alone, which holds for the solid as well: what slips is rigid.
     """
 
     lower: Floats
@@ -61,12 +64,16 @@ class BeamBounds:
 
     @property
     def governing(self) -> int:
-        """The instant with the least lower bound."""
+        """Number of the instant with the least lower bound."""
         return int(self.lower.argmin())
 
 
 def beam_bounds(pin: Pin, material: Material, clamps: tuple[str, ...], loads: Loads) -> BeamBounds:
-    """Of a pin with a yield strength, by its last hardening if it has any, for the upper bound."""
+    """Bounds of the load factor of a pin with a yield strength, by both theorems for beams.
+
+    The upper bound takes the last hardening stress, if there is any, and the lower one the yield
+    strength.
+    """
     units = acting(loads)
     first = material.yield_strength
     assert first is not None
@@ -96,7 +103,7 @@ def beam_bounds(pin: Pin, material: Material, clamps: tuple[str, ...], loads: Lo
 def _sampled(
     forces: InternalForces, span: Span, amounts: Floats
 ) -> tuple[Floats, list[Circle], Floats]:
-    """z (S,) m, sections (S) and V, M, N, T there, (T, 2, S, 4) by phase."""
+    """z (S,), m, sections (S), and V, M, N, T there by phase, (T, 2, S, 4)."""
     cells = np.repeat(np.arange(span.first, span.last), SECTIONS_PER_CELL)
     part = np.tile(np.linspace(0.0, 1.0, SECTIONS_PER_CELL), span.last - span.first)
     z = forces.stations[cells] + part * np.diff(forces.stations)[cells]
@@ -117,14 +124,18 @@ def _torque(section: Circle) -> float:
 
 
 def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, Floats]:
-    """What bending with an axial force uses of each section, at most and at least, (T, S); at
-    least with torsion: work of flow is no more than by the mean square of its strain.
+    """The use of sections by bending and axial force, upper and lower estimate, (T, S).
+
+    The lower one includes torsion: the work of flow is no more than that by the mean square of its
+    strain.
     """
     most, least = np.empty((2, *across.shape[:2]))
     for section in set(sections):
         same = np.array([s == section for s in sections])
         moment, axial = across[:, same, MOMENT], across[:, same, AXIAL]
-        most[:, same], least[:, same] = bent_and_pulled(section, moment, axial)
+        most[:, same], least[:, same] = bending_and_axial_use(section, moment, axial)
+    # Mean square of the strain of bending, stretching and twisting: M, N and T weigh with these
+    # factors.
     squares = np.array(
         [
             (
@@ -140,15 +151,21 @@ def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, 
 
 
 def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
-    """Lower bounds (T,) per Pa of yield stress. bent: what bending and pulling use, (T, S)."""
+    """Lower bounds (T,) per Pa of yield stress.
+
+    across: (T, S, 4) used parts.
+    bent: (T, S) use by bending and axial force.
+    """
     peak = np.array([s.vq_it for s in sections])
     sheared = across[..., SHEAR] * peak + across[..., TORQUE]
     return _inverse(np.hypot(bent, sheared).max(axis=1))
 
 
 def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
-    """Upper bounds (T,) per Pa of yield stress, by a section that slips, or the part between two
-    of a span that is clamped at both ends, which the ends of cells are enough for.
+    """Upper bounds (T,) per Pa of yield stress, by slip.
+
+    One section slips, or, in a span clamped at both ends, the part between two sections; the ends
+    of cells suffice for these.
     """
     if not (span.left and span.right):
         return _inverse((np.linalg.norm(inside, axis=1) / strong)[..., SHEAR].max(axis=1))
@@ -160,8 +177,11 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
 
 
 def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
-    """Power over work (T,) of a section that twists, slips apart or is a hinge. bent: of a hinge,
-    (T, S).
+    """Power over work (T,) of one section that twists, slips apart or is a hinge.
+
+    room: (S,) as in `_room`.
+    across: (T, S, 4) used parts.
+    bent: of a hinge, (T, S).
     """
     steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
     apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
@@ -182,7 +202,13 @@ def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
 
 
 def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:
-    """Power over work (T,) of a hinge near each end and one between, moment (T, 2, S)."""
+    """Power over work (T,) of a hinge near each end of a span and one between.
+
+    z: (S,) m.
+    away: (S,) where a hinge may be.
+    strong: (S,) plastic moments.
+    moment: (T, 2, S).
+    """
     places = np.flatnonzero(away)
     if len(places) < 3:
         return np.zeros(len(moment))

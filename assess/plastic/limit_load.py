@@ -29,17 +29,26 @@ from fea.core.linear_solver import SolveError
 from pinbase.arrays import Floats
 
 # Works at which equilibrium is sought, over that of the elastic body at its bound.
+# Fine where the body begins to flow, coarse beyond; chosen by judgement.
 WORK_RATIOS = (0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.7, 2.2, 3.0, 4.0, 6.0, 9.0, 13.0, 20.0)
-EQUILIBRIUM_ALLOWANCE = 0.01  # of the factor: allowance for equilibrium of whole elements alone
-STEP_GROWTH_TOLERANCE = 2e-3  # growth of the factor in a step that ends it
-MAX_FLOW_WORK_RATIO = 1.02  # the work of flow over that of the loads, at most, then
-MIN_FLOW_WORK_RATIO = 0.97  # the same, where Newton's method fails before
+# Of the factor, for equilibrium of whole elements alone: twice the largest excess over 17 closed
+# forms, 0.43 % (docs/past-yield.md, `python -m benchmarks limit_load`), rounded up.
+EQUILIBRIUM_ALLOWANCE = 0.01
+# When the path ends; chosen by judgement.
+STEP_GROWTH_TOLERANCE = 2e-3  # relative growth of the factor in the last step, at most
+MAX_FLOW_WORK_RATIO = 1.02  # work of flow over that of the loads in that step, at most
+MIN_FLOW_WORK_RATIO = 0.97  # factor over work of flow, at least, where Newton's method fails
 
 
 @dataclass(frozen=True)
 class MeshBracket:
-    """reached: the largest load factor in equilibrium on one mesh, no bound by itself. above: its
-    upper bound. steps, iterations: that it took. last: the last state.
+    """The limit load on one mesh.
+
+    reached: the largest load factor in equilibrium, no bound by itself.
+    above: the upper bound.
+    curve: load factors and displacements.
+    steps, iterations: that it took.
+    last: the last state.
     """
 
     unknowns: int
@@ -51,9 +60,7 @@ class MeshBracket:
     last: State
 
     def permanent_at(self, factor: float) -> float:
-        """What is left of the largest displacement (m) after a load factor, between the steps
-        straight.
-        """
+        """The permanent part of the largest displacement (m) after a load factor."""
         rising = np.maximum.accumulate(self.curve.factor)
         return float(np.interp(factor, rising, self.curve.permanent))
 
@@ -61,22 +68,28 @@ class MeshBracket:
 def limit_on_mesh(
     body: FlowingBody, forces: Floats, finer: RefinedElements, budget: Budget | None = None
 ) -> MeshBracket:
-    """The limit load of a body under forces (U,) N; finer: the same elements with more points.
+    """The limit load of a body under forces (U,), N.
+
+    finer: the same elements with more quadrature points, for the mechanism's work.
 
     Raises: SolveError when equilibrium is not found before the factor settles; OutOfTimeError.
     """
     path = EquilibriumPath(body, forces, budget)
     first = work_of_flow(body, finer.elements, path.elastic)
-    states, flows = [path.start()], np.inf
+    states, flow_factor = [path.start()], np.inf
     try:
+        # Follow the path step by step; `flow_factor` is the upper bound by the step's increment as
+        # a mechanism, so the factor has settled when it nearly reaches that.
         for state in path.steps(np.array(WORK_RATIOS) * first):
             states.append(state)
-            grown = work_of_flow(body, finer.elements, state.unknowns - states[-2].unknowns)
-            flows = grown / (state.work - states[-2].work)
-            if _settled(states[-2], state, flows):
+            flow_work = work_of_flow(body, finer.elements, state.unknowns - states[-2].unknowns)
+            flow_factor = flow_work / (state.work - states[-2].work)
+            if _settled(states[-2], state, flow_factor):
                 break
     except SolveError:
-        if not states[-1].factor > MIN_FLOW_WORK_RATIO * flows:
+        # Newton's method fails where hardly anything resists any more: accepted near the upper
+        # bound.
+        if not states[-1].factor > MIN_FLOW_WORK_RATIO * flow_factor:
             raise
     before, last = states[-2:]
     increment = last.unknowns - before.unknowns
@@ -91,16 +104,19 @@ def limit_on_mesh(
     )
 
 
-def _settled(before: State, now: State, flows: float) -> bool:
+def _settled(before: State, now: State, flow_factor: float) -> bool:
+    """Whether the factor has stopped growing and its step is nearly a mechanism."""
     if before.factor <= 0.0:
         return False
     return (
         now.factor / before.factor < 1.0 + STEP_GROWTH_TOLERANCE
-        and flows < MAX_FLOW_WORK_RATIO * now.factor
+        and flow_factor < MAX_FLOW_WORK_RATIO * now.factor
     )
 
 
 def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> LoadCurve:
+    """Load factors, largest displacements, and their permanent parts after elastic unloading."""
+
     def largest(unknowns: Floats) -> float:
         return float(np.linalg.norm(body.displacement(unknowns), axis=1).max())
 
@@ -112,7 +128,7 @@ def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> Loa
 
 
 def bracket(meshes: list[MeshBracket]) -> tuple[float, float]:
-    """Lower and upper bound from two meshes, the coarser first."""
+    """The lower and the upper bound of the load factor from two meshes, the coarser first."""
     coarse, fine = meshes[-2:]
     doubt = abs(coarse.reached - fine.reached) + EQUILIBRIUM_ALLOWANCE * fine.reached
     return fine.reached - doubt, max(fine.above.factor, fine.reached)

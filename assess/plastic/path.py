@@ -24,14 +24,20 @@ from pinbase.arrays import Floats
 
 RESIDUAL_TOLERANCE = 1e-6  # residual over the loads
 MAX_NEWTON_ITERATIONS = 40
-MAX_SLOPE_SHARE = 0.8  # part of the slope at the start that may be left after an iteration
+# Part of the initial slope that a line search may leave; chosen by judgement.
+MAX_SLOPE_SHARE = 0.8
 MAX_STEP_HALVINGS = 6
 
 
 @dataclass(frozen=True)
 class State:
-    """In equilibrium: load factor, unknowns (U,), work per load factor (J), flow at the points.
-    residuals: of the iterations, over the loads. instant: which of the steps.
+    """A state in equilibrium.
+
+    factor: of the loads.
+    unknowns: (U,) m.
+    work: of the loads per load factor, J.
+    flow: state of the quadrature points.
+    residuals: of the iterations, over the loads.
     """
 
     factor: float
@@ -42,7 +48,10 @@ class State:
 
 
 class EquilibriumPath:
-    """A body under forces (U,), N. budget: asked before every iteration.
+    """The equilibrium of a body along its load path, by prescribed work.
+
+    forces: (U,) N.
+    budget: asked before every iteration.
 
     Raises: SolveError for a body that is not constrained, from here and from the steps.
     """
@@ -55,7 +64,7 @@ class EquilibriumPath:
         self.compliance = float(forces @ self.elastic)
 
     def start(self) -> State:
-        """Without loads."""
+        """The state without loads."""
         return State(0.0, np.zeros(self.body.size), 0.0, self.body.at_rest())
 
     def steps(self, works: Floats) -> Iterator[State]:
@@ -70,6 +79,7 @@ class EquilibriumPath:
             yield now
 
     def _reach(self, now: State, before: State | None, work: float) -> State:
+        """The state at a work (J), or at the first of its halved steps that can be solved."""
         for _ in range(MAX_STEP_HALVINGS):
             try:
                 return self.step(now, before, work)
@@ -82,6 +92,7 @@ class EquilibriumPath:
 
         Raises: SolveError; OutOfTimeError.
         """
+        # Predictor: along the elastic response at first, then along the last increment.
         guess = (work - now.work) * (
             self.elastic / self.compliance
             if before is None
@@ -94,6 +105,8 @@ class EquilibriumPath:
             self.budget.require()
             inner = self.body.forces(flow.stress)
             solve = self._analysis.factorize(self.body.stiffness(flow.tangent))
+            # Corrector: two solutions with one factorisation, for the residual and for the loads;
+            # the factor follows from the prescribed work f u.
             a, b = solve(np.stack([-inner, self.load], axis=1)).T
             factor = (work - self.load @ (u + a)) / (self.load @ b)
             residual = float(np.linalg.norm(factor * self.load - inner)) / size
@@ -108,9 +121,15 @@ class EquilibriumPath:
         )
 
     def _search(self, u: Floats, along: Floats, before: Flow) -> tuple[Floats, Flow]:
-        """A point along a direction at which the energy is about least, and its flow."""
+        """The point along a direction at which the incremental energy is about least, and its flow.
+
+        The energy is convex, so its slope along the direction, the unbalanced force times the
+        direction, rises. The full step is taken if the slope is still negative there; otherwise the
+        root is bracketed by regula falsi, each step at least a tenth of the bracket.
+        """
         flow = self.body.flow(u + along, before)
         high, at_high = 1.0, self._slope(flow, along)
+        # The energy still falls at the full step, or has its least there: take it.
         if at_high <= 0.0:
             return u + along, flow
         low, at_low, at = 0.0, self._slope(self.body.flow(u, before), along), 1.0
@@ -118,6 +137,7 @@ class EquilibriumPath:
         for _ in range(MAX_STEP_HALVINGS):
             if abs(at_high) <= most or at_low >= 0.0:
                 break
+            # Regula falsi on the slope, away from the lower end by a tenth of the bracket at least.
             at = low + max((high - low) * at_low / (at_low - at_high), 0.1 * (high - low))
             flow = self.body.flow(u + at * along, before)
             middle = self._slope(flow, along)
@@ -130,4 +150,5 @@ class EquilibriumPath:
         return u + at * along, flow
 
     def _slope(self, flow: Flow, along: Floats) -> float:
+        """The slope of the incremental energy along a direction, J."""
         return float(self.body.forces(flow.stress) @ along)

@@ -1,12 +1,12 @@
-"""A pin as a flowing body of hexahedra: how much of it is modelled, its supports, its loads.
+"""A pin as a flowing body of hexahedra: the modelled part of it, its supports, its loads.
 
 Elements have 20 nodes and 2 x 2 x 2 quadrature points, which leaves no volumetric locking when the
-material flows (benchmarks/pins/limit_load.py measures that, and that of tetrahedra).
+material flows (`python -m benchmarks limit_load` compares them with tetrahedra).
 
-What part of a turn is modelled depends on the loads. Reflected at their plane nothing changes, so
-half is enough. Turned about the axis by half a turn, odd harmonics change sign, and with them all
-of the solution, because yield is the same in tension and compression: half is enough again, or a
-quarter where both apply.
+The modelled part of a turn depends on the loads. Reflected at their plane nothing changes, so half
+is enough. Turned about the axis by half a turn, odd harmonics change sign, and with them the whole
+solution, because yield is the same in tension and compression: half is enough again, or a quarter
+where both apply.
 """
 
 from __future__ import annotations
@@ -30,14 +30,19 @@ from geometry import Pin
 from geometry.mesh.hexahedra import HexMesh, HexSize, hexahedra
 from pinbase.arrays import Floats, Ints
 
-OUT_OF_PLANE_TOLERANCE = 1e-6  # of the loads: less out of a plane is none
+OUT_OF_PLANE_TOLERANCE = 1e-6  # of the largest load of its kind: less out of the plane is zero
 
 Acting = tuple[tuple[UnitLoad, int, float], ...]  # unit loads with their phase and amount
 
 
 @dataclass(frozen=True)
 class Sector:
-    """quarters: of the turn. mirror: at the plane y = 0. odd: the sign changes by half a turn."""
+    """The modelled part of a turn.
+
+    quarters: their number, 1, 2 or 4.
+    mirror: at the plane y = 0.
+    odd: the solution changes sign by half a turn.
+    """
 
     quarters: int
     mirror: bool
@@ -46,7 +51,11 @@ class Sector:
 
 @dataclass(frozen=True)
 class PinBody:
-    """body: of a part of the pin. forces: (U,) N on its unknowns. mesh, sector: what it is."""
+    """The modelled part of a pin as a flowing body.
+
+    forces: (U,) N, on its unknowns.
+    mesh, sector: of which it is made.
+    """
 
     body: FlowingBody
     forces: Floats
@@ -55,7 +64,7 @@ class PinBody:
 
 
 def plane_of(loads: Loads, instant: int) -> float:
-    """Direction (rad from x) of most of the transverse loads."""
+    """Direction (rad from x) of the largest transverse load."""
     vectors = [both[instant] for load, both in loads.coefficients().items() if load.n == 1]
     if not vectors:
         return 0.0
@@ -65,7 +74,7 @@ def plane_of(loads: Loads, instant: int) -> float:
 
 
 def sector_of(acting: Acting) -> Sector:
-    """The least part of the pin that its loads allow."""
+    """The smallest part of the pin that the symmetry of its loads allows."""
     largest: dict[str, float] = {}
     for load, _, amount in acting:
         largest[load.kind] = max(largest.get(load.kind, 0.0), abs(amount))
@@ -80,7 +89,7 @@ def sector_of(acting: Acting) -> Sector:
 
 
 def acting_at(loads: Loads, instant: int, angle: float = 0.0) -> Acting:
-    """What acts at an instant, turned about the axis by an angle (rad)."""
+    """The unit loads that act at an instant, turned about the axis by an angle (rad)."""
     out = []
     for load, both in loads.coefficients().items():
         c, s = math.cos(load.n * angle), math.sin(load.n * angle)
@@ -92,8 +101,10 @@ def acting_at(loads: Loads, instant: int, angle: float = 0.0) -> Acting:
 def pin_body(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], acting: Acting, fineness: HexSize
 ) -> PinBody:
-    """A pin clamped at surfaces (by name) under loads; without clamps their small imbalance is
-    closed as in fea.core.tractions.
+    """A pin clamped at surfaces (by name) under loads, as a body that can flow.
+
+    acting: unit loads with phase and amount. Without clamps their small imbalance is closed as in
+    fea.core.tractions.
 
     Raises: SolveError for loads that nothing can balance.
     """
@@ -113,7 +124,7 @@ def pin_body(
 
 
 def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
-    """Elements of 20 nodes with so many quadrature points along each axis."""
+    """Elements of 20 nodes with `points` quadrature points along each axis."""
     x, weight = _gauss(points)
     grid = np.stack(np.meshgrid(x, x, x, indexing="ij")).reshape(3, -1)
     weights = np.einsum("i,j,k->ijk", weight, weight, weight).ravel()
@@ -124,14 +135,17 @@ def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
 
 
 def refine(elements: Elements) -> RefinedElements:
-    """Hexahedra with three instead of two quadrature points along each axis."""
+    """The same hexahedra with three instead of two quadrature points along each axis."""
     three = _gauss(3)[0]
     grid = np.stack(np.meshgrid(three, three, three, indexing="ij"), axis=-1).reshape(-1, 3)
     return RefinedElements(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
 
 
 def reading(local: Floats) -> Floats:
-    """(P, 8) values at places (P, 3) in an element, 0 to 1, from those at its quadrature points."""
+    """The matrix (P, 8) that takes values at quadrature points to places in an element.
+
+    local: (P, 3) coordinates of the places, 0 to 1.
+    """
     two = _gauss(2)[0]
     right = (local - two[0]) / (two[1] - two[0])
     first, second, third = np.stack([1.0 - right, right], axis=-1).swapaxes(0, 1)
@@ -139,24 +153,29 @@ def reading(local: Floats) -> Floats:
 
 
 def _gauss(points: int) -> tuple[Floats, Floats]:
+    """Gauss points and weights on the interval from 0 to 1."""
     x, weight = np.polynomial.legendre.leggauss(points)
     return (x + 1.0) / 2.0, weight / 2.0
 
 
 def _ties(mesh: HexMesh, sector: Sector) -> Ties:
-    """Of the nodes on the planes that bound a sector."""
+    """The ties of the nodes on the planes that bound a sector."""
     x, y, z = mesh.nodes.T
     near = 1e-9 * np.ptp(mesh.nodes)
     zero = np.zeros((len(x), 3), dtype=bool)
     unknown = np.arange(3 * len(x)).reshape(-1, 3)
     sign = np.ones((len(x), 3))
+    # On the mirror plane y = 0 nothing moves across it.
     if sector.mirror:
         zero[np.abs(y) < near, 1] = True
+    # On x = 0 the half turn and the mirror together leave displacements along x alone.
     if sector.odd and sector.mirror:
         zero[np.abs(x) < near, 1:] = True
     elif sector.odd:
         zero[np.hypot(x, y) < near, 2] = True
         cut = np.flatnonzero((np.abs(y) < near) & (np.abs(x) >= near))
+        # Nodes of the plane y = 0 at -x and x are images of each other by half a turn: pair them by
+        # r and z. Under the change of sign u_x and u_y are equal, u_z opposite.
         left, right = cut[x[cut] < 0.0], cut[x[cut] > 0.0]
         order = [np.lexsort((np.round(np.abs(x[s]) / near / 10), np.round(z[s] / near / 10)))
                  for s in (left, right)]  # fmt: skip
@@ -168,21 +187,22 @@ def _ties(mesh: HexMesh, sector: Sector) -> Ties:
 
 
 def _clamped(pin: Pin, mesh: HexMesh, clamps: tuple[str, ...]) -> Ints:
-    found = []
+    """Numbers of the nodes on clamped surfaces."""
+    nodes = []
     for name in clamps:
         if name in ("start", "end"):
             at = pin.ends[name == "end"]
-            found.append(np.flatnonzero(np.abs(mesh.nodes[:, 2] - at) < pin.tolerance))
+            nodes.append(np.flatnonzero(np.abs(mesh.nodes[:, 2] - at) < pin.tolerance))
         else:
-            found.append(np.unique(mesh.elements[_on(pin, mesh, name)][:, _OUTER_FACE_NODES]))
-    return np.unique(np.concatenate(found))
+            nodes.append(np.unique(mesh.elements[_on(pin, mesh, name)][:, _OUTER_FACE_NODES]))
+    return np.unique(np.concatenate(nodes))
 
 
 _OUTER_FACE_NODES = np.flatnonzero(np.asarray(ElementHexS2().doflocs)[:, 0] == 1.0)
 
 
 def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
-    """Cells that bear a band."""
+    """Numbers of the cells with a face on a band."""
     band = pin.band(name)
     cells = mesh.outside[pin.labels.index(band.name)]
     z = mesh.nodes[mesh.elements[cells], 2].mean(axis=1)
@@ -192,7 +212,7 @@ def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
 def nodal_forces(
     pin: Pin, rule: FlowRule, mesh: HexMesh, elements: Elements, acting: Acting
 ) -> Floats:
-    """Nodal forces (N, 3) of loads."""
+    """Nodal forces (N, 3), N, of all loads."""
     out = np.zeros_like(mesh.nodes)
     for load, phase, amount in acting:
         if load.kind == "body":
@@ -203,9 +223,10 @@ def nodal_forces(
 
 
 def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Floats:
-    """Of a traction on a band."""
+    """Nodal forces (N, 3), N, of a traction of harmonic n and a phase on a band."""
     cells = mesh.elements[_on(pin, mesh, t.surface)]
     g, weight = _gauss(3)
+    # Quadrature on the outer faces of the cells: their shape functions, tangents and areas there.
     grid = np.stack([np.ones(9), np.repeat(g, 3), np.tile(g, 3)])
     basis = [ElementHexS2().lbasis(grid, k) for k in _OUTER_FACE_NODES]
     shapes, slopes = np.stack([b[0] for b in basis]), np.stack([b[1] for b in basis])
@@ -226,7 +247,10 @@ def _face_forces(pin: Pin, mesh: HexMesh, t: Traction, n: int, phase: int) -> Fl
 
 
 def _body_force(rule: FlowRule, elements: Elements, axis: int) -> Floats:
-    """Of one m/s^2 along an axis."""
+    """Nodal forces (N, 3), N, of one m/s^2 along an axis.
+
+    Raises: SolveError for a material without density.
+    """
     density = rule.material.density
     if density is None:
         raise SolveError(
@@ -236,21 +260,26 @@ def _body_force(rule: FlowRule, elements: Elements, axis: int) -> Floats:
     x, _ = _gauss(2)
     grid = np.stack(np.meshgrid(x, x, x, indexing="ij")).reshape(3, -1)
     shapes = np.stack([ElementHexS2().lbasis(grid, k)[0] for k in range(20)])
-    each = density * np.einsum("mq,kq->mk", elements.weights, shapes)
+    nodal_mass = density * np.einsum("mq,kq->mk", elements.weights, shapes)
     out = np.zeros_like(elements.nodes)
-    np.add.at(out[:, axis], elements.numbers, each)
+    np.add.at(out[:, axis], elements.numbers, nodal_mass)
     return out
 
 
 def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Floats, Ties]:
-    """Forces with closing tractions that leave no resultant, and ties without rigid motions."""
+    """Forces with closing tractions that leave no resultant, and ties without rigid motions.
+
+    ties: of the sector; its remaining rigid motions are found and one unknown is fixed for each.
+    """
     whole = ties.matrix
     whole_turn = np.concatenate([mesh.nodes, mesh.nodes * [-1.0, -1.0, 1.0]])  # about the axis
     modes = rigid_modes(whole_turn)[: mesh.nodes.size]
     counts = np.asarray(abs(whole).sum(axis=0)).ravel()
+    # Rigid motions that the symmetries of the sector allow.
     free = (whole.T @ modes) / counts[:, None]
     possible = np.abs(whole @ free - modes).max(axis=0) < 1e-9
     free = free[:, possible]
+    # Closing tractions whose amounts cancel the resultant in each of these motions.
     closing = [
         sum(_face_forces(pin, mesh, t, n, phase) for t in everywhere)
         for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1))
@@ -261,5 +290,6 @@ def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Float
     unbalanced = free.T @ (whole.T @ force.ravel())
     amount = np.linalg.lstsq(free.T @ columns, -unbalanced, rcond=1e-9)[0]
     corrected = force.ravel() + whole @ ((columns @ amount) / counts)
+    # Fix one unknown for each rigid motion: pivoted QR picks the best conditioned ones.
     _, _, pivot = scipy.linalg.qr(free.T, mode="economic", pivoting=True)
     return corrected.reshape(-1, 3), ties.without(pivot[: free.shape[1]].astype(np.int64))

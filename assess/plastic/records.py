@@ -1,4 +1,4 @@
-"""What a run says about the limit load of a pin in a case."""
+"""Results of a run about the limit load of a pin in a case."""
 
 from __future__ import annotations
 
@@ -13,9 +13,13 @@ from pinbase.dimensions import Floats, Length, Lengths, Stresses
 
 @dataclass(frozen=True)
 class PlasticMesh:
-    """One mesh of the solid: unknowns, the load factor that equilibrium reached on it (lower, of
-    which the lower bound is made) and the upper bound, change of volume over the equivalent strain
-    of its mechanism and what is charged for it in the upper bound, load steps and iterations.
+    """One mesh of the solid.
+
+    lower: the load factor that equilibrium reached, of which the lower bound is made.
+    upper: the upper bound.
+    volume: change of volume over the equivalent strain of its mechanism.
+    charge: what that adds to the upper bound.
+    steps, iterations: of the loads.
     """
 
     unknowns: int
@@ -29,8 +33,9 @@ class PlasticMesh:
 
 @dataclass(frozen=True)
 class LoadCurve:
-    """Load factors (S,) and the largest displacement at them, from zero on; permanent: what is left
-    of it (S,) when the loads are taken off.
+    """Load factors (S,) from zero on and the largest displacement at them.
+
+    permanent: (S,) the part of it that remains when the loads are removed.
     """
 
     factor: Floats
@@ -40,9 +45,13 @@ class LoadCurve:
 
 @dataclass(frozen=True)
 class FlowField:
-    """The pin, or the part of its turn that was computed, when its limit load is reached, at a load
-    factor: points (N, 3) in pin axes, cells (M, 20) in the order of VTK, displacement (N, 3),
-    equivalent plastic strain and von Mises stress (N,).
+    """The pin, or the modelled part of its turn, when its limit load is reached, at a load factor.
+
+    points: (N, 3) in pin axes.
+    cells: (M, 20) in the order of VTK.
+    displacement: (N, 3).
+    plastic_strain: (N,) equivalent.
+    von_mises: (N,).
     """
 
     points: Lengths
@@ -55,14 +64,16 @@ class FlowField:
 
 @dataclass(frozen=True)
 class LimitLoad:
-    """The load factor at which a pin collapses is between lower and upper: all loads of the case at
-    its governing instant, in proportion. method: beam or solid, or why there is no answer ("none",
-    with the reason in `note`).
+    """The load factor at which a pin collapses, between lower and upper.
 
-    carries: whether the pin carries its loads (factor 1) without collapse; None where that is not
-    decided. permanent_set: what is left of the largest displacement after the loads reached the
-    factor permanent_at and were taken off. curve, flow: of the finest mesh. stopped: there is no
-    answer because it would have taken longer than a limit load may that nobody asked for.
+    All loads of the case at its governing instant grow in proportion.
+    method: beam or solid; "none" without an answer, with the reason in `note`.
+    carries: whether the pin carries its loads (factor 1) without collapse; None where that is open.
+    permanent_set: the part of the largest displacement that remains after the loads reached the
+    factor permanent_at and were removed.
+    curve, flow: of the finest mesh.
+    stopped: there is no answer because it would have taken longer than a limit load may that nobody
+    asked for.
     """
 
     method: Literal["beam", "solid", "none"]

@@ -32,13 +32,13 @@ from pinbase.arrays import Floats
 Rung = Literal["auto", "solid"]
 
 MESH_SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
-MAX_BRACKET = 0.05 + EQUILIBRIUM_ALLOWANCE  # of a bracket, over its middle
+MAX_BRACKET = 0.05 + EQUILIBRIUM_ALLOWANCE  # width of a bracket over its middle
 MAX_SOLID_UNKNOWNS = 60_000  # of the solid: a minute or two
-SECONDS_PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first, about
-TIME_EXPONENT = 1.5  # exponent of the time of a mesh over its unknowns, at least
-MAX_SET_LOAD_SHARE = (
-    0.95  # of the limit: at most the load after which the permanent set is reported
-)
+# Rough estimates of time, chosen by judgement.
+SECONDS_PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first
+TIME_EXPONENT = 1.5  # of the time of a mesh over its unknowns, at least
+# Of the limit: the permanent set is reported after this load at most; chosen by judgement.
+MAX_SET_LOAD_SHARE = 0.95
 TETRAHEDRA_NOTE = (
     "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
     "the metal flows"
@@ -59,9 +59,13 @@ def limit_load(
     memory: float | None = None,
     seconds: float = math.inf,
 ) -> LimitLoad:
-    """Of a pin clamped at surfaces (by name) under the loads of one instant. rung: "solid" even if
-    the beam decides. memory: MB that may be used. seconds: of processor time that it may take, or
-    there is no answer: never a part of one.
+    """The limit load of a pin under the loads of one instant.
+
+    clamps: surfaces by name.
+    rung: "solid" even if the beam decides.
+    memory: MB that may be used.
+    seconds: of processor time that it may take; beyond that there is no answer, never a part of
+    one.
 
     Raises: ArgumentError for a material without yield strength; SolveError.
     """
@@ -71,6 +75,7 @@ def limit_load(
         return LimitLoad("none", note=TETRAHEDRA_NOTE)
     if not pin.stepped:
         return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
+    # First the beam, which costs little; the solid only where its error leaves the question open.
     bounds = of_beam(pin, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
@@ -92,12 +97,12 @@ def limit_load(
     if last is None or len(meshes) < 2:
         return LimitLoad("none", seconds=time.perf_counter() - begin, note=note)
     flow = flow_field(last, meshes[-1].last, plane_of(loads, 0))
-    found = _of_solid(meshes, bounds, rule, note)
-    return replace(found, flow=flow, seconds=time.perf_counter() - begin)
+    limit = _of_solid(meshes, bounds, rule, note)
+    return replace(limit, flow=flow, seconds=time.perf_counter() - begin)
 
 
 def decided(bounds: BeamBounds) -> bool | None:
-    """Whether a beam carries its loads at the first instant, None if its error leaves that open."""
+    """Whether a beam carries its loads at the first instant; None if its error leaves that open."""
     if bounds.lower[0] > 1.0 + HINGE_ERROR:
         return True
     return False if bounds.upper[0] < 1.0 - HINGE_ERROR else None
@@ -106,7 +111,7 @@ def decided(bounds: BeamBounds) -> bool | None:
 def of_beam(
     pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
 ) -> BeamBounds | None:
-    """None for contact pressures on rings, which the beam does not take."""
+    """The beam's bounds; None for contact pressures on rings, which the beam does not take."""
     if any(load.parts for load in loads.coefficients()):
         return None
     return beam_bounds(pin, material, clamps, loads)
@@ -119,29 +124,33 @@ def _meshes(
     loads: PinLoads,
     most: tuple[float | None, Budget],
 ) -> tuple[list[MeshBracket], PinBody | None, str]:
-    """The finest two at least, if there is room for them, with the body of the last; why not
-    otherwise. most: memory, MB, and time.
+    """The limit loads on the finest affordable meshes (two at least), the last body, a note.
 
-    Raises: SolveError; OutOfTimeError, too, before a mesh that would take longer than is left: the
-    first two by the number of unknowns, which is the same on every computer, another by the time of
-    the one before it.
+    most: memory, MB, and time. The note says why there are no more meshes.
+
+    Raises: SolveError; OutOfTimeError, also before a mesh that would take longer than is left: the
+    first two are judged by the number of unknowns, which is the same on every computer, another one
+    by the time of the one before it.
     """
     memory, budget = most
     meshes: list[MeshBracket] = []
     last: PinBody | None = None
-    took = 0.0
+    seconds = 0.0
     for size in MESH_SIZES:
-        made = body_on(pin, rule, clamps, loads, size)
-        too_much = memory is not None and solid_memory(made.body.size) > memory
-        if made.body.size > MAX_SOLID_UNKNOWNS or too_much:
+        candidate = body_on(pin, rule, clamps, loads, size)
+        too_much = memory is not None and solid_memory(candidate.body.size) > memory
+        if candidate.body.size > MAX_SOLID_UNKNOWNS or too_much:
             return meshes, last, SIZE_LIMIT_NOTE.format(MAX_SOLID_UNKNOWNS)
+        # Stop before a mesh that would exceed the budget.
         if last is None:
-            budget.require(made.body.size * SECONDS_PER_UNKNOWN)
+            budget.require(candidate.body.size * SECONDS_PER_UNKNOWN)
         else:
-            budget.require(took * (made.body.size / last.body.size) ** TIME_EXPONENT)
-        last, before = made, budget.spent
-        meshes.append(limit_on_mesh(made.body, made.forces, refine(made.body.elements), budget))
-        took = budget.spent - before
+            budget.require(seconds * (candidate.body.size / last.body.size) ** TIME_EXPONENT)
+        last, before = candidate, budget.spent
+        meshes.append(
+            limit_on_mesh(candidate.body, candidate.forces, refine(candidate.body.elements), budget)
+        )
+        seconds = budget.spent - before
         if len(meshes) > 1 and narrow_enough(*bracket(meshes)):
             break
     return meshes, last, ""
@@ -150,18 +159,22 @@ def _meshes(
 def body_on(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, size: HexSize
 ) -> PinBody:
-    """On a mesh, under the loads of the first instant. Raises: SolveError."""
+    """The pin on a mesh, under the loads of the first instant.
+
+    Raises: SolveError.
+    """
     return pin_body(pin, rule, clamps, acting_at(loads, 0, -plane_of(loads, 0)), size)
 
 
 def narrow_enough(lower: float, upper: float) -> bool:
-    """Whether a bracket is, and does not leave open whether the pin carries its loads."""
+    """Whether a bracket is narrow and decides whether the pin carries its loads."""
     return upper - lower <= MAX_BRACKET * (upper + lower) / 2.0 and not lower < 1.0 < upper
 
 
 def _of_solid(
     meshes: list[MeshBracket], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
+    """The result from the meshes of the solid and, where it is lower, the beam's bound by slip."""
     lower, upper = bracket(meshes)
     finest = meshes[-1]
     if bounds is not None and bounds.slip[0] < upper:
@@ -193,25 +206,26 @@ def _of_solid(
     )
 
 
-def flow_field(made: PinBody, state: State, angle: float) -> FlowField:
-    """How a pin flows at its limit load, at the nodes of its mesh: a state in axes that are turned
-    by an angle (rad) from the pin's.
+def flow_field(pin: PinBody, state: State, angle: float) -> FlowField:
+    """The flow in a state, in the pin's axes.
+
+    angle: rad, by which the state's axes are turned from them.
     """
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     return FlowField(
-        points=made.mesh.nodes @ turn,
-        cells=made.mesh.elements[:, twenty()],
-        displacement=made.body.displacement(state.unknowns) @ turn,
-        plastic_strain=np.maximum(_at_nodes(made, state.flow.equivalent), 0.0),
-        von_mises=_at_nodes(made, von_mises(state.flow.stress)),
+        points=pin.mesh.nodes @ turn,
+        cells=pin.mesh.elements[:, twenty()],
+        displacement=pin.body.displacement(state.unknowns) @ turn,
+        plastic_strain=np.maximum(_at_nodes(pin, state.flow.equivalent), 0.0),
+        von_mises=_at_nodes(pin, von_mises(state.flow.stress)),
         factor=state.factor,
     )
 
 
-def _at_nodes(made: PinBody, values: Floats) -> Floats:
-    """(N,) means over the elements of what their values (M, 8) extrapolate to."""
-    each = values @ reading(np.asarray(ElementHexS2().doflocs)).T
-    numbers = made.mesh.elements.ravel()
-    total = np.bincount(numbers, each.ravel(), minlength=len(made.mesh.nodes))
-    return np.asarray(total / np.bincount(numbers, minlength=len(made.mesh.nodes)))
+def _at_nodes(pin: PinBody, values: Floats) -> Floats:
+    """Nodal means (N,) of what the elements' values (M, 8) at quadrature points extrapolate to."""
+    at_corners = values @ reading(np.asarray(ElementHexS2().doflocs)).T
+    numbers = pin.mesh.elements.ravel()
+    total = np.bincount(numbers, at_corners.ravel(), minlength=len(pin.mesh.nodes))
+    return np.asarray(total / np.bincount(numbers, minlength=len(pin.mesh.nodes)))

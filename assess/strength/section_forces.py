@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from assess.strength.records import JOINT_MODEL_BASIS
 from assess.strength.situation import Situation
 from fea.beam.line_load import acting, shares
-from fea.beam.round_section import Circle, weakest
+from fea.beam.round_section import Circle, thinnest_section
 from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
 from fea.support.records import JointForces
@@ -80,7 +80,10 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
     from_start = (z - np.array(s.pin.stations)[segments]).tolist()
     return SectionForces(
         z,
-        tuple(weakest(s.pin.segments[i], x, x) for i, x in zip(segments, from_start, strict=True)),
+        tuple(
+            thinnest_section(s.pin.segments[i], x, x)
+            for i, x in zip(segments, from_start, strict=True)
+        ),
         tuple(s.pin.labels[i] for i in segments),
         np.tile(joint.shear, 2),
         np.tile(joint.moment, 2),

@@ -20,7 +20,7 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import surface
 from fea.solid.evaluate import solid_solution
 from fea.solid.model import SolidModel, acting
-from fea.solid.nodal_loads import closed, nodal_loads
+from fea.solid.nodal_loads import nodal_loads, with_closing_tractions
 from geometry import CutPin
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 from geometry.mesh.solid_mesh import MeshSize
@@ -71,7 +71,7 @@ def in_calculix_locally(
     boundary, c = surface(model.space), loads.coefficients()
     found = nodal_loads(pin, STEEL, model.space, boundary, units)
     pressing = np.array([not load.shears for load, _ in units])
-    found = closed(pin, model.space, boundary, found, pressing)
+    found = with_closing_tractions(pin, model.space, boundary, found, pressing)
     forces = found.forces @ np.array([c[load][0, phase] for load, phase in units])
     solved = _solved(model.space, model.fixed, forces, boundary.nodes, steps)
     return replace(solved, meshing=spent)

@@ -7,7 +7,7 @@ from skfem import ElementTriP2
 
 from benchmarks.pins.accuracy import FILLET, LOAD, PIN, STEEL, peak, truth
 from benchmarks.timing import table
-from fea.core.local_fit import continuation, extension
+from fea.core.local_fit import continuation, nodal_extrapolation
 from fea.core.voigt import von_mises
 from fea.harmonic.assembly import elasticity
 from fea.harmonic.fields import MeridianFields
@@ -63,7 +63,7 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
     averaged, fitted = (
         (matrix @ sampled)[:, :, None]
         for matrix in (
-            extension(space.elements, space.sampled_at, ElementTriP2.doflocs.T),
+            nodal_extrapolation(space.elements, space.sampled_at, ElementTriP2.doflocs.T),
             continuation(space.samples, space.nodes),
         )
     )

@@ -37,6 +37,7 @@ from fea.core.tractions import pressure_amplitude
 from geometry import Band, Pin
 from pinbase.arrays import Floats
 
+# Measured against fine solid models (docs/method.md has the table).
 PLAIN_SECTION_ERROR = 0.05
 NOTCH_ERROR = 0.12
 CLAMP_ERROR = 0.15
@@ -53,11 +54,14 @@ CLAMP_EDGE_REMARK = " At the edges of clamps no maximum exists."
 
 @dataclass(frozen=True)
 class BeamEstimate:
-    """maximum: largest von Mises stress with its error, Pa, at (r, z) in m and theta (rad), at the
-    instant of that index.
+    """A beam's largest von Mises stress with its error, Pa.
 
-    without_factor: loaded notches for which the beam has no factor; then `maximum` leaves them out,
+    place: (r, z) in m.
+    theta: rad.
+    instant: its number.
+    without_factor: loaded notches for which the beam has no factor; then `maximum` excludes them,
     and there is no error.
+    leaves_out: what the model omits, for people.
     """
 
     maximum: float
@@ -70,23 +74,28 @@ class BeamEstimate:
 
 
 def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = ()) -> BeamEstimate:
-    """The largest stress of a case; `beam` with all unit loads that act, clamped at `clamps`.
+    """The largest stress of a case with its error.
+
+    beam: with all unit loads that act.
+    clamps: at which it is clamped.
 
     Raises: ValueError when the beam has no field for a part of the loads.
     """
     stress = harmonics(beam, loads)
-    found = von_mises_maxima(stress)
-    point, instant = found.place
-    largest = float(found.von_mises[point, instant])
-    unknown = _without_factor(beam, stress, found.von_mises, largest)
+    maxima = von_mises_maxima(stress)
+    point, instant = maxima.place
+    largest = float(maxima.von_mises[point, instant])
+    unknown = _without_factor(beam, stress, maxima.von_mises, largest)
     local = _local(beam.pin, loads)
-    upper = found.von_mises * (1.0 + _relative(beam))[:, None] + local
+    # The error is that of the largest upper estimate, which may be at another point than the
+    # maximum.
+    upper = maxima.von_mises * (1.0 + _relative(beam))[:, None] + local
     r, z = beam.points[point]
     return BeamEstimate(
         maximum=largest,
         error=None if unknown else float(upper.max()) - largest,
         place=(float(r), float(z)),
-        theta=float(found.theta[point, instant]),
+        theta=float(maxima.theta[point, instant]),
         instant=instant,
         without_factor=unknown,
         leaves_out=BEAM_OMISSIONS + (CLAMP_EDGE_REMARK if clamps else ""),
@@ -94,7 +103,7 @@ def beam_estimate(beam: BeamStress, loads: PinLoads, clamps: tuple[str, ...] = (
 
 
 def _relative(beam: BeamStress) -> Floats:
-    """Relative part of the error at the beam's points, (S,)."""
+    """The relative part of the error at the beam's points, (S,)."""
     z, stations, sections = beam.points[:, 1], beam.forces.stations, beam.forces.sections
     near, between = np.zeros(len(z)), np.zeros(len(z))
     if beam.notches:
@@ -111,7 +120,7 @@ def _relative(beam: BeamStress) -> Floats:
 
 
 def between_clamps(forces: InternalForces, span: Span) -> float:
-    """The relative error of moments in a span between two clamps, as a beam has them; else 0."""
+    """The relative error of moments in a span between two clamps; 0 in any other span."""
     if not (span.left and span.right):
         return 0.0
     thickest = 2.0 * max(s.outer for s in forces.sections[span.first : span.last])
@@ -121,12 +130,13 @@ def between_clamps(forces: InternalForces, span: Span) -> float:
 
 
 def _local(pin: Pin, loads: PinLoads) -> Floats:
-    """Local stress that loads may add where they act, (T,) in Pa."""
+    """The local stress, Pa, that loads may add where they act, (T,)."""
     most = np.zeros(len(loads))
     for c, name in enumerate(loads.surfaces):
         band = pin.band(name)
         (x, y, z), (mx, my, mz) = loads.forces[:, c].T, loads.moments[:, c].T
         d, length = 2.0 * band.radius, band.length
+        # Nominal pressures of transverse and axial forces, moments and torques on the band.
         across = np.hypot(x, y) / (d * length)
         tractions = np.abs(z) / (np.pi * d * length) + 2.0 * np.abs(mz) / (np.pi * d * d * length)
         here = (
@@ -141,13 +151,13 @@ def _local(pin: Pin, loads: PinLoads) -> Floats:
 
 
 def _wall(pin: Pin, band: Band) -> float:
-    """Wall over radius; 1 if solid."""
+    """Wall thickness over outer radius; 1 for a solid section."""
     segment = pin.segments[pin.labels.index(band.name)]
     return 1.0 - max(segment.bores) / segment.diameter
 
 
 def _ovalisation(pin: Pin, band: Band, loads: PinLoads) -> float:
-    """Stress (Pa per N) of a ring under those harmonics of a cosine pressure that a beam omits."""
+    """Stress (Pa per N) of a ring under the harmonics of a cosine pressure that a beam omits."""
     t = _wall(pin, band) * band.radius
     R = band.radius - 0.5 * t
     out = abs(pressure_amplitude(0, band)) * R / t
@@ -160,7 +170,7 @@ def _ovalisation(pin: Pin, band: Band, loads: PinLoads) -> float:
 def _without_factor(
     beam: BeamStress, stress: Floats, von_mises: Floats, largest: float
 ) -> tuple[str, ...]:
-    """Notches whose factor is missing for a load that acts there."""
+    """Descriptions of notches whose factor is missing for a load that acts there."""
     out = []
     least = _MIN_STRESS_SHARE * largest
     first = len(beam.points) - len(beam.notches)

@@ -1,4 +1,4 @@
-"""Unit loads as loads per length of a beam: across (n = 1), along and about the axis (n = 0).
+"""Unit loads as loads per length of a beam: across it (n = 1), along it and about it (n = 0).
 
 Between stations a load per length is w0 + w1 s, s from the left station. Harmonics n >= 2 and a
 pressure of n = 0 have no resultant in any section, so they are zero here.
@@ -25,22 +25,21 @@ def loads_sections(load: UnitLoad) -> bool:
 
 
 def acting(loads: Loads) -> tuple[UnitLoad, ...]:
-    """The unit loads of which a beam notices anything."""
+    """The unit loads of a case that have a resultant in a section."""
     return tuple(u for u in loads.coefficients() if loads_sections(u))
 
 
 def shares(units: tuple[UnitLoad, ...], loads: Loads) -> Floats:
-    """How much of each of K unit loads acts, (T, 2, K) by phase; zero of those that no section
-    notices.
+    """The amount of each of K unit loads, (T, 2, K) by phase; zero for those without a resultant.
 
     Raises: ValueError when a part of the loads is not among the units.
     """
-    found = loads.coefficients()
+    amounts = loads.coefficients()
     require_solved(loads.case, acting(loads), units)
     out = np.zeros((len(loads), 2, len(units)))
     for k, unit in enumerate(units):
-        if unit in found and loads_sections(unit):
-            out[:, :, k] = found[unit]
+        if unit in amounts and loads_sections(unit):
+            out[:, :, k] = amounts[unit]
     return out
 
 
@@ -52,8 +51,10 @@ def line_loads(
     loads: tuple[UnitLoad, ...],
     closed: bool,
 ) -> Floats:
-    """Loads per length (C, 2, K), w0 (N/m, or N m/m about the axis) and w1 (per m) of K unit loads
-    between stations (C + 1,) in m, at which all bands end; `closed`: with what balances each load.
+    """Loads per length (C, 2, K), w0 and w1, of K unit loads between stations (C + 1,), m.
+
+    They are N/m, or N m/m about the axis, and per m. All bands end at stations.
+    closed: with the closing tractions that balance each load.
 
     Raises: ValueError for the weight of a material without density, or a balance without bands.
     """
@@ -74,7 +75,7 @@ def line_loads(
 
 
 def per_length(radius: float, amplitudes: Floats, n: int, phase: int) -> Floats:
-    """Load per length (...) of tractions (..., 3), Pa, on a cylinder of `radius` (m)."""
+    """Load per length (...) of traction amplitudes (..., 3), Pa, on a cylinder of `radius` (m)."""
     r, t, z = np.moveaxis(amplitudes, -1, 0)
     if n == 1:
         return np.asarray(math.pi * radius * (r - t))
@@ -96,7 +97,7 @@ def _spread(
 
 
 def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
-    """Of loads per length (C, 2, ...): the sum (...) in N, and the moment (...) about z = 0."""
+    """Sum (...), N, and moment (...), N m, about z = 0, of loads per length (C, 2, ...)."""
     h = np.diff(stations).reshape(-1, *[1] * (w.ndim - 2))
     z = stations[:-1].reshape(h.shape)
     force = w[:, 0] * h + w[:, 1] * h**2 / 2.0
@@ -105,7 +106,7 @@ def resultants(stations: Floats, w: Floats) -> tuple[Floats, Floats]:
 
 
 def _close(pin: Pin, stations: Floats, loads: tuple[UnitLoad, ...], w: Floats) -> None:
-    """Subtract from each load what closes its balance."""
+    """Subtract from each load, in place, the closing tractions that balance it."""
     if not pin.connections:
         raise ArgumentError(
             f"pin {pin.name}: it is not clamped and no connection bears on it; add either",

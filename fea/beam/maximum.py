@@ -16,16 +16,17 @@ from fea.core.pin_loads import Loads
 from fea.core.voigt import VON_MISES
 from pinbase.arrays import Floats
 
-ANGLE_COUNT = 48
+ANGLE_COUNT = 48  # samples of the circumference; Newton's method starts from the best one
 _THETA = 2.0 * np.pi * np.arange(ANGLE_COUNT) / ANGLE_COUNT
 _SINE_COMPONENTS = np.array([3, 5])  # tz, rt go with sin psi
-_CURVATURE_TOLERANCE = 1e-9
+_CURVATURE_TOLERANCE = 1e-9  # of the largest value: a flatter crest is not refined
 
 
 @dataclass(frozen=True)
 class VonMisesMaxima:
-    """von_mises: (S, T) Pa, each the maximum over the circumference at a point and an instant;
-    theta: where (rad).
+    """The largest von Mises stress over the circumference, (S, T) Pa, by point and instant.
+
+    theta: (S, T) rad, where it is.
     """
 
     von_mises: Floats
@@ -33,13 +34,13 @@ class VonMisesMaxima:
 
     @property
     def place(self) -> tuple[int, int]:
-        """Point and instant of the largest of all."""
+        """Numbers of the point and the instant of the largest stress of all."""
         point, instant = np.unravel_index(self.von_mises.argmax(), self.von_mises.shape)
         return int(point), int(instant)
 
 
 def harmonics(beam: BeamStress, loads: Loads) -> Floats:
-    """Stress (3, S, 6, T) in Pa: constant, times cos theta, times sin theta."""
+    """Stress (3, S, 6, T), Pa: its constant part, and the factors of cos theta and sin theta."""
     c = shares(beam.loads, loads)
     across = np.array([load.n == 1 for load in beam.loads], dtype=bool)
     first, second = (np.einsum("sik,tk->sit", beam.stress, c[:, p] * across) for p in (0, 1))
@@ -54,8 +55,9 @@ def harmonics(beam: BeamStress, loads: Loads) -> Floats:
 
 
 def von_mises_maxima(stress: Floats) -> VonMisesMaxima:
-    """Largest von Mises stress over the circumference of stresses (3, S, 6, T) as from
-    `harmonics`.
+    """The largest von Mises stress over the circumference.
+
+    stress: (3, S, 6, T) Pa, as from `harmonics`.
     """
     weighted = np.einsum("ij,bsjt->bsit", VON_MISES, stress)
 
@@ -83,6 +85,7 @@ def von_mises_maxima(stress: Floats) -> VonMisesMaxima:
         value = q[0] + once(theta) + twice(theta)
         at = np.where(value > best, theta, at)
         best = np.maximum(value, best)
+    # Newton's method for the crest, where the curve bends downwards.
     t, quarter = at, 0.5 * np.pi
     for _ in range(4):
         slope = once(t + quarter) + 2.0 * twice(t + 0.5 * quarter)

@@ -22,12 +22,14 @@ import numpy as np
 from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
 
-CURVE_POINTS = 201  # of the curve
+CURVE_POINTS = 201  # points of the curve, whose chords and tangents are within 1e-4 of it
 
 
-def bent_and_pulled(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
-    """Which part of its curve bending and pulling use, at most and at least: moment M/Mp (...) and
-    axial force N/Np (...), not negative.
+def bending_and_axial_use(section: Circle, moment: Floats, axial: Floats) -> tuple[Floats, Floats]:
+    """The use of the interaction curve by bending and axial force, an upper and a lower estimate.
+
+    moment: M/Mp (...), axial: N/Np (...), not negative. The upper one is by a chord, the lower one
+    by tangents.
     """
     lever, on_m, on_n = _curve(section)
     slope = np.arctan2(on_n, on_m)
@@ -44,26 +46,29 @@ def bent_and_pulled(section: Circle, moment: Floats, axial: Floats) -> tuple[Flo
 def plastic_use(
     section: Circle, shear: float, moment: float, axial: float, torque: float, strength: float
 ) -> float:
-    """Which part of what a fully plastic section carries these forces (N, N m, not negative) use at
-    most, of a yield strength in Pa: sqrt(g^2 + (V/Vs + T/Tp)^2), as assess.plastic.hinge has it.
+    """The part of what a fully plastic section carries that these forces use, at most.
+
+    It is sqrt(g^2 + (V/Vs + T/Tp)^2), as in assess.plastic.hinge.
+    shear, moment, axial, torque: N and N m, not negative.
+    strength: yield, Pa.
     """
     M, N = (
         np.array([moment / (strength * section.plastic_modulus)]),
         np.array([axial / (strength * section.area)]),
     )
-    bent = float(bent_and_pulled(section, M, N)[0][0]) if moment or axial else 0.0
+    bent = float(bending_and_axial_use(section, M, N)[0][0]) if moment or axial else 0.0
     in_shear = strength / math.sqrt(3.0)
     sheared = shear * section.vq_it / (section.area * in_shear)
     return math.hypot(bent, sheared + torque / (in_shear * plastic_torque(section)))
 
 
 def plastic_torque(section: Circle) -> float:
-    """Over the yield stress in shear, m^3."""
+    """Torque of a fully plastic section over the yield stress in shear, m^3."""
     return 2.0 / 3.0 * math.pi * (section.outer**3 - section.inner**3)
 
 
 def _curve(section: Circle) -> tuple[Floats, Floats, Floats]:
-    """c Np / Mp, M/Mp and N/Np, (CURVE_POINTS,) each, from bending alone to pulling alone."""
+    """c Np / Mp, M/Mp and N/Np, (CURVE_POINTS,) each, from pure bending to pure tension."""
     a, b = section.outer, section.inner
     c = a * np.sin(np.linspace(0.0, np.pi / 2.0, CURVE_POINTS))
     bending = (_power(a, c) - _power(b, c)) / (a**3 - b**3)
@@ -72,11 +77,12 @@ def _curve(section: Circle) -> tuple[Floats, Floats, Floats]:
 
 
 def _power(radius: float, c: Floats) -> Floats:
+    """(r^2 - c^2)^(3/2), zero where c exceeds the radius."""
     return np.maximum(radius**2 - c**2, 0.0) ** 1.5
 
 
 def _within(radius: float, c: Floats) -> Floats:
-    """The area of a disc that is nearer than c to a diameter."""
+    """The area of a disc within the distance c of a diameter."""
     near = np.minimum(c, radius)
     angle = np.arcsin(near / radius) if radius else np.zeros_like(c)
     return np.asarray(2.0 * (near * np.sqrt(radius**2 - near**2) + radius**2 * angle))

@@ -1,4 +1,4 @@
-"""A round section, solid or hollow, with outer radius a and inner radius b: what beams need of it.
+"""Properties of a round section, solid or hollow, with outer radius a and inner radius b.
 
 Saint-Venant's flexure under a shear V along x has, everywhere in the section,
 
@@ -22,14 +22,14 @@ from geometry import Segment
 
 @dataclass(frozen=True)
 class Circle:
-    """Radii in m; inner 0 for a solid section."""
+    """A round section with radii in m; inner is 0 for a solid one."""
 
     outer: float
     inner: float = 0.0
 
     @property
     def area(self) -> float:
-        """m^2."""
+        """Area, m^2."""
         return math.pi * (self.outer**2 - self.inner**2)
 
     @property
@@ -49,16 +49,19 @@ class Circle:
 
     @property
     def plastic_modulus(self) -> float:
-        """Moment of a fully plastic section over the yield stress, m^3: twice the first moment of
-        half of it. It exceeds the elastic one by the factor 16 / (3 pi) (1 - q^3) / (1 - q^4), with
-        q = inner / outer.
+        """Plastic section modulus, m^3: twice the first moment of half of the section.
+
+        It exceeds the elastic one by the factor 16 / (3 pi) (1 - q^3) / (1 - q^4), with q = inner /
+        outer.
 
         Source: S. P. Timoshenko, Strength of Materials II, plastic bending.
         """
         return 4.0 / 3.0 * (self.outer**3 - self.inner**3)
 
     def shear_coefficient(self, nu: float) -> float:
-        """Timoshenko's, no unit, under a static end load; 6 (1 + nu) / (7 + 6 nu) if solid.
+        """Timoshenko's shear coefficient under a static end load, no unit.
+
+        It is 6 (1 + nu) / (7 + 6 nu) for a solid section.
 
         Source: Cowper, as the module.
         """
@@ -73,9 +76,9 @@ class Circle:
         """
         a2, b2 = self.outer**2, self.inner**2
         ring = a2 * b2 / r**2 if b2 else 0.0
-        k, each = (3.0 + 2.0 * nu) / 4.0, 1.0 / (2.0 * (1.0 + nu) * self.inertia)
-        rz = each * k * (a2 + b2 - ring - r**2)
-        tz = -each * (k * (a2 + b2 + ring) - (1.0 - 2.0 * nu) * r**2 / 4.0)
+        k, factor = (3.0 + 2.0 * nu) / 4.0, 1.0 / (2.0 * (1.0 + nu) * self.inertia)
+        rz = factor * k * (a2 + b2 - ring - r**2)
+        tz = -factor * (k * (a2 + b2 + ring) - (1.0 - 2.0 * nu) * r**2 / 4.0)
         return rz, tz
 
     @property
@@ -89,13 +92,11 @@ class Circle:
 
 
 def circle(segment: Segment) -> Circle:
-    """The section of a segment that has no cones."""
+    """The section of a segment without cones."""
     return Circle(segment.diameter / 2.0, segment.bore / 2.0)
 
 
-def weakest(segment: Segment, start: float, end: float) -> Circle:
-    """The thinnest section of a part of a segment, from start to end in m from the segment's
-    start.
-    """
+def thinnest_section(segment: Segment, start: float, end: float) -> Circle:
+    """The thinnest section between start and end, m from the segment's start."""
     (b0, r0), (b1, r1) = segment.radii(start), segment.radii(end)
     return Circle(min(r0, r1), max(b0, b1))

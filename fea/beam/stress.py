@@ -1,9 +1,9 @@
 """Stresses of a stepped beam at points of its surface, its axis or bore, and its notches.
 
-The face of all models: points in the meridian plane and amplitudes of the stress of unit loads
-there. With psi = n theta - p pi / 2, p the phase, the components rr, tt, zz, rz go with cos psi and
-tz, rt with sin psi. So a shear V along x, which on the axis is s_xz = tau all over, is rz = tau and
-tz = -tau, and a torque, n = 0 with p = 1, where sin psi = -1, is tz = -T r / J.
+As in all models they are given at points in the meridian plane, as amplitudes of the stress of unit
+loads. With psi = n theta - p pi / 2, p the phase, the components rr, tt, zz, rz vary as cos psi and
+tz, rt as sin psi. So a shear V along x, which on the axis is s_xz = tau, is rz = tau and tz = -tau,
+and a torque, n = 0 with p = 1, where sin psi = -1, is tz = -T r / J.
 """
 
 from __future__ import annotations
@@ -28,9 +28,13 @@ POINTS_PER_CELL = 33  # points in a cell, in addition to where a moment is large
 
 @dataclass(frozen=True)
 class BeamStress:
-    """points: (S, 2) r, z in m. stress: (S, 6, K) Pa per unit of K loads, order rr, tt, zz, tz, rz,
-    rt. The last points are those of the `notches` that the thinner shaft reaches free of a clamp,
-    in order, with their factors where there are any, otherwise nominal.
+    """Stress amplitudes of K unit loads at points of a beam.
+
+    The last points are those of the `notches` at which the thinner shaft is free of a clamp, in
+    order, with their factors where there are any, otherwise nominal.
+
+    points: (S, 2) r, z in m.
+    stress: (S, 6, K) Pa per unit of load, order rr, tt, zz, tz, rz, rt.
     """
 
     pin: Pin
@@ -42,12 +46,12 @@ class BeamStress:
 
     @property
     def loads(self) -> tuple[UnitLoad, ...]:
-        """Of the K columns."""
+        """The unit load of each of the K columns."""
         return self.forces.loads
 
     @property
     def energy(self) -> StrainEnergy:
-        """Of the beam under these loads, without what notches add."""
+        """The strain energy of the beam under these loads, without what notches add."""
         work = self.forces.work(self.material)
         units = tuple((load, phase) for phase in (0, 1) for load in self.loads)
         return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
@@ -66,13 +70,14 @@ def beam_stress(
     sections = [forces.sections[c] for c in cells]
     nu = material.poisson_ratio
     points, stress = [], []
+    # Surface, then axis or bore, at all sampled sections; notches follow, one point each.
     for radius in ("outer", "inner"):
         r = np.array([getattr(s, radius) for s in sections])
         points.append(np.stack([r, z], axis=1))
         per_force = [section_stress(s, a, nu) for s, a in zip(sections, r, strict=True)]
         stress.append(np.einsum("siq,sqk->sik", per_force, inside))
-    found = [(n, c) for n in notches(pin) if (c := _thin_cell(pin, forces, n)) is not None]
-    for notch, c in found:
+    notch_cells = [(n, c) for n in notches(pin) if (c := _thin_cell(pin, forces, n)) is not None]
+    for notch, c in notch_cells:
         section = forces.sections[c]
         nominal = notch_stress(notch, section, nu)
         here = forces.inside(np.array([c]), np.array([notch.z]))
@@ -82,15 +87,17 @@ def beam_stress(
         pin,
         material,
         forces,
-        tuple(n for n, _ in found),
+        tuple(n for n, _ in notch_cells),
         np.concatenate(points),
         np.concatenate(stress),
     )
 
 
 def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
-    """Cells (S,) and z (S,) in m: densely in all cells outside the clamps, both sides of every
-    station, and where the moment of any unit load is largest.
+    """Cells (S,) and z (S,), m, at which stress is read.
+
+    Densely in all cells outside the clamps, on both sides of every station, and where the moment of
+    any unit load is largest.
     """
     cells, z = [], []
     for c in forces.free:
@@ -105,7 +112,7 @@ def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
 
 
 def section_stress(section: Circle, r: float, nu: float) -> Floats:
-    """Amplitudes (6, 4) in Pa at r (m) per V, M, N, T."""
+    """Stress amplitudes (6, 4), Pa, at r (m) per V, M, N, T."""
     out = np.zeros((6, 4))
     out[RZ, SHEAR], out[TZ, SHEAR] = section.flexure(r, nu)
     out[ZZ, MOMENT] = -r / section.inertia
@@ -115,7 +122,7 @@ def section_stress(section: Circle, r: float, nu: float) -> Floats:
 
 
 def notch_stress(notch: Notch, section: Circle, nu: float) -> Floats:
-    """The same at the surface of the thinner shaft, with the notch's factors where it has them."""
+    """Stress amplitudes (6, 4) at the surface of the thinner shaft, times the notch's factors."""
     out = section_stress(section, section.outer, nu)
     out[ZZ, MOMENT] *= notch.bending or 1.0
     out[ZZ, AXIAL] *= notch.tension or 1.0
@@ -124,7 +131,7 @@ def notch_stress(notch: Notch, section: Circle, nu: float) -> Floats:
 
 
 def _thin_cell(pin: Pin, forces: InternalForces, notch: Notch) -> int | None:
-    """The cell of the thinner shaft in which a notch is, or ends; None within a clamp."""
+    """The cell of the thinner shaft that contains a notch or ends there; None within a clamp."""
     middle = 0.5 * (pin.stations[notch.on] + pin.stations[notch.on + 1])
     inwards = notch.z + 1e-9 * (middle - notch.z)
     c = int(np.searchsorted(forces.stations, inwards)) - 1

@@ -67,16 +67,15 @@ TORSION_FIT: tuple[Fit, ...] = (
     ),
 )
 
-PEAK_OFFSET = (
-    0.3  # of the radius: how far the peak lies from where the shaft ends (bending; measured)
-)
+# Of the radius: distance of the peak from the end of the shaft, measured in bending.
+PEAK_OFFSET = 0.3
 MAX_BORE_RATIO = 0.25  # of d: it takes 0.4 % of the shaft's I, and the fits are for solid shafts
 
 
 def shoulder_factor(
     fits: tuple[Fit, ...], thick: float, thin: float, radius: float
 ) -> float | None:
-    """Kt (no unit) of a fillet of `radius` between diameters (m); None where the fits do not hold.
+    """Kt (no unit) of a fillet of `radius` between two diameters (m); None outside the fits' range.
 
     Source: as the module.
     """
@@ -93,8 +92,9 @@ def shoulder_factor(
 
 @dataclass(frozen=True)
 class Notch:
-    """A shoulder: z (m) of its peak, and factors of the nominal stress there of the thinner shaft,
-    segment `on`; None where the beam has none, and `why`.
+    """A shoulder and its factors of the nominal stress of the thinner shaft, segment `on`.
+
+    z: m, of its peak. A factor is None where the beam has none; `why` says what the notch is.
     """
 
     z: float
@@ -123,6 +123,7 @@ def notches(pin: Pin) -> tuple[Notch, ...]:
 
 
 def _shoulder(pin: Pin, i: int) -> Notch:
+    """The notch between segments i and i + 1."""
     left, right = pin.segments[i], pin.segments[i + 1]
     on = i if left.diameters[1] < right.diameter else i + 1
     thin, thick = sorted((left.diameters[1], right.diameter))

@@ -1,13 +1,13 @@
-"""A pin as a stepped Timoshenko beam: its internal forces, exactly, under unit loads.
+"""A pin as a stepped Timoshenko beam: its exact internal forces under unit loads.
 
 With w the load per length along x, q along z and t about z, the part beyond z exerts on the rest
 
     V' = -w    M' = -V    N' = -q    T' = -t
 
-the shear V along x and the bending moment M about y, the axial force N and the torque T. So
-between stations they are polynomials, found by marching along the pin from the left end of each
-free span. What they start from: nothing at a free end; after a clamp, whatever makes the free right
-end free, or, between two clamps, what makes the sections at both stay as they are (Castigliano: the
+the shear V along x and the bending moment M about y, the axial force N and the torque T. So between
+stations they are polynomials, found by marching along the pin from the left end of each free span.
+The initial values are zero at a free end; after a clamp, those that make the free right end free,
+or, between two clamps, those that leave the sections at both in place (Castigliano: the
 complementary energy's derivatives by the four redundant forces vanish). All is linear and exact.
 
 Source: S. P. Timoshenko, Phil. Mag. 41 (1921) 744, for the beam; the shear coefficients in
@@ -26,23 +26,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fea.beam.line_load import line_loads
-from fea.beam.round_section import Circle, weakest
+from fea.beam.round_section import Circle, thinnest_section
 from fea.core.material import Material
 from fea.core.pin_loads import UnitLoad
 from geometry import Pin
 from pinbase.arrays import Floats
 
 SHEAR, MOMENT, AXIAL, TORQUE = range(4)
-MAX_CONE_CHANGE = 0.01  # by which a cone's diameter or bore changes over a cell, of the wall
-_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(
-    4
-)  # exact for products of our cubics
+# Largest change of a cone's diameter or bore over a cell, of the wall; chosen by judgement.
+MAX_CONE_CHANGE = 0.01
+# Exact for products of the cubics of internal forces.
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 @dataclass(frozen=True)
 class Span:
-    """Cells first to last - 1 between clamps or free ends; `left`, `right`: whether clamped
-    there.
+    """The cells first to last - 1 between clamps or free ends.
+
+    left, right: whether the span is clamped there.
     """
 
     first: int
@@ -55,8 +56,10 @@ class Span:
 class InternalForces:
     """V (N), M (N m), N (N), T (N m) of K unit loads between stations (C + 1,), m.
 
-    coefficients: (C, 4, 4, K) of the powers 0 to 3 of the distance (m) from the cell's left end, of
-    V, M, N, T. sections: of the C cells. spans: the cells outside the clamps.
+    coefficients: (C, 4, 4, K) of the powers 0 to 3 of the distance (m) from the cell's left end,
+    for V, M, N, T.
+    sections: of the C cells.
+    spans: of cells outside the clamps.
     """
 
     stations: Floats
@@ -67,37 +70,39 @@ class InternalForces:
 
     @property
     def free(self) -> tuple[int, ...]:
-        """Cells outside the clamps."""
+        """Numbers of the cells outside the clamps."""
         return tuple(c for s in self.spans for c in range(s.first, s.last))
 
     def inside(self, cells: NDArray[np.intp], z: Floats) -> Floats:
-        """V, M, N, T (S, 4, K) at z (S,) in m, each as seen from the cell (S,) it is in."""
+        """V, M, N, T (S, 4, K) at z (S,), m, each as seen from its cell (S,)."""
         s = z - self.stations[cells]
         powers = s[:, None] ** np.arange(4)
         return np.asarray(np.einsum("sp,spqk->sqk", powers, self.coefficients[cells]))
 
     def at(self, z: Floats) -> Floats:
-        """V, M, N, T (S, 4, K) at z (S,) in m; at a station as seen from the right."""
+        """V, M, N, T (S, 4, K) at z (S,), m; at a station as seen from the right."""
         cells = np.searchsorted(self.stations[1:-1], z, side="right")
         return self.inside(cells, z)
 
     def work(self, material: Material) -> Floats:
-        """Of each load on the deflection by each of them, (K, K) J: the clamps' none."""
+        """The work (K, K), J, of each load on the deflection by each load; clamps do none."""
         cells = np.array(self.free)
         lengths = np.diff(self.stations)[cells]
         soft = np.array([compliances(self.sections[c], material) for c in cells])
-        found = _at_gauss(lengths, self.coefficients[cells])
-        return _products(lengths, soft, found, found)
+        at_gauss = _at_gauss(lengths, self.coefficients[cells])
+        return _products(lengths, soft, at_gauss, at_gauss)
 
 
 def stepped_beam(
     pin: Pin, material: Material, loads: tuple[UnitLoad, ...], clamps: tuple[str, ...] = ()
 ) -> InternalForces:
-    """Internal forces of a pin clamped at `clamps` (names as in `pin.surface`): a face's section
-    stays where it is, a band is rigid. Without clamps each load is balanced by the closing
-    tractions on all connections (fea.core.tractions).
+    """The internal forces of a pin under unit loads.
 
-    Raises: GeometryError for a clamp that is not there; ValueError as fea.beam.line_load.
+    clamps: at which it is held (names as in `pin.surface`): a face's section stays where it is, a
+    band is rigid. Without clamps each load is balanced by the closing tractions on all connections
+    (fea.core.tractions).
+
+    Raises: GeometryError for a clamp that does not exist; ValueError as fea.beam.line_load.
     """
     constrained = [_constrained(pin, pin.surface(name)) for name in clamps]
     stations = _stations(pin, constrained)
@@ -116,7 +121,7 @@ def stepped_beam(
 
 
 def compliances(section: Circle, material: Material) -> Floats:
-    """1 / (kappa G A), 1 / (E I), 1 / (E A), 1 / (G J)."""
+    """1 / (kappa G A), 1 / (E I), 1 / (E A) and 1 / (G J) of a section."""
     E, G = material.youngs_modulus, material.lame[1]
     shear = section.shear_coefficient(material.poisson_ratio) * G * section.area
     return 1.0 / np.array([shear, E * section.inertia, E * section.area, G * section.polar])
@@ -139,7 +144,7 @@ def _stations(pin: Pin, constrained: list[tuple[float, float]]) -> Floats:
 
 
 def _on_cones(pin: Pin) -> Iterator[float]:
-    """Where to cut cones, as finely as MAX_CONE_CHANGE says."""
+    """The z (m) at which cones are cut into cells, as finely as MAX_CONE_CHANGE demands."""
     for s, z in zip(pin.segments, pin.stations, strict=False):
         (d0, d1), (b0, b1) = s.diameters, s.bores
         change = max(abs(d1 - d0), abs(b1 - b0)) / min(*s.walls, d0, d1)
@@ -149,9 +154,9 @@ def _on_cones(pin: Pin) -> Iterator[float]:
 
 
 def _section(pin: Pin, a: float, b: float) -> Circle:
-    """The section from a to b (m): of a cone's slice the thinnest, which is on the safe side."""
+    """The section from a to b (m): the thinnest of a cone's slice, which is on the safe side."""
     i = min(bisect_right(pin.stations, 0.5 * (a + b)), len(pin.segments)) - 1
-    return weakest(pin.segments[i], a - pin.stations[i], b - pin.stations[i])
+    return thinnest_section(pin.segments[i], a - pin.stations[i], b - pin.stations[i])
 
 
 def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Span, ...]:
@@ -167,11 +172,14 @@ def _spans(stations: Floats, constrained: list[tuple[float, float]]) -> tuple[Sp
 
 
 def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
-    """Coefficients (C, 4, 4, K) of the internal forces in one span, loads q (C, 2, 4, K)."""
+    """Coefficients (C, 4, 4, K) of the internal forces in one span under loads q (C, 2, 4, K)."""
     loaded = _march(lengths, q, np.zeros(q.shape[2:]))
     if not span.left:  # a free end, or all is in balance
         return loaded
+    # The response to unit forces at the span's start: four redundants.
     unit = _march(lengths, np.zeros((*q.shape[:3], 4)), np.eye(4))
+    # Clamped at both ends: the redundants that leave the deflections there zero. Clamped at the
+    # left alone: those that make the forces at the free end zero.
     if span.right:
         m, f = (_at_gauss(lengths, x) for x in (unit, loaded))
         flexibility, moved = (_products(lengths, soft, m, x) for x in (m, f))
@@ -185,20 +193,22 @@ def _span(span: Span, lengths: Floats, soft: Floats, q: Floats) -> Floats:
 
 
 def _at_gauss(lengths: Floats, coefficients: Floats) -> Floats:
-    """Internal forces (C, G, 4, K) at the Gauss points of cells, of coefficients (C, 4, 4, K)."""
+    """Internal forces (C, G, 4, K) at the Gauss points of cells, from coefficients (C, 4, 4, K)."""
     s = lengths[:, None] * 0.5 * (1.0 + _GAUSS_POINTS)
     return np.asarray(np.einsum("cgp,cpqk->cgqk", s[..., None] ** np.arange(4), coefficients))
 
 
 def _products(lengths: Floats, soft: Floats, one: Floats, other: Floats) -> Floats:
-    """Integrals (I, K) of internal forces (C, G, 4, I) on the strains by others, (C, G, 4, K)."""
+    """Work integrals (I, K) of forces (C, G, 4, I) on the strains by others (C, G, 4, K)."""
     scaled = np.einsum("c,g,cq,cgqi->cgqi", lengths / 2.0, _GAUSS_WEIGHTS, soft, one)
     return np.asarray(np.einsum("cgqi,cgqk->ik", scaled, other))
 
 
 def _march(lengths: Floats, q: Floats, start: Floats) -> Floats:
-    """Coefficients (C, 4, 4, K) from loads per length q (C, 2, 4, K) and V, M, N, T at the start
-    (4, K).
+    """Coefficients (C, 4, 4, K) of internal forces, cell after cell.
+
+    q: loads per length (C, 2, 4, K).
+    start: V, M, N, T at the first cell's left end, (4, K).
     """
     out = np.zeros((len(lengths), 4, *q.shape[2:]))
     for c, h in enumerate(lengths):

@@ -1,17 +1,16 @@
-"""Whether an unconstrained pin can be solved: what its loads leave over, and what reacts it.
+"""Whether an unconstrained pin can be solved: the imbalance of its loads, and what reacts it.
 
-One rule for forces and couples, stated here alone (MIN_WARNED_IMBALANCE, MAX_IMBALANCE). What is
-left over of the forces is measured by the largest of them; a couple across the axis by that force
-times the length of the pin (or by the largest moment that is given, if that is more); a torque
-about the axis by the largest torque. Above MIN_WARNED_IMBALANCE there is a warning, above
-MAX_IMBALANCE the pin is not solved; below, its bands share it
-(`fea.core.tractions.closing_tractions`).
+One rule for forces and couples, stated here alone (MIN_WARNED_IMBALANCE, MAX_IMBALANCE). The
+imbalance of the forces is measured by the largest of them; a couple across the axis by that force
+times the length of the pin (or by the largest given moment, if that is more); a torque about the
+axis by the largest torque. Above MIN_WARNED_IMBALANCE there is a warning, above MAX_IMBALANCE the
+pin is not solved; below, its bands share the imbalance (`fea.core.tractions.closing_tractions`).
 
-What supports carry is not left over (`Carried`): a clamp carries everything, so clamped pins are
-not asked. Lugs of a structure carry forces across the axis, two of them couples too. A lug whose
-tilt has a stiffness, or that is guided, carries couples, as in single shear. Where all lugs are
-free to tilt contact has no solution with any couple. Frictionless contact carries neither torques
-nor forces along the axis; on foundations a structure does.
+What supports carry is no imbalance (`Carried`). A clamp carries everything, so clamped pins are not
+checked. Lugs of a structure carry forces across the axis, two of them couples too. A lug whose tilt
+has a stiffness, or that is guided, carries couples, as in single shear. Where all lugs are free to
+tilt, contact has no solution with any couple. Frictionless contact carries neither torques nor
+forces along the axis; on foundations a structure does.
 """
 
 from __future__ import annotations
@@ -26,22 +25,22 @@ from fea.core.pin_loads import PinLoads
 from geometry import CutPin, Pin, PinLike
 from pinbase.arrays import Floats
 
-MIN_WARNED_IMBALANCE = (
-    0.01  # of the largest force or torque: less is round-off of numbers that were typed
-)
-MAX_IMBALANCE = 0.1  # of it: more means that a load or a support is missing
+# Both limits are chosen by judgement, as parts of the largest force or torque.
+MIN_WARNED_IMBALANCE = 0.01  # less is round-off of numbers that were typed
+MAX_IMBALANCE = 0.1  # more means that a load or a support is missing
 BALANCE_NOISE = 1e-9  # of the largest load: smaller ones are zero
-MAX_FREE_COUPLE = (
-    1e-6  # of the largest couple: more has no solution in lugs that are all free to tilt
-)
-SINGLE_FORCE_TOLERANCE = (
-    1e-6  # of the largest couple: what may remain where one changed force is enough
-)
+# Of the largest couple: more has no solution in lugs that are all free to tilt.
+MAX_FREE_COUPLE = 1e-6
+# Of the largest couple: what may remain where changing one force is enough.
+SINGLE_FORCE_TOLERANCE = 1e-6
 
 
 class Carried(NamedTuple):
-    """What supports react besides the bands' small share: forces and couples across the axis,
-    forces and torques along it. lugs: whether the pin sits in lugs.
+    """The loads that supports react besides the bands' small share.
+
+    force, couple: across the axis.
+    along: forces and torques along the axis.
+    lugs: whether the pin sits in lugs.
     """
 
     force: bool = False
@@ -55,12 +54,16 @@ NO_SUPPORT = Carried()
 
 @dataclass(frozen=True)
 class Balance:
-    """The imbalance of the loads, largest over the instants: force in N, couple (about the pin's
-    middle) in N m.
+    """The imbalance of the loads, the largest over all instants.
 
-    largest: the largest force in the case, N. refusal: why the pin cannot be solved, or None; code:
-    of the refusal. left: force, couple across the axis and torque that no support carries; shares:
-    these over what the rule measures them by. instant: number of the one where the worst is.
+    force: N.
+    couple: N m, about the pin's middle.
+    largest: the largest force in the case, N.
+    refusal: why the pin cannot be solved, or None.
+    code: of the refusal.
+    left: force (N), couple across the axis and torque (N m) that no support carries.
+    shares: the same, relative to what the rule measures them by.
+    instant: number of the instant at which the worst of these occurs.
     """
 
     force: float
@@ -74,41 +77,44 @@ class Balance:
 
     @property
     def notable(self) -> bool:
-        """Whether what is left over is more than round-off of typed numbers."""
+        """Whether the imbalance is more than round-off of typed numbers."""
         return max(self.shares) > MIN_WARNED_IMBALANCE
 
 
 def out_of_balance(
     pin: PinLike, loads: PinLoads, density: float | None = None, carried: Carried = NO_SUPPORT
 ) -> Balance:
-    """The balance of a pin without clamps under its loads and, with a density (kg/m^3), its own
-    weight and inertia. carried: by its supports.
+    """The balance of a pin without clamps under its loads.
+
+    density: kg/m^3; with it the pin's own weight and inertia count.
+    carried: what its supports react.
     """
     force, couple = _left(pin, loads)
     largest = _largest(loads.forces)
     if density is not None:
-        own = density * pin.volume * loads.body
-        force = force + own
+        body_force = density * pin.volume * loads.body
+        force = force + body_force
         arm = centre_of_volume(pin) - sum(pin.ends) / 2.0
-        couple = couple + np.cross([0.0, 0.0, arm], own)
-        largest = max(largest, _largest(own))
+        couple = couple + np.cross([0.0, 0.0, arm], body_force)
+        largest = max(largest, _largest(body_force))
+    # The scales by which imbalances are measured, and the noise below which they are zero.
     moments = loads.moments
     turning = max(largest * pin.length, _largest(moments[..., :2]))
     twisting = float(np.abs(moments[..., 2]).max(initial=0.0))
     least = BALANCE_NOISE * max(largest, _largest(moments) / pin.length)
     across, along = not carried.force, not carried.along
-    each = (
+    measures = (
         (np.maximum(across * _size(force[:, :2]), along * np.abs(force[:, 2])), largest, least),
         ((not carried.couple) * _size(couple[:, :2]), turning, least * pin.length),
         (along * np.abs(couple[:, 2]), twisting, least * pin.length),
     )
-    over_time = np.array([_over(*x) for x in each])
+    over_time = np.array([_over(*x) for x in measures])
     shares = tuple(map(float, over_time.max(axis=1)))
     kind = int(np.argmax(shares))
     refusal, code = _refusal(pin, shares, carried)
     return Balance(
         _largest(force), _largest(couple), largest, refusal, code,
-        tuple(float(size.max(initial=0.0)) for size, *_ in each), shares,
+        tuple(float(size.max(initial=0.0)) for size, *_ in measures), shares,
         int(np.argmax(over_time[kind])),
     )  # fmt: skip
 
@@ -121,7 +127,7 @@ def _left(pin: PinLike, loads: PinLoads) -> tuple[Floats, Floats]:
 
 
 def centre_of_volume(pin: PinLike) -> float:
-    """z in m; of a body from a file the middle of its length."""
+    """z of the centre of volume, m; for a body from a file the middle of its length."""
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if not isinstance(profile, Pin):
         return sum(pin.ends) / 2.0
@@ -131,12 +137,12 @@ def centre_of_volume(pin: PinLike) -> float:
 
 
 def _over(left: Floats, scale: float, least: float) -> Floats:
-    """What is left over of a scale, zero where it is round-off."""
+    """The imbalance (T,) over its scale, zero where it is round-off."""
     return np.where(left > least, left / max(scale, least, np.finfo(float).tiny), 0.0)
 
 
 def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple[str | None, str]:
-    """Why a pin with such shares left over is not solved, and the code of that."""
+    """Why a pin with these relative imbalances is not solved, and the code of the refusal."""
     force, couple, torque = shares
     name = f"pin.{pin.name}"
     loose, react = "the pin is not clamped and its loads are not in equilibrium: ", "bands react"
@@ -167,10 +173,11 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
     return None, ""
 
 
-def closing(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:
-    """Changes (2,) N, across the axis, of the forces at an instant that would put them in balance:
-    of one band if that is enough, else of those two that need the least. None where only zero
-    loads, or couples, would do.
+def balancing_forces(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:
+    """The least change (2,) N of forces across the axis, by surface, that balances an instant.
+
+    One force is changed if that is enough, else the two that need the least change. None where only
+    zero loads, or couples, would do.
     """
     force, couple = _left(pin, loads.at(np.array([instant])))
     middle = sum(pin.ends) / 2.0
@@ -184,30 +191,32 @@ def closing(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | 
         for n in z
         if np.linalg.norm(z[n] * left - first) <= SINGLE_FORCE_TOLERANCE * largest * pin.length
     ]
-    found = [{name: -left} for name in alone]
-    if not found:
+    changes = [{name: -left} for name in alone]
+    if not changes:
         for a, b in combinations(z, 2):
             if abs(z[a] - z[b]) > BALANCE_NOISE * pin.length:
                 at_b = (first - z[a] * left) / (z[a] - z[b])
-                found.append({a: -left - at_b, b: at_b})
-    found = [x for x in found if _remains(now, x, largest)]
-    return min(found, key=_total, default=None)
+                changes.append({a: -left - at_b, b: at_b})
+    changes = [x for x in changes if _remains(now, x, largest)]
+    return min(changes, key=_total, default=None)
 
 
 def _remains(now: dict[str, Floats], change: dict[str, Floats], largest: float) -> bool:
-    """Whether loads remain where forces are changed so."""
+    """Whether the loads do not nearly vanish after a change of forces."""
     after = [force + change.get(name, 0.0) for name, force in now.items()]
     return _largest(np.array(after)) > 0.1 * largest
 
 
 def _total(change: dict[str, Floats]) -> float:
+    """The sum of the sizes of changed forces, N."""
     return sum(float(np.linalg.norm(x)) for x in change.values())
 
 
 def _size(vectors: Floats) -> Floats:
+    """The lengths (...) of vectors (..., 2 or 3)."""
     return np.asarray(np.linalg.norm(vectors, axis=-1))
 
 
 def _largest(vectors: Floats) -> float:
-    """The greatest length of vectors (..., 2 or 3)."""
+    """The largest length of vectors (..., 2 or 3)."""
     return float(np.linalg.norm(vectors, axis=-1).max(initial=0.0))

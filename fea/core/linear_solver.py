@@ -1,5 +1,7 @@
-"""Factor once, solve many: by CHOLMOD, or SuperLU where its binding is missing; in an order by
-METIS, or of their own where that is missing.
+"""Sparse direct solution of symmetric systems: factor once, solve many times.
+
+CHOLMOD factors, or SuperLU where its binding is missing; METIS orders the unknowns, or the solver
+itself where that is missing.
 """
 
 from __future__ import annotations
@@ -35,9 +37,10 @@ class SolveError(CodedError, ArithmeticError):
 
 
 class Analysis:
-    """Symbolic analysis of a symmetric matrix's pattern (csr, both halves): the elimination order
-    and the pattern of the factor, found once for all matrices of that pattern.
+    """The symbolic analysis of a symmetric matrix's pattern, for all matrices of that pattern.
 
+    It is the elimination order and the pattern of the factor.
+    pattern: csr, both halves.
     node: (n,) node of each unknown, for an order by nested dissection of the nodes, the best for
     solids; otherwise an approximate minimum degree, as good for sections.
     """
@@ -50,8 +53,10 @@ class Analysis:
             self._factor = partial(_superlu, order=order)
 
     def factorize(self, K: sp.csr_matrix, check: bool = True) -> Solve:
-        """A function that solves K x = b for b (n,) or (n, k). It must not be called after
-        another matrix has been factored. check: whether it checks what it returns.
+        """A function that solves K x = b for b (n,) or (n, k).
+
+        It must not be called after another matrix has been factored.
+        check: whether it checks what it returns.
 
         Raises: SolveError when K is not positive definite (an unconstrained body), and from the
         returned function when a solution does not satisfy the equations, or when K is so nearly
@@ -63,18 +68,21 @@ class Analysis:
 
         def checked(b: Floats) -> Floats:
             x = solve(b)
-            _require_right(K, x, b, solve)
+            _check_solution(K, x, b, solve)
             return x
 
         return checked
 
 
-def _require_right(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> None:
-    """The residual alone is no criterion: on a slender body round-off in large displacements of
-    little energy makes it as large as the load, although the solution is right.
+def _check_solution(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> None:
+    """Check a solution by its backward error and by one step of iterative refinement.
 
-    Of several solutions a sum is checked that has all their errors: each with a load of one to two,
-    so that opposite ones do not cancel.
+    The residual alone is no criterion: on a slender body round-off in large displacements of little
+    energy makes it as large as the load, although the solution is right. Several solutions are
+    checked in one sum that has all their errors, each scaled to a load of one to two, so that
+    opposite errors do not cancel.
+
+    Raises: SolveError.
     """
     if x.ndim > 1:
         load = np.linalg.norm(b, axis=0)
@@ -111,8 +119,10 @@ def factorize(K: sp.csr_matrix, node: Ints) -> Solve:
 
 
 class ConstrainedSystem:
-    """Linear systems whose matrices have their entries in the same places, analysed once, of whose
-    unknowns any may be zero. node: as of Analysis.
+    """Systems of equations with one matrix pattern, of whose unknowns any may be zero.
+
+    K: csr, both halves.
+    node: as for Analysis.
     """
 
     def __init__(self, K: sp.csr_matrix, node: Ints | None = None) -> None:
@@ -123,33 +133,36 @@ class ConstrainedSystem:
         self._lock = threading.Lock()  # between factor and solution
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
-        """Unknowns (n, K) under forces, zero where `free` (n,) is 0 and not 1; K is changed."""
-        held = self._held(K, free)
+        """Unknowns (n, K) under forces (n, K), zero where `free` (n,) is 0; K is changed."""
+        held = self._constrained(K, free)
         with self._lock:
             return self._analysis.factorize(held)(forces * free[:, None])
 
     def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
-        """A function that solves the same for forces that are zero there, and checks nothing."""
-        return self._analysis.factorize(self._held(K, free), check=False)
+        """A function that solves for forces that are zero on constrained unknowns, unchecked."""
+        return self._analysis.factorize(self._constrained(K, free), check=False)
 
-    def _held(self, K: sp.csr_matrix, free: Floats) -> sp.csr_matrix:
+    def _constrained(self, K: sp.csr_matrix, free: Floats) -> sp.csr_matrix:
+        """K with zero rows and columns for constrained unknowns but for their diagonal."""
         fixed = self._diagonal[free == 0.0]
         largest = K.data.max()
         key = free.tobytes()
         if key not in self._zeroed:  # few harmonics differ in what they fix
             self._zeroed[key] = np.flatnonzero(free[self._row] * free[K.indices] == 0.0)
         K.data[self._zeroed[key]] = 0.0
-        K.data[fixed] = largest  # of no effect
+        # Any positive diagonal does, since their forces are zero; the largest leaves the scaling
+        # alone.
+        K.data[fixed] = largest
         return K
 
 
 def has_cholmod() -> bool:
-    """Whether its binding is there."""
+    """Whether the Python binding of CHOLMOD is installed."""
     return offered("cvxopt.cholmod") is not None
 
 
 def has_metis() -> bool:
-    """Whether its binding is there."""
+    """Whether the Python binding of METIS is installed."""
     return offered("pymetis") is not None
 
 
@@ -188,7 +201,10 @@ class _Cholmod:
 
 
 def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
-    """Nested-dissection order of unknowns, from the graph of their nodes; None without METIS."""
+    """A nested-dissection order of the unknowns by the graph of their nodes, or None.
+
+    None where METIS is missing.
+    """
     if not has_metis():
         return None
     import pymetis
@@ -209,8 +225,10 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
 
 
 def _superlu(K: sp.csr_matrix, order: Ints | None = None) -> Solve:
-    """Its pivots may have any sign, so of a matrix that is not definite it tells what a negative
-    diagonal shows; the rest is for whoever checks the solution.
+    """A function that solves with SuperLU's factors of K.
+
+    Its pivots may have any sign, so of a matrix that is not definite it reports only what a
+    negative diagonal shows; the rest is found by whoever checks the solution.
     """
     from scipy.sparse.linalg import splu
 

@@ -1,4 +1,4 @@
-"""From values at samples inside elements to values at nodes."""
+"""Values at nodes or other points from values at samples inside elements."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from scipy.spatial import cKDTree
 
 from pinbase.arrays import Floats, Ints
 
-FIT_SAMPLES = 24  # samples whose stress a quadratic polynomial is fitted to; it has six terms
-TREE_SAMPLE_RATIO = 4  # samples for each point: with more, a tree that is sooner built
-_REGULARISATION = 1e-10  # added where samples leave slope or curvature open, of their number
+# Samples to which a quadratic polynomial, of six terms, is fitted; `python -m benchmarks recovery`
+# measures its error.
+FIT_SAMPLES = 24
+TREE_SAMPLE_RATIO = 4  # samples per point above which a quickly built tree saves time
+_REGULARISATION = 1e-10  # of the number of samples, where these leave slope or curvature open
 
 
-def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
-    """Matrix (N, M Q) from values at Q samples of each element to values at nodes: each element's
-    extended linearly, and averaged.
+def nodal_extrapolation(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_matrix:
+    """Matrix (N, M Q) that takes values at Q samples of each element to nodes.
 
-    elements: (M, k) node numbers. samples (d, Q), places (d, k): where samples and nodes are in the
-    element. Q = d + 1, or 1 where values are the same all over an element.
+    Each element's values are extrapolated linearly to its nodes and averaged there.
+    elements: (M, k) node numbers.
+    samples: (d, Q), singularities: (d, k), where samples and nodes are in the reference element. Q
+    = d + 1, or 1 where values are constant in an element.
     """
     if samples.shape[1] == 1:
         extend = np.ones((singularities.shape[1], 1))
@@ -34,9 +37,11 @@ def extension(elements: Ints, samples: Floats, singularities: Floats) -> sp.csr_
 
 
 def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
-    """Matrix (P, S) from values at samples (S, 2) to those at points (P, 2): of the quadratic
-    polynomial that fits those at the nearest samples best; the nearer, the more they count, down to
-    nothing for the last, so that it does not matter which of several at its distance that is.
+    """Matrix (P, S) that takes values at samples (S, 2) to points (P, 2) by local least squares.
+
+    A quadratic polynomial is fitted to the nearest samples of each point. Their weights fall with
+    distance to nothing for the last one, so that it does not matter which of several equally
+    distant samples that is.
 
     Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
     elements round a node instead.
@@ -49,25 +54,27 @@ def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
         np.subtract(sample.take(near), point[:, None], out=out)
     square = offsets[0] * offsets[0] + offsets[1] * offsets[1]
     confidence = 1.0 - square / square.max(axis=1, keepdims=True)
-    weights = at_one_place(offsets.transpose(1, 2, 0), confidence)
+    weights = fit_weights(offsets.transpose(1, 2, 0), confidence)
     ends = np.arange(0, near.size + 1, near.shape[1])
     return sp.csr_matrix((weights.ravel(), near.ravel(), ends), (len(points), len(samples)))
 
 
 def nearest(samples: Floats, points: Floats) -> Ints:
-    """Numbers (P, C) of the samples (S, 2) that are nearest to points (P, 2): FIT_SAMPLES, or all
-    of fewer.
-    """
+    """Numbers (P, C) of the FIT_SAMPLES (or all) samples (S, 2) nearest to points (P, 2)."""
     count = min(FIT_SAMPLES, len(samples))
-    slow = TREE_SAMPLE_RATIO * len(points) > len(samples)  # to build, and quick to ask
-    found = cKDTree(samples, compact_nodes=slow, balanced_tree=slow).query(points, count)[1]
-    return np.asarray(found, np.int64).reshape(len(points), count)
+    # A balanced tree takes longer to build and less to query.
+    balanced = TREE_SAMPLE_RATIO * len(points) > len(samples)
+    rows = cKDTree(samples, compact_nodes=balanced, balanced_tree=balanced).query(points, count)[1]
+    return np.asarray(rows, np.int64).reshape(len(points), count)
 
 
-def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
-    """Weights (..., S) of samples at `offsets` (..., S, 2) from a place in the value there of the
-    quadratic polynomial that fits them best; where several do (long thin elements have their
-    nearest samples in a row), of that with the least slope and curvature.
+def fit_weights(offsets: Floats, confidence: Floats) -> Floats:
+    """Weights (..., S) of samples in the value, at one place, of the quadratic fitted to them.
+
+    Where several quadratics fit equally (long thin elements have their nearest samples in a row),
+    the one with the least slope and curvature counts.
+    offsets: (..., S, 2) of the samples from the place.
+    confidence: (..., S) weight of each in the fit.
     """
     x, y = np.moveaxis(offsets, -1, 0)
     largest = np.maximum(*(np.abs(part).max(axis=-1, keepdims=True) for part in (x, y)))
@@ -77,8 +84,10 @@ def at_one_place(offsets: Floats, confidence: Floats) -> Floats:
     for k, term in enumerate((x, y, x * x, y * x, y * y), 1):
         np.multiply(term, confidence, out=terms[..., k, :])
     form = terms @ terms.swapaxes(-2, -1)
+    # Regularised normal equations; one step of refinement then removes the bias of the
+    # regularisation.
     definite = form + _REGULARISATION * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
     one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))
     value = np.linalg.solve(definite, one)
-    value += np.linalg.solve(definite, one - form @ value)  # as if nothing had been added
+    value += np.linalg.solve(definite, one - form @ value)
     return np.asarray((value.swapaxes(-2, -1) @ terms)[..., 0, :] * confidence)

@@ -13,9 +13,12 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Material:
-    """youngs_modulus and strengths in Pa, density in kg/m^3; shear_strength and bearing_strength
-    are ultimate ones. hardening: equivalent plastic strains and yield stresses (Pa) there, straight
-    between them from the yield strength on and constant after the last.
+    """An isotropic linear-elastic material with its strengths.
+
+    youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
+    density: kg/m^3.
+    hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
+    the yield strength on and constant after the last.
 
     Raises: ArgumentError outside -1 < poisson_ratio < 0.5, for a modulus that is not positive and
     finite, and for hardening whose strains do not increase or whose stresses decrease.
@@ -63,7 +66,7 @@ class Material:
 
     @property
     def plane_compliance(self) -> float:
-        """(1 - nu^2) / E, of plane strain, 1/Pa."""
+        """Compliance in plane strain, (1 - nu^2) / E, 1/Pa."""
         return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
 
     def stress(self, strain: Floats) -> Floats:

@@ -35,7 +35,7 @@ ASSUMED_FREE_MB = 4096.0  # MB that are free where the system does not say
 
 
 def solid_memory(unknowns: float) -> float:
-    """Largest memory of a solid of so many unknowns, MB: mesh, factor and stresses."""
+    """Peak memory, MB, of a solid with that many unknowns: mesh, factor and stresses."""
     best = float(MB_PER_UNKNOWN * unknowns * max(1.0, unknowns / MIN_DENSE_UNKNOWNS) ** (1.0 / 3.0))
     if has_cholmod() and has_metis():
         return best
@@ -45,38 +45,42 @@ def solid_memory(unknowns: float) -> float:
 
 
 def section_memory(unknowns: float, loads: int) -> float:
-    """Memory of a section of so many unknowns and unit loads, MB."""
+    """Memory, MB, of a section with that many unknowns and unit loads."""
     return unknowns * (SECTION_MB_PER_UNKNOWN + SECTION_MB_PER_LOAD * loads)
 
 
 def local_memory(unknowns: float, loads: int) -> float:
-    """Memory of a local solid of so many unknowns and unit loads, MB."""
+    """Memory, MB, of a local solid with that many unknowns and unit loads."""
     return unknowns * (LOCAL_MB_PER_UNKNOWN + LOCAL_MB_PER_LOAD * loads)
 
 
 def free_memory(root: Path = Path("/")) -> float:
-    """Memory available to new processes, MB, within the limits of control groups; ASSUMED_FREE_MB
-    where the system does not report it. root: of the file system, for tests.
+    """Memory available to new processes, MB, within the limits of control groups.
+
+    It is ASSUMED_FREE_MB where the system does not report it.
+    root: of the file system, for tests.
     """
     if portable():
         return ASSUMED_FREE_MB
     try:
-        found = re.search(r"MemAvailable:\s+(\d+)", (root / "proc" / "meminfo").read_text())
+        available = re.search(r"MemAvailable:\s+(\d+)", (root / "proc" / "meminfo").read_text())
     except OSError:
-        found = None
-    return min(float(found[1]) / 1024.0 if found else ASSUMED_FREE_MB, free_in_groups(root))
+        available = None
+    return min(float(available[1]) / 1024.0 if available else ASSUMED_FREE_MB, free_in_groups(root))
 
 
 def allowed_memory(limit: float | None) -> float:
-    """MB: the limit, or most of the free memory."""
+    """Memory that may be used, MB: the limit if there is one, else most of the free memory."""
     return MEMORY_SHARE * free_memory() if limit is None else limit
 
 
 def too_much(
     unknowns: float, limit: float | None, section_loads: int = 0, local_loads: int = 0
 ) -> str:
-    """The memory that a solid, or a section or a local solid under unit loads, needs and the memory
-    allowed, as text; empty if that is enough.
+    """The memory that a model needs and the memory allowed, as text; empty if that is enough.
+
+    unknowns: of a solid, or of a section or local solid with that many unit loads.
+    limit: MB.
     """
     allowed = allowed_memory(limit)
     if section_loads:
@@ -94,7 +98,10 @@ def too_much(
 
 
 def require_memory(name: str, unknowns: int, limit: float | None) -> None:
-    """Raises: SolveError when a solid would need more memory than is allowed."""
+    """Check that a solid needs no more memory than is allowed. limit: MB.
+
+    Raises: SolveError.
+    """
     if excess := too_much(unknowns, limit):
         raise SolveError(
             f"pin {name}: {excess}: close other programs, allow more, increase --tolerance, give a "
@@ -105,7 +112,7 @@ def require_memory(name: str, unknowns: int, limit: float | None) -> None:
 
 @dataclass(frozen=True)
 class _Version:
-    """How a version of control groups calls things. limits: any of them may be set."""
+    """The file names of one version of control groups. limits: any of them may be set."""
 
     mounted: str
     limits: tuple[str, ...]
@@ -120,8 +127,10 @@ _CGROUP_V1 = _Version(
 
 
 def free_in_groups(root: Path = Path("/")) -> float:
-    """MB that this process may still take before it passes the limit of a control group; infinite
-    where there is no limit. root: of the file system, for tests.
+    """Memory, MB, that this process may still take within the limits of its control groups.
+
+    It is infinite where there is no limit.
+    root: of the file system, for tests.
     """
     return min((_free(folder, version) for folder, version in _groups(root)), default=float("inf"))
 
@@ -129,8 +138,8 @@ def free_in_groups(root: Path = Path("/")) -> float:
 def _groups(root: Path) -> Iterator[tuple[Path, _Version]]:
     """The folders of the groups that this process is in, each group's parents too.
 
-    In a container the path may be the host's, and the container's own group may stand at the top of
-    what is mounted: the walk up from a path that is not there ends at the top as well.
+    In a container the path may be the host's, and the container's own group may be at the top of
+    what is mounted: the walk up from a path that does not exist ends at the top as well.
     """
     for line in _read(root / "proc" / "self" / "cgroup").splitlines():
         number, _, rest = line.partition(":")
@@ -148,14 +157,15 @@ def _groups(root: Path) -> Iterator[tuple[Path, _Version]]:
 
 
 def _free(folder: Path, version: _Version) -> float:
+    """Memory, MB, that a group may still take; infinite without a limit."""
     limits = [_number(_read(folder / name)) for name in version.limits]
     limit = min((n for n in limits if n is not None), default=None)
     used = _number(_read(folder / version.used))
     if limit is None or used is None:
         return float("inf")
-    found = re.search(rf"^{version.reclaimable} (\d+)$", _read(folder / "memory.stat"), re.M)
-    kept = used - (int(found[1]) if found else 0)
-    return max(0.0, limit - kept) / MB
+    reclaimable = re.search(rf"^{version.reclaimable} (\d+)$", _read(folder / "memory.stat"), re.M)
+    resident = used - (int(reclaimable[1]) if reclaimable else 0)
+    return max(0.0, limit - resident) / MB
 
 
 def _read(path: Path) -> str:
@@ -166,6 +176,6 @@ def _read(path: Path) -> str:
 
 
 def _number(text: str) -> int | None:
-    """Bytes; None for what is not there, for "max" and for what the first version says instead."""
+    """Bytes; None for a missing file, "max" and the number by which version 1 says the same."""
     value = int(text) if text.strip().isdecimal() else UNLIMITED_BYTES
     return value if value < UNLIMITED_BYTES else None

@@ -1,10 +1,10 @@
 """The largest stress over a motion, not only over the instants at which its loads are known.
 
 Stress is linear in the amounts of unit loads and von Mises stress is a norm. So between two
-instants it exceeds the larger of both by no more than the von Mises stress of what the amounts
-differ from their chord there: a bound that unit fields give at once for all intervals. Instants are
-added where it may exceed the maximum, until it does so by little; about the one that governs, until
-the maximum stands.
+instants it exceeds the larger of both by no more than the von Mises stress of the difference
+between the amounts there and their chord: a bound that unit fields give at once for all intervals.
+Instants are added where stress may exceed the maximum, until it does so by little; then about the
+governing one, until the maximum no longer rises.
 """
 
 from __future__ import annotations
@@ -21,17 +21,19 @@ from pinbase.arrays import Floats, Ints
 
 Between = Callable[[Floats], PinLoads]  # a motion's loads at any times (T,) s
 
+# Chosen by judgement; `python -m benchmarks instants` shows the error of evenly spaced instants.
 TIME_ERROR_SHARE = 0.05  # of the tolerance: what the time may add to the error
-MAX_INSTANTS = 4096  # instants
-CHORD_FACTOR = 1.25  # what differs from a chord most, over that in the middle of it
-MIN_INTERVAL = 1e-5  # of the whole time: in a shorter interval there is a jump or nothing
-CREST_POINTS = 9  # in the interval about the maximum, which becomes a quarter each time
-CREST_TOLERANCE = 1e-12  # relative: so little more is nothing, a crest being flat
-CREST_REPEATS = 2  # times that nothing was gained
+MAX_INSTANTS = 4096
+# Largest deviation from a chord over that at its middle: 1 for a parabola, more for skewed curves.
+CHORD_FACTOR = 1.25
+MIN_INTERVAL = 1e-5  # of the whole time: a shorter interval holds a jump or nothing
+CREST_POINTS = 9  # in the interval about the maximum, which shrinks to a quarter each time
+CREST_TOLERANCE = 1e-12  # relative gain that does not count, a crest being flat
+CREST_REPEATS = 2  # passes without gain after which the search ends
 
 
 def rise_between(answer: StressField, loads: PinLoads, between: Between) -> float:
-    """By how much the maximum between instants may exceed that at instants, Pa."""
+    """The possible excess of the maximum between instants over that at the instants, Pa."""
     if len(loads) < 2:
         return 0.0
     largest = answer.largest(loads)[0]
@@ -42,7 +44,12 @@ def rise_between(answer: StressField, loads: PinLoads, between: Between) -> floa
 def _reached(
     answer: StressField, loads: PinLoads, off: LoadAmounts, largest: float
 ) -> tuple[Ints, Floats]:
-    """Intervals in which the largest at instants, Pa, may be exceeded, and what they may reach."""
+    """Intervals (I,) in which `largest` may be exceeded, and the stress (I,), Pa, they may reach.
+
+    off: deviations of the loads from their chords.
+    largest: at the instants, Pa.
+    """
+    # A first bound, the same for all intervals, rules out most of them without a search at each.
     rise = CHORD_FACTOR * answer.largest(off)[0]
     at = answer.maxima(loads, max(0.0, largest - rise))
     ends = np.maximum(at[1:], at[:-1])
@@ -51,8 +58,10 @@ def _reached(
 
 
 def _chord_deviation(loads: PinLoads, between: Between) -> LoadAmounts:
-    """What the loads amid each two instants differ from their chord. Where they jump (friction that
-    reverses), what lies between is on the chord.
+    """The deviation of the loads amid each two instants from their chord.
+
+    Where loads jump (friction that reverses) the interval is short and its loads count as on the
+    chord.
     """
     times = _times(loads)
     middle = between(0.5 * (times[1:] + times[:-1]))
@@ -64,8 +73,10 @@ def _chord_deviation(loads: PinLoads, between: Between) -> LoadAmounts:
 def through_time(
     answer: StressField, loads: PinLoads, between: Between, tolerance: float
 ) -> PinLoads:
-    """The loads with more instants, so many that what is between them exceeds the maximum by little
-    compared with a `tolerance`, relative; the governing one among them.
+    """The loads with instants added until those between them hardly matter.
+
+    tolerance: relative, of the maximum; what lies between instants may exceed it by
+    TIME_ERROR_SHARE of that.
     """
     while len(loads) < MAX_INSTANTS:
         largest = answer.largest(loads)[0]
@@ -79,11 +90,12 @@ def through_time(
 
 
 def with_crest(answer: StressField, loads: PinLoads, between: Between) -> PinLoads:
-    """The loads with the instant at which the maximum is, if it is higher there."""
+    """The loads with the instant of the maximum added, if it lies between the given instants."""
     times = _times(loads)
     value, k = answer.largest(loads)
     low, high = times[max(k - 1, 0)], times[min(k + 1, len(times) - 1)]
     best, stands = loads.at(np.array([k])), 0
+    # Sample the interval about the maximum and shrink it to the neighbours of the best sample.
     while stands < CREST_REPEATS:
         near = np.linspace(low, high, CREST_POINTS)
         here = between(near)
@@ -96,8 +108,10 @@ def with_crest(answer: StressField, loads: PinLoads, between: Between) -> PinLoa
 
 
 def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
-    """Instants, by their numbers, between which loads at the others are off their chord by at most
-    so much of the largest one; so many intervals at least.
+    """Numbers of the instants between which loads at the others lie near their chord.
+
+    straight: largest deviation from the chord, of the largest load.
+    fewest: intervals at least.
     """
     times, count = _times(loads), len(loads)
     vectors = [
@@ -105,9 +119,9 @@ def knots(loads: PinLoads, straight: float, fewest: int) -> Ints:
         for x in (loads.forces, loads.moments, loads.body)
     ]
     values = np.concatenate(vectors, axis=1)
-    kept = np.zeros(count, dtype=bool)
-    kept[np.linspace(0, count - 1, min(count, fewest + 1)).round().astype(np.int64)] = True
-    return np.flatnonzero(needed(times, values, np.full_like(values, straight), kept))
+    knot = np.zeros(count, dtype=bool)
+    knot[np.linspace(0, count - 1, min(count, fewest + 1)).round().astype(np.int64)] = True
+    return np.flatnonzero(needed(times, values, np.full_like(values, straight), knot))
 
 
 def _times(loads: PinLoads) -> Floats:

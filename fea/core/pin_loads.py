@@ -36,11 +36,12 @@ BODY_SURFACE = ""  # the `surface` of a load on the whole pin
 
 
 class UnitLoad(NamedTuple):
-    """A load of one harmonic on a surface (by name): per N, N m, or (kind "body") m/s^2; or (kinds
-    "shift" and "turn", as "force" and "moment") a rigid motion of a clamp, per m and rad about the
-    pin's origin.
+    """A load of one harmonic on a surface (by name), or a rigid motion of a clamp.
 
-    parts: instead, of a pressure on several surfaces, each with its amplitude, Pa.
+    Per N, N m, or (kind "body") m/s^2; kinds "shift" and "turn" are distributed as "force" and
+    "moment" but are motions of a clamp, per m and rad about the pin's origin.
+    n: the harmonic.
+    parts: instead of one surface, those of a pressure on several, each with its amplitude, Pa.
     """
 
     surface: str
@@ -50,15 +51,16 @@ class UnitLoad(NamedTuple):
 
     @property
     def surfaces(self) -> tuple[str, ...]:
-        """Those on which it acts, by name; none for a load on the whole pin."""
+        """The surfaces on which it acts, by name; none for a load on the whole pin."""
         if self.parts:
             return tuple(name for name, _ in self.parts)
         return (self.surface,) if self.surface else ()
 
     @property
-    def alone(self) -> dict[UnitLoad, float]:
-        """What it is the sum of: a pressure of one on each of its surfaces, so many times, Pa;
-        itself where it acts on one.
+    def single_surface_loads(self) -> dict[UnitLoad, float]:
+        """The unit loads of which it is the sum, with their amounts, Pa.
+
+        For a pressure on several surfaces: one of unit amplitude on each of them. Otherwise itself.
         """
         if not self.parts:
             return {self: 1.0}
@@ -71,7 +73,10 @@ class UnitLoad(NamedTuple):
 
     @property
     def phases(self) -> tuple[int, ...]:
-        """Which there are: two, but along the axis and for n = 0 pressure only 0, about it 1."""
+        """The phases that exist.
+
+        They are 0 and 1; for n = 0 only 0 (along the axis, pressure) or only 1 (about the axis).
+        """
         if self.n:
             return (0, 1)
         return (1,) if self.kind in ("moment", "turn") else (0,)
@@ -79,13 +84,16 @@ class UnitLoad(NamedTuple):
 
 @dataclass(frozen=True)
 class PinLoads:
-    """Loads on one pin in one case, in the pin's axes: at each surface (by name) a force at its
-    middle, forces (T, C, 3) N, and moments (T, C, 3) N m, or what broadcasts to that shape.
+    """Loads on one pin in one case: a force and a moment at each surface's middle, in pin axes.
 
+    surfaces: C names.
+    forces: (T, C, 3) N.
+    moments: (T, C, 3) N m, or what broadcasts to that shape.
     distribution: of transverse forces over their bands: "uniform" (a traction of constant
-    direction) or "cosine" (a bearing pressure on the loaded half, of which harmonics up to
-    `terms` are taken). body: (T, 3) m/s^2 or what broadcasts to it, gravity less the pin's own
-    acceleration. times: (T,) s, rising, of a motion. pressed: where lugs press on it.
+    direction) or "cosine" (a bearing pressure on the loaded half, with harmonics up to `terms`).
+    body: (T, 3) m/s^2, or what broadcasts to it: gravity less the pin's own acceleration.
+    times: (T,) s, rising, of a motion.
+    pressed: where lugs press on the pin.
     """
 
     case: str
@@ -109,17 +117,18 @@ class PinLoads:
 
     @property
     def links(self) -> PinLoads:
-        """What the links do to the pin: these loads themselves, unless contact carries them."""
+        """The loads of the links: these loads themselves, unless contact carries them."""
         return self
 
     @property
     def pressures(self) -> tuple[int, ...]:
-        """Harmonics of a bearing pressure that are taken."""
+        """Harmonics of the bearing pressure that are taken into account."""
         return (0, 1, *range(2, self.terms + 1, 2))
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """How much of each unit load acts, (T, 2) by phase; only of those that ever act. Neither it
-        nor its arrays can be written to, for they are made once.
+        """The amount (T, 2), by phase, of each unit load that ever acts.
+
+        Neither the mapping nor its arrays can be written to, since they are made once.
         """
         return MappingProxyType(self._coefficients)
 
@@ -136,6 +145,8 @@ class PinLoads:
         zero = np.zeros(len(self))
         for c, name in enumerate(self.surfaces):
             (x, y, z), (mx, my, mz) = self.forces[:, c].T, self.moments[:, c].T
+            # Transverse force: a traction of constant direction, or the series of a bearing
+            # pressure, whose harmonic n turns n times as fast as the force.
             if self.distribution == "uniform":
                 add(UnitLoad(name, "force", 1), x, y)
             else:
@@ -144,6 +155,8 @@ class PinLoads:
                     turned = (size * np.cos(n * angle), size * np.sin(n * angle))
                     add(UnitLoad(name, "pressure", n), *turned)
             add(UnitLoad(name, "force", 0), z, zero)
+            # A moment about y is of phase 0, as a force along x; one about x of phase 1, with its
+            # sign changed.
             add(UnitLoad(name, "moment", 1), my, -mx)
             add(UnitLoad(name, "moment", 0), zero, mz)
         add(UnitLoad(BODY_SURFACE, "body", 1), *self.body[:, :2].T)
@@ -171,7 +184,7 @@ class PinLoads:
         )
 
     def merged(self, other: PinLoads) -> PinLoads:
-        """With the instants of other loads of the same motion, in the order of time."""
+        """These loads and the instants of other loads of the same motion, in the order of time."""
         assert self.times is not None
         assert other.times is not None
         times, first = np.unique(np.concatenate([self.times, other.times]), return_index=True)
@@ -187,8 +200,10 @@ class PinLoads:
 
 @dataclass(frozen=True)
 class LoadAmounts:
-    """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces. pressed: where
-    lugs press on the pin meanwhile.
+    """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces.
+
+    count: T.
+    pressed: where lugs press on the pin at these instants.
     """
 
     case: str
@@ -200,17 +215,17 @@ class LoadAmounts:
         return self.count
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """How much of each unit load acts, (T, 2) by phase."""
+        """The amount (T, 2), by phase, of each unit load."""
         return self.acting
 
     def at(self, instants: NDArray[np.int64]) -> LoadAmounts:
-        """Those of some instants, by their numbers."""
+        """The amounts at some of the instants, by their numbers."""
         acting = {load: both[instants] for load, both in self.acting.items()}
         pressed = self.pressed and self.pressed.at(instants)
         return LoadAmounts(self.case, acting, len(instants), pressed)
 
     def turned(self, angle: float) -> LoadAmounts:
-        """The same, all turned about the pin's axis by `angle` (rad)."""
+        """The same amounts, all turned about the pin's axis by `angle` (rad)."""
         acting = {}
         for load, both in self.acting.items():
             c, s = np.cos(load.n * angle), np.sin(load.n * angle)
@@ -222,7 +237,10 @@ Loads = PinLoads | LoadAmounts
 
 
 def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitLoad]) -> None:
-    """Raises: ArgumentError when a part of a case's loads is not among those solved."""
+    """Check that all unit loads of a case are among those solved.
+
+    Raises: ArgumentError.
+    """
     if missing := set(acting) - set(solved):
         raise ArgumentError(
             f"case {case}: no unit fields were solved for {sorted(missing)}", "missing-fields"
@@ -230,7 +248,7 @@ def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitL
 
 
 def chord_deviation(loads: PinLoads, middle: PinLoads) -> LoadAmounts:
-    """By how much loads (T - 1) amid each two instants differ from the mean of both."""
+    """The amounts (T - 1) by which loads amid each two instants differ from the mean of both."""
     ends, amid = loads.coefficients(), middle.coefficients()
     none = np.zeros((len(loads), 2))
     acting = {}

@@ -29,8 +29,11 @@ BENEATH_DISTANCE = (
 
 @dataclass(frozen=True)
 class SurfacePlace:
-    """The largest stress of the surface, with its error; location (x, y, z); time: s. verdict: as
-    that of fea.core.peak.Maximum.
+    """The largest stress of the surface with its error.
+
+    location: (x, y, z).
+    time: s.
+    verdict: as that of fea.core.peak.Maximum.
     """
 
     max_von_mises: Stress
@@ -42,9 +45,11 @@ class SurfacePlace:
 
 @dataclass(frozen=True)
 class SectionPlace:
-    """The largest stress of a section, with its error, at z; what acts there, positive but for the
-    axial force. plastic_utilisation: which part of what a fully plastic section carries, None
-    without a yield strength (assess.plastic.hinge).
+    """The largest stress of a section with its error, its z, and the internal forces there.
+
+    Forces and moments are positive but for the axial force.
+    plastic_utilisation: the used part of what a fully plastic section carries
+    (assess.plastic.hinge); None without a yield strength.
     """
 
     max_von_mises: Stress
@@ -61,10 +66,13 @@ class SectionPlace:
 
 @dataclass(frozen=True)
 class ContactEdge:
-    """The edge of a lug, at the start or the end of its band. K, exponent: of the pressure that
-    rises towards it as K distance^-exponent; yield_distance: at which that falls to yield.
-    max_pressure, max_von_mises: of the pin at a rounded edge, with error_estimate of the pressure;
-    None at a sharp one, where pressure has no bound.
+    """The edge of a lug, at the start or the end of its band, and the pressure towards it.
+
+    K, exponent: pressure is K distance^-exponent.
+    yield_distance: at which that falls to yield.
+    max_pressure, max_von_mises: of the pin at a rounded edge; None at a sharp one, where pressure
+    has no bound.
+    error_estimate: of that pressure; None likewise.
     """
 
     band: str
@@ -78,7 +86,7 @@ class ContactEdge:
 
     @property
     def instead(self) -> dict[str, str]:
-        """The dimension of K (reports.data.in_units)."""
+        """The dimension of K, which depends on the exponent (reports.data.in_units)."""
         return {"strength": f"stress length^{self.exponent!r}"}
 
 
@@ -87,8 +95,11 @@ PressedCell = tuple[Length, Length, float, float]  # z from and to, angle from a
 
 @dataclass(frozen=True)
 class BandPressure:
-    """A band under its lug: force over diameter and length, its part of the bearing strength (None
-    without one), and the cells with pressure.
+    """A band under its lug.
+
+    mean_pressure: force over diameter and length.
+    bearing_share: its part of the bearing strength, None without one.
+    pressed: the cells with pressure.
     """
 
     name: str
@@ -99,12 +110,15 @@ class BandPressure:
 
 @dataclass(frozen=True)
 class ContactPlace:
-    """beneath: the largest von Mises stress farther than BENEATH_DISTANCE diameters from every
-    pressed cell, with its error, where and when. reach: how far from pressed cells stress exceeds
-    yield, at the governing instants; reach_required: the same of yield over the required factor;
-    None without one. edges, bands: at the row's instant. depths: pairs of a stress and how far
-    from pressed cells it is, falling stresses and growing distances, down to the least stress for
-    which an outcome may ask.
+    """The stress beneath contact, the reach of high stress, and the pressures of a pin's lugs.
+
+    beneath: the largest von Mises stress farther than BENEATH_DISTANCE diameters from every pressed
+    cell, with its error, where and when.
+    reach: distance from pressed cells up to which stress exceeds yield, at the governing instants;
+    reach_required: the same for yield over the required factor; None without one.
+    edges, bands: at the row's instant.
+    depths: pairs of a stress and the distance from pressed cells that it reaches, stresses falling
+    and distances growing, down to the least stress for which an outcome may ask.
     """
 
     beneath: Stress
@@ -119,18 +133,20 @@ class ContactPlace:
 
     @property
     def upper_end(self) -> float:
-        """What lies beneath, with its error, Pa."""
+        """The stress beneath contact plus its error, Pa."""
         return self.beneath + self.beneath_error
 
     def depth(self, limit: float) -> float:
-        """How far, m, from every pressed cell stress exceeds a limit, Pa."""
+        """Distance, m, from every pressed cell up to which stress exceeds a limit, Pa."""
         return max((depth for stress, depth in self.depths if stress > limit), default=0.0)
 
 
 @dataclass(frozen=True)
 class Places:
-    """Of a pin in a case, at its own instants. section: None of a body that is no beam; contact:
-    None where no lugs press on the pin.
+    """The three places of a pin in a case, each at its own governing instant.
+
+    section: None for a body that is no beam.
+    contact: None where no lugs press on the pin.
     """
 
     governs: Place

@@ -15,9 +15,12 @@ from pinbase.arrays import Floats, Ints
 
 
 class Pattern:
-    """The pairs of nodes of a mesh with elements (M, k): P pairs, by row, then by column.
+    """The pairs of nodes of a mesh that share an element: P pairs, by row, then by column.
 
-    columns: (P,) second node of each pair. pointer: (N + 1,) where each first node's pairs begin.
+    elements: (M, k) node numbers.
+    nodes: their count N.
+    columns: (P,) second node of each pair.
+    pointer: (N + 1,) where each first node's pairs begin.
     """
 
     def __init__(self, elements: Ints, nodes: int) -> None:
@@ -40,7 +43,7 @@ class Pattern:
         return len(self.columns)
 
     def sums(self, parts: Floats) -> Floats:
-        """Sums (P, ..) over elements of what each gives to the pairs of its nodes (M, k, k, ..)."""
+        """Sums (P, ..) over the elements of their contributions (M, k, k, ..) to pairs of nodes."""
         flat = parts.reshape(self._sum.shape[1], -1)
         return np.asarray(self._sum @ flat).reshape(len(self), *parts.shape[3:])
 
@@ -48,17 +51,15 @@ class Pattern:
         """The sparse matrix with a block (d, d) for each pair, (P, d, d)."""
         entries, indices, pointer = self._entries(blocks.shape[1])
         size = len(pointer) - 1
-        found = sp.csr_matrix((blocks.ravel().take(entries), indices, pointer), (size, size))
-        found.has_sorted_indices = True
-        return found
+        matrix = sp.csr_matrix((blocks.ravel().take(entries), indices, pointer), (size, size))
+        matrix.has_sorted_indices = True
+        return matrix
 
     def _entries(self, d: int) -> tuple[Any, Any, Any]:
-        """Of matrices with blocks (d, d): which number of the blocks each entry is, its column, and
-        where rows begin; found once.
-        """
+        """Block entry, column and row pointer of a matrix with blocks (d, d); found once."""
         if d not in self._known:
             size = d * (len(self.pointer) - 1)
             numbers = np.arange(d * d * len(self)).reshape(-1, d, d)
-            found = sp.bsr_matrix((numbers, self.columns, self.pointer), (size, size)).tocsr()
-            self._known[d] = found.data, found.indices, found.indptr
+            numbered = sp.bsr_matrix((numbers, self.columns, self.pointer), (size, size)).tocsr()
+            self._known[d] = numbered.data, numbered.indices, numbered.indptr
         return self._known[d]

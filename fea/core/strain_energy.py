@@ -16,15 +16,17 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class StrainEnergy:
-    """Of a pin on one mesh: work (L, L), J, of each of L unit loads, in its phase, on the
-    displacements by each of them.
+    """The strain energy of a pin on one mesh under any loads.
+
+    units: L unit loads with their phases.
+    work: (L, L) J, of each unit load on the displacements by each of them.
     """
 
     units: tuple[tuple[UnitLoad, int], ...]
     work: Floats
 
     def of(self, loads: Loads, instant: int = 0) -> float:
-        """Under the loads of an instant, by its number, J.
+        """The energy under the loads of an instant, by its number, J.
 
         Raises: ArgumentError where a part of the loads is not among the unit loads.
         """

@@ -22,8 +22,10 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Traction:
-    """Amplitudes along r, theta and z on a surface: `mean` + `slope` (z - middle), (3,) each; Pa
-    and Pa/m per unit of load.
+    """Amplitudes along r, theta and z on a surface that vary linearly along z.
+
+    They are `mean` + `slope` (z - middle), (3,) each, Pa and Pa/m per unit of load.
+    middle: m.
     """
 
     surface: str
@@ -45,7 +47,7 @@ _NO_TRACTION = np.zeros(3)
 
 
 def tractions_of(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
-    """The tractions of a unit load on bands; none of one on the whole pin, or of a clamp."""
+    """The tractions of a unit load on bands; none for a body load or a motion of a clamp."""
     if load.parts:
         bands = [(pin.band(name), amplitude) for name, amplitude in load.parts]
         return tuple(Traction(b.name, b.middle, x * INWARDS, _NO_TRACTION) for b, x in bands)
@@ -68,8 +70,10 @@ def traction(pin: PinLike, load: UnitLoad) -> Traction:
 
 
 def pressure_amplitude(n: int, band: Band) -> float:
-    """Pressure (Pa) of harmonic n of a bearing pressure of one newton, on the side it comes from
-    at a = 0 for n = 1, and seen from the direction of the force otherwise.
+    """Amplitude, Pa, of harmonic n of a bearing pressure with a resultant of one newton.
+
+    For n = 1 it is that of the side the pressure comes from (a = 0), for other n that seen from the
+    direction of the force.
     """
     highest = 2.0 / (math.pi * band.radius * band.length)
     if n == 0:
@@ -82,14 +86,13 @@ def pressure_amplitude(n: int, band: Band) -> float:
 def closing_tractions(
     pin: PinLike, n: int, phase: int, pressure: bool = False
 ) -> tuple[tuple[Traction, ...], ...]:
-    """The tractions that react the imbalance of an unconstrained pin, each on all its bands: for
-    n = 1 a constant and one that grows with z from each band's own middle, so that a couple is
-    taken up by couples and leaves the bands their forces; for n = 0 along the axis, or about it at
-    phase 1.
+    """The tractions that react the imbalance of an unconstrained pin, each on all its bands.
 
-    Of all tractions with a given resultant that leave the bands the forces of their links but for
-    what is left over of these, the ones with the least mean square; of all pressures, those for
-    `pressure`, which have no shear that would jump at a band's edge.
+    n = 1: a constant one and one that grows with z from each band's own middle, so that a couple is
+    taken up by couples and leaves the bands their forces. n = 0: one along the axis, or one about
+    it at phase 1. Of all tractions with a given resultant that leave the bands the forces of their
+    links but for the imbalance, these have the least mean square.
+    pressure: use pressures instead, which have no shear that would jump at a band's edge.
     """
     bands = [pin.band(name) for name in pin.connections]
 

@@ -9,20 +9,25 @@ from typing import Literal
 Kind = Literal["sharp corner", "edge of a clamp", "edge of a load"]
 
 DISTANCE_VARIATIONS = (0.5, 2.0)  # times the excluded distance, which is a convention
-MESH_SCALE_RATIO = 10.0  # what meshes are scaled by over the reach of a singular field
+# Length by which meshes are scaled over the reach of a singular field; chosen by judgement.
+MESH_SCALE_RATIO = 10.0
 
 
 @dataclass(frozen=True)
 class Zone:
-    """A circle at (r, z), m, near which stress grows like d^-theory at the distance d.
+    """A circle at (r, z), m, in which stress grows like d^-theory and is not read.
 
-    between: the surfaces that meet there. theory: the exponent in plane strain, so for axial and
-    bending loads; 0 at the edge of a load, where it grows like log(1/d); None where the angle is
-    not known. torsion_theory: the exponent in torsion; bending has this part too. radius: how far
-    (m) stress is not to be read. feature: how far (m) the singular field reaches at most, the
-    height of a small step, say; at most the radius. angle: of the material, rad. limit: of the
-    radius, m, where the next fillet or groove begins. scale: the length (m) by which meshes are
-    scaled near it, at most the diameter. advice: what would make it finite, for people.
+    between: the surfaces that meet there.
+    theory: the exponent in plane strain, so for axial and bending loads; 0 at the edge of a load,
+    where stress grows like log(1/d); None where the angle is not known.
+    torsion_theory: the exponent in torsion; bending has this part too.
+    radius: m, within which stress is not read.
+    limit: m, of the radius, where the next fillet or groove begins.
+    feature: m, how far the singular field reaches at most (the height of a small step, say), no
+    more than the radius.
+    angle: of the material, rad.
+    scale: m, the length by which meshes are scaled near it, at most the diameter.
+    advice: what would make stress finite, for people.
     """
 
     r: float
@@ -44,28 +49,28 @@ class Zone:
         object.__setattr__(self, "scale", min(self.scale, 2.0 * self.r))
 
     def varied(self, times: float) -> Zone:
-        """With so many times the distance left out, but no farther than where the next feature
-        begins.
-        """
+        """The zone with so many times the radius, but not beyond where the next feature begins."""
         return replace(self, radius=times * self.radius)
 
     def up_to(self, *distances: float) -> Zone:
-        """With features whose stress counts from these distances, m, on."""
+        """The zone limited by features whose stress counts from these distances, m, on."""
         limit = min(self.limit, *distances, math.inf)
         return replace(self, limit=limit, scale=min(self.scale, MESH_SCALE_RATIO * limit))
 
     @property
     def measured(self) -> bool:
-        """Whether meshes are graded so closely towards it that the growth of stress is measured:
-        not where that is a logarithm, nor under a lug, whose pressure is even on each ring.
+        """Whether the growth of stress is measured, on closely graded meshes.
+
+        Not where the growth is a logarithm, nor under a lug, whose pressure is even on each ring.
         """
         return self.kind in ("sharp corner", "edge of a clamp")
 
     @property
     def following(self) -> float:
-        """Exponent q of the term d^q that stands for all that follows in plane strain: theirs where
-        one side of a smooth surface is clamped; at inner corners what fits twenty of them best
-        (`python -m benchmarks corners`).
+        """Exponent q of the term d^q that stands for all regular terms in plane strain.
+
+        The theoretical one where one side of a smooth surface is clamped; at inner corners the
+        value that fits twenty of them best (`python -m benchmarks corners`).
         """
         if self.kind == "sharp corner":
             return 0.2
@@ -73,8 +78,9 @@ class Zone:
 
     @property
     def following_torsion(self) -> float:
-        """The same in torsion: eigenvalues are multiples of the first, odd ones if one side is
-        constrained.
+        """The same exponent in torsion.
+
+        Eigenvalues are multiples of the first, odd ones if one side is constrained.
         """
         times = 3.0 if self.kind == "edge of a clamp" else 2.0
         return times * (1.0 - self.torsion_theory) - 1.0

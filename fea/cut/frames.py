@@ -1,6 +1,4 @@
-"""The uncut pin's stress in the frame of a piece about its cuts, and motions of a piece in the
-frame of the pin.
-"""
+"""Changes of frame between a pin and a piece of it about its cuts."""
 
 from __future__ import annotations
 
@@ -15,7 +13,10 @@ from pinbase.arrays import Floats
 
 
 def in_pin(moved: Floats, piece: Piece) -> Floats:
-    """In the pin's frame, about its origin, rigid motions (2, 6, L) about that of a piece."""
+    """Rigid motions (2, 6, L) about the pin's origin, from those in the frame of a piece.
+
+    moved: (2, 6, L) shifts (m) and turns (rad) of both ends of the piece.
+    """
     turn = turn_of(piece.angle)
     shift, spin = (np.einsum("ab,ebl->eal", turn, x) for x in np.split(moved, 2, axis=1))
     arm = np.array([0.0, 0.0, piece.origin])
@@ -24,18 +25,23 @@ def in_pin(moved: Floats, piece: Piece) -> Floats:
 
 
 def turn_of(angle: float) -> Floats:
+    """The rotation matrix (3, 3) about z by an angle (rad)."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
-    """Amplitudes (.., 6, K) on the outline at points (r, z), between the two nearest ones on it."""
+    """Stress amplitudes (.., 6, K) at points (r, z), m, of the outline.
+
+    They are interpolated between the two nearest of the fields' points on it.
+    """
     skin = fields.points[: fields.skin]
     at = np.stack([r, z], axis=-1)
     near = np.asarray(cKDTree(skin).query(at, 4)[1])
     first = near[..., 0]
     step = skin[near] - skin[first][..., None, :]
     apart = np.linalg.norm(step, axis=-1)
+    # The nearest point that does not coincide with the first one, as points do at ends of edges.
     other = np.take_along_axis(
         near, (apart > 1e-9 * np.ptp(skin[:, 1])).argmax(axis=-1)[..., None], -1
     )[..., 0]
@@ -49,10 +55,13 @@ def on_skin(fields: MeridianFields, r: Floats, z: Floats) -> Floats:
 
 
 def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit, ...]) -> Floats:
-    """Stress (.., 6, L) along x, y and z of a frame turned by an angle, at angles in that frame, of
-    amplitudes (.., 6, L) along r, theta and z.
+    """Stress (.., 6, L) along the axes of a frame that is turned about z by an angle (rad).
+
+    amplitude: (.., 6, L) along r, theta and z.
+    angle: (..) rad of the points in that frame.
+    turned: rad, of the frame.
     """
-    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
+    n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * (angle[..., None] + turned) - phase * np.pi / 2.0
     polar = amplitude * np.cos(psi)[..., None, :]
     polar[..., [3, 5], :] = amplitude[..., [3, 5], :] * np.sin(psi)[..., None, :]
@@ -62,5 +71,5 @@ def cartesian(amplitude: Floats, angle: Floats, turned: float, units: tuple[Unit
     turn[..., 0, 1] = -np.sin(angle)
     turn[..., 2, 2] = 1.0
     tensor = polar[..., TENSOR_TO_VOIGT, :]
-    found = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
-    return np.stack([found[..., a, b, :] for a, b in VOIGT_TO_TENSOR], axis=-2)
+    stress = np.einsum("...ai,...ijl,...bj->...abl", turn, tensor, turn, optimize=True)
+    return np.stack([stress[..., a, b, :] for a, b in VOIGT_TO_TENSOR], axis=-2)

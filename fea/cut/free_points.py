@@ -1,8 +1,8 @@
-"""Where the surface of a pin with cuts is read, on which lugs press, by its points in space.
+"""The points at which the surface of a pin with cuts is read where lugs press on it.
 
-As of a pin without cuts (fea.harmonic.free_surface): what is free, and the middles of rings without
-the local stress of the pressure. The walls of cuts are free everywhere; where they meet a band,
-their own side is read.
+The rules are those of a pin without cuts (fea.harmonic.free_surface): free arcs, and the middles of
+rings without the local stress of the pressure. The walls of cuts are free everywhere; where they
+meet a band, the side of the cut is read.
 """
 
 from __future__ import annotations
@@ -18,17 +18,18 @@ from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.harmonic.beneath import arcs_apart, arcs_within
 from pinbase.arrays import Floats, Ints, Mask
 
-ON_CYLINDER_TOLERANCE = (
-    1e-4  # of a radius: a point of the outline this near to a ring's cylinder is on it
-)
-INSTANT_BATCH = 64  # instants
-RING_SIDE_OFFSET = 1e-6  # of a ring's length: both sides of where two rings meet
+ON_CYLINDER_TOLERANCE = 1e-4  # of a radius: nearer to a ring's cylinder an outline point is on it
+INSTANT_BATCH = 64  # instants at once: limits memory
+RING_SIDE_OFFSET = 1e-6  # of a ring's length: separates the sides where two rings meet
 
 
 @dataclass(frozen=True)
 class FreePoints:
-    """Points (P,) on a pin with rings. arc: on which of the arcs about the axis each is; near: (P,
-    3 R) what shuts it (fea.core.pressed); amid: the ring in whose middle it is, -1 in none.
+    """Points (P,) on a pin with rings, and what shuts them.
+
+    arc: (P,) the arc about the axis on which each is.
+    near: (P, 3 R) which rings shut it (fea.core.pressed).
+    amid: (P,) the ring in whose middle it is, -1 in none.
     """
 
     arc: Ints
@@ -37,7 +38,7 @@ class FreePoints:
 
     @classmethod
     def of(cls, points: Floats, outline: Mask, rings: Rings) -> FreePoints:
-        """Of points (P, 3), m. outline: (P,) which are on the outline of the pin without cuts."""
+        """The free points among points (P, 3), m. outline: (P,) those on the uncut outline."""
         r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
         off = np.abs(r[:, None] - rings.radius)
         ring = off.argmin(axis=1)
@@ -51,13 +52,13 @@ class FreePoints:
         return cls(arc_of(points), near, amid)
 
     def some(self, rows: Ints, plain: int) -> FreePoints:
-        """Of points (Q,), the first `plain` as they are, the others relieved of pressure."""
+        """A selection of points (Q,), the first `plain` as they are, the others relieved."""
         amid, near = self.amid[rows], self.near[rows]
         amid[:plain], near[plain:] = -1, False
         return FreePoints(self.arc[rows], near, amid)
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
-        """Which points (P,) are read at an instant."""
+        """Mask (P,) of the points that are read at an instant."""
         out = np.ones(len(self.arc), dtype=bool)
         near, amid = np.flatnonzero(self.near.any(axis=1)), np.flatnonzero(self.amid >= 0)
         shut, edges = pressed.shut(instant), pressed.widened(pressed.at_edges(instant))
@@ -67,28 +68,33 @@ class FreePoints:
 
 
 def arc_of(points: Floats) -> Ints:
-    """On which arc points (P, 3) are."""
+    """The arcs (P,) about the axis on which points (P, 3) lie."""
     turns = np.arctan2(points[:, 1], points[:, 0]) / (2.0 * np.pi)
     return np.asarray(np.rint(turns * ARC_COUNT).astype(np.int64) % ARC_COUNT)
 
 
 def relieved(stress: Floats, points: Floats, nu: float) -> Floats:
-    """Stress (P, 6, L), along x, y and z at points (P, 3) of the outline, without that of pressure
-    on it (fea.harmonic.free_surface).
+    """Stress (P, 6, L) at points of the outline without that of the pressure on it.
+
+    stress: (P, 6, L) along x, y and z.
+    points: (P, 3) m.
+    nu: Poisson's ratio. The formula is that of fea.harmonic.free_surface.
     """
-    out = np.zeros((len(points), 3))
-    out[:, :2] = points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None]
-    across = np.einsum("pi,pijl,pj->pl", out, stress[:, TENSOR_TO_VOIGT], out)
-    both = np.einsum("pi,pj->pij", out, out) + np.diag([0.0, 0.0, 1.0])
+    outward = np.zeros((len(points), 3))
+    outward[:, :2] = points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None]
+    across = np.einsum("pi,pijl,pj->pl", outward, stress[:, TENSOR_TO_VOIGT], outward)
+    both = np.einsum("pi,pj->pij", outward, outward) + np.diag([0.0, 0.0, 1.0])
     local = both + 2.0 * nu * (np.eye(3) - both)
-    each = np.stack([local[:, a, b] for a, b in VOIGT_TO_TENSOR], axis=1)
-    return np.asarray(stress - each[:, :, None] * across[:, None])
+    local_stress = np.stack([local[:, a, b] for a, b in VOIGT_TO_TENSOR], axis=1)
+    return np.asarray(stress - local_stress[:, :, None] * across[:, None])
 
 
 @dataclass(frozen=True)
 class AwayFromPressed:
-    """Points (P,) beneath contact: farther than BENEATH diameters from what is pressed. within: how
-    many arcs from a pressed one on a ring each is nearer than that, (P, R), -1 where it never is.
+    """Points (P,) beneath contact: farther than BENEATH_DISTANCE diameters from what is pressed.
+
+    within: (P, R) number of arcs from a pressed arc of a ring up to which a point is nearer than
+    that, -1 where it never is.
     """
 
     arc: Ints
@@ -96,22 +102,24 @@ class AwayFromPressed:
 
     @classmethod
     def of(cls, points: Floats, rings: Rings) -> AwayFromPressed:
-        """Of points (P, 3), m."""
+        """The same of points (P, 3), m."""
         section = np.stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]], axis=1)
         return cls(
             arc_of(points), arcs_within(section, rings, 2.0 * BENEATH_DISTANCE * rings.radius)
         )
 
     def read(self, pressed: PressedArcs, instant: int) -> Mask:
-        """Which points (P,) are so at an instant."""
+        """Mask (P,) of the points that are away from all pressed arcs at an instant."""
         apart = arcs_apart(pressed.on[instant])[:, self.arc].T
         return np.asarray((apart > self.within).all(axis=1))
 
 
 @dataclass(frozen=True)
 class CutReading:
-    """Rows (Q,) of points where stress is looked for, and von Mises squared there, (Q, T), of
-    amounts of unit loads (T, L). free: where lugs press on them.
+    """Points (Q,) among which the maximum is looked for, by their rows.
+
+    squares: von Mises squared (Q, T), Pa^2, from amounts of unit loads (T, L).
+    free: where lugs leave the points free to be read, everywhere by default.
     """
 
     rows: Ints
@@ -119,15 +127,18 @@ class CutReading:
     free: FreePoints | AwayFromPressed | None = None
 
     def stress(self, c: Floats, pressed: PressedArcs | None, first: int = 0) -> Floats:
-        """Von Mises stress (Q, T), Pa, at instants from the first on; 0 where it is not read."""
-        found = np.sqrt(np.maximum(self.squares(c), 0.0))
+        """Von Mises stress (Q, T), Pa, of amounts c (T, L); 0 where it is not read.
+
+        first: number of the first of these instants.
+        """
+        stress = np.sqrt(np.maximum(self.squares(c), 0.0))
         if self.free is not None and pressed is not None:
             for t in range(len(c)):
-                found[~self.free.read(pressed, first + t), t] = 0.0
-        return found
+                stress[~self.free.read(pressed, first + t), t] = 0.0
+        return stress
 
     def largest(self, c: Floats, pressed: PressedArcs | None = None) -> tuple[Floats, Ints]:
-        """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
+        """The largest von Mises stress (T,), Pa, at every instant, and its row (T,)."""
         value, point = np.zeros(len(c)), np.zeros(len(c), dtype=np.int64)
         for k in range(0, len(c) if len(self.rows) else 0, INSTANT_BATCH):
             here = self.stress(c[k : k + INSTANT_BATCH], pressed, k)
@@ -137,7 +148,7 @@ class CutReading:
 
 
 def distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
-    """Of points (P, 3) from the nearest pressed cell, (P,) m."""
+    """Distances (P,), m, of points (P, 3) from the nearest pressed cell at an instant."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = np.hypot(points[:, 0], points[:, 1])[:, None], points[:, 2:]
     angle = 2.0 * np.pi / ARC_COUNT * np.maximum(arcs_apart(on)[:, arc_of(points)].T - 0.5, 0.0)

@@ -1,4 +1,4 @@
-"""Sharp inner corners of cuts, where stress has no bound: found on the mesh of a piece."""
+"""Sharp inner corners of cuts, where stress has no bound, found on the mesh of a piece."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from fea.solid.boundary import MIN_SMOOTH_COSINE
 from fea.solid.sharp_edges import turned_edges
 from pinbase.arrays import Floats, Ints
 
-MIN_CORNER_TURN = math.radians(15.0)  # of an inner corner: less is the mesh of a curved wall
+# Least turn of an inner corner: less is the mesh of a curved wall; chosen by judgement.
+MIN_CORNER_TURN = math.radians(15.0)
 RADIUS_ADVICE = {
     "flat": "a radius of the flat would make it finite",
     "slot": "a radius of the slot would make it finite",
@@ -27,15 +28,20 @@ RADIUS_ADVICE = {
 
 @dataclass(frozen=True)
 class InnerCorner:
-    """A singularity, and how far points (P,) are from it, over its radius."""
+    """An inner corner as a singularity.
+
+    distance: (P,) of points from it, over its radius.
+    """
 
     singularity: Zone
     distance: Floats
 
 
 def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerCorner, ...]:
-    """Of a piece; x: points (P, 3), m, of what is meshed of it. distance: of a cut's size, at most
-    the pin's diameter, within which stress is not read.
+    """The inner corners of a piece.
+
+    x: (P, 3) m, points of the meshed part of it.
+    distance: of a cut's size (at most the pin's diameter), within which stress is not read.
     """
     out = []
     for between, (nodes, angle) in sorted(_lines(model).items()):
@@ -61,8 +67,9 @@ def inner_corners(model: LocalModel, x: Floats, distance: float) -> tuple[InnerC
 
 
 def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
-    """Nodes along inner corners, and the mean angle of the material there, rad, by the names of
-    what meets; of tips of cones nan.
+    """Nodes along inner corners and the mean angle of the material there, rad.
+
+    They are sorted by the names of the two faces that meet; the angle of a cone's tip is nan.
     """
     names = np.full(len(model.surface.facets), -1)
     boundaries = list(model.space.mesh.boundaries)
@@ -71,38 +78,45 @@ def _lines(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
     mirror = np.array([model.mirrored(name) for name in boundaries])
     cut = np.array([model.piece.cut_at(name) is not None for name in boundaries])
     edges = turned_edges(model.space, model.surface)
-    one, two = names[edges.facets]
-    on_mirror = mirror[one] | mirror[two]
+    first_name, second_name = names[edges.facets]
+    on_mirror = mirror[first_name] | mirror[second_name]
+    # On a mirror plane only half of the corner is meshed, so its angle counts twice.
     angle = np.where(on_mirror, 2.0 * (np.pi + edges.turn), np.pi + edges.turn)
-    sharp = (cut[one] | cut[two]) & (angle > np.pi + MIN_CORNER_TURN) & ~(mirror[one] & mirror[two])
-    found: dict[tuple[str, str], list[int]] = {}
+    sharp = (
+        (cut[first_name] | cut[second_name])
+        & (angle > np.pi + MIN_CORNER_TURN)
+        & ~(mirror[first_name] & mirror[second_name])
+    )
+    rows_of: dict[tuple[str, str], list[int]] = {}
     for k in np.flatnonzero(sharp).tolist():
-        pair = [boundaries[i] for i in (one[k], two[k]) if not mirror[i]]
+        pair = [boundaries[i] for i in (first_name[k], second_name[k]) if not mirror[i]]
         first, *other = sorted(pair)
-        found.setdefault((first, other[0] if other and other[0] != first else "itself"), []).append(
-            k
-        )
+        rows_of.setdefault(
+            (first, other[0] if other and other[0] != first else "itself"), []
+        ).append(k)
     out = {
         key: (np.unique(edges.nodes[rows]), float(angle[rows].mean()))
-        for key, rows in found.items()
+        for key, rows in rows_of.items()
     }
     return out | _tips(model)
 
 
 def _tips(model: LocalModel) -> dict[tuple[str, str], tuple[Ints, float]]:
-    """Nodes at which the normals of one smooth part point apart, away from its edges."""
+    """Nodes at the tips of cones: where normals of one smooth face diverge, away from its edges."""
     out = {}
     for reading in model.readings:
         if not reading.face.name.endswith(" bottom"):
             continue
         corners = model.surface.corners[reading.face.rows]
         normals = model.surface.normals[reading.face.rows].copy()
+        # On a mirror plane the normals of both halves average to one within it.
         for plane in model.piece.mirrors:
             axis = AXIS_NAMES.index(plane)
             normals[np.abs(model.space.nodes[corners][..., axis]) < 1e-12, axis] = 0.0
         where = np.searchsorted(reading.nodes, corners)
         total = np.zeros((len(reading.nodes), 3))
         np.add.at(total, where, normals)
+        # The mean of unit normals is shorter than one where they diverge.
         mean = np.linalg.norm(total, axis=1) / np.bincount(where.ravel())
         tip = reading.nodes[mean < MIN_SMOOTH_COSINE]
         if len(tip):

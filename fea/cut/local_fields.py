@@ -1,4 +1,4 @@
-"""Unit fields about a pin's cuts: stress on the surface there, of the pin with its cuts."""
+"""Unit fields about a pin's cuts: stress on the surface of the pin with its cuts, near these."""
 
 from __future__ import annotations
 
@@ -28,31 +28,26 @@ from fea.solid.superposition import squares
 from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
 from pinbase.arrays import Floats, Ints, Mask
 
-LOCAL_MESH_RATIO = 2.0**0.75  # from one mesh to the next, where stress is high
-CUT_LOW_STRESS_POWER = 0.4  # power of that elsewhere
-CUT_REFINE_ABOVE, CUT_MIN_SPACING, CUT_MAX_PLACES = (
-    0.95,
-    0.35,
-    4,
-)  # such places: of the maximum, of the hole apart, so many
+# Refinement, chosen by judgement; `python -m benchmarks cut-pins` checks the errors it leads to.
+LOCAL_MESH_RATIO = 2.0**0.75  # of element sizes from one mesh to the next, where stress is high
+CUT_LOW_STRESS_POWER = 0.4  # power of that ratio elsewhere
+CUT_REFINE_ABOVE = 0.95  # of the maximum: a place with more stress is refined
+CUT_MIN_SPACING = 0.35  # of the hole's size, between such places
+CUT_MAX_PLACES = 4
 LOAD_ROUND_OFF = 1e-9  # of a load's amounts
 END_NODE_TOLERANCE = 1e-6  # of a piece's length: nodes on its end
-END_EFFECT_FACTOR = (
-    1.5  # stress at the maximum that an end changes, over what is left there, at most (1.2 seen)
-)
-NEIGHBOUR_EFFECT_FACTOR = (
-    5.0  # stress at a cut over what another one changes beside it, at most (4.4 seen)
-)
-OUTLINE_NEIGHBOURS = 16  # of its nodes on the outline, the nearest ones to there
-MAX_REFINED_RISE = (
-    0.3  # of a piece's maximum, by meshes finer than the first one, at most (0.1 seen)
-)
+# Bounds of effects, each rounded up from the largest one seen (docs/method.md for the ends).
+END_EFFECT_FACTOR = 1.5  # change at the maximum by an end, over what is left there (1.2 seen)
+NEIGHBOUR_EFFECT_FACTOR = 5.0  # stress at a cut over the change beside it by another (4.4 seen)
+OUTLINE_NEIGHBOURS = 16  # nodes on the outline beside another cut, at which that change is read
+MAX_REFINED_RISE = 0.3  # rise of a piece's maximum by meshes finer than the first (0.1 seen)
 
 
 @dataclass(frozen=True)
 class LocalFineness:
-    """How many times finer than the first mesh elements are: along the edges of cuts, and at spots
-    where stress is high.
+    """The fineness of a mesh relative to the first one: along the edges of cuts, and at spots.
+
+    Spots are places where stress is high.
     """
 
     edges: float
@@ -60,7 +55,7 @@ class LocalFineness:
 
     @staticmethod
     def of(level: int) -> LocalFineness:
-        """Of mesh number `level`."""
+        """The fineness of mesh number `level`."""
         return LocalFineness(
             LOCAL_MESH_RATIO ** (level * CUT_LOW_STRESS_POWER), LOCAL_MESH_RATIO**level
         )
@@ -68,15 +63,23 @@ class LocalFineness:
 
 @dataclass(frozen=True)
 class LocalFields:
-    """On one mesh of a piece, in the pin's frame: points (P, 3) m of the surface, triangles (M, 3)
-    of them, stress (P, 6, L) Pa of L unit loads, each in one phase. uncut: (P, 3, L) m, the
-    displacement of the uncut pin; displaced: what the cuts add to it against their piece's lower
-    end. read: (P,) where the maximum is looked for but for inner corners of cuts. outer, and
-    changed: rows on the outline of the uncut pin, and what the cuts change of their stress (O, 6,
-    L); ended: (O,) which of these are where the piece ends. moved: (2, 6, L) by how much the cuts
-    move its ends, as a shift (m) and a turn (rad) about the pin's origin. scatter: (P,) of the
-    stress with the positions of nodes, relative. finer: its spots than those of the first mesh. nu:
-    Poisson's ratio.
+    """The unit fields on one mesh of a piece, in the pin's frame.
+
+    units: L unit loads, each in one phase.
+    points: (P, 3) m of the surface.
+    triangles: (M, 3) of these.
+    stress: (P, 6, L) Pa.
+    uncut: (P, 3, L) m, the displacement of the uncut pin.
+    displaced: (P, 3, L) m, what the cuts add to it, relative to their piece's lower end.
+    read: (P,) where the maximum is looked for, but for inner corners of cuts.
+    outer: rows on the outline of the uncut pin.
+    changed: (O, 6, L) Pa, the change of their stress by the cuts.
+    ended: (O,) which of these are at an end of the piece.
+    moved: (2, 6, L) the motions of the piece's ends by the cuts, a shift (m) and a turn (rad) about
+    the pin's origin.
+    scatter: (P,) of the stress with the positions of nodes, relative.
+    finer: fineness of the spots relative to the first mesh.
+    nu: Poisson's ratio.
     """
 
     piece: Piece
@@ -98,15 +101,16 @@ class LocalFields:
     nu: float
 
     def coefficients(self, loads: Loads) -> Floats:
-        """How much of each unit load acts at each instant, (T, L).
+        """The amount of each unit load at each instant, (T, L).
 
         Raises: ArgumentError when there is no field for a part of the loads.
         """
         return coefficients_of(loads, self.units)
 
     def outside(self, times: float = 1.0) -> Mask:
-        """(P,) where the maximum is looked for, if so many times the usual distance from inner
-        corners is left out.
+        """Mask (P,) of the points at which the maximum is looked for.
+
+        times: factor of the usual distance from inner corners.
         """
         out = self.read.copy()
         for corner in self.corners:
@@ -118,9 +122,7 @@ class LocalFields:
         return {}
 
     def _reading(self, loads: Loads, times: float = 1.0) -> CutReading:
-        """What is read under loads, if so many times the distance from inner corners is left out;
-        found once.
-        """
+        """The points that are read under loads; found once. times: as for `outside`."""
         rings = None if loads.pressed is None else loads.pressed.rings
         key = times, None if rings is None else rings.key
         if key not in self._readings:
@@ -129,62 +131,63 @@ class LocalFields:
         return self._readings[key]
 
     def _plain(self, rows: Ints) -> CutReading:
+        """A reading of the rows irrespective of where lugs press."""
         return CutReading(rows, squares(self.stress[rows]))
 
     def _free(self, rows: Ints, rings: Rings) -> CutReading:
+        """A reading of the rows that lugs leave free, and of the relieved middles of rings."""
         free = FreePoints.of(self.points, np.isin(np.arange(len(self.points)), self.outer), rings)
         amid = rows[free.amid[rows] >= 0]
         more = relieved(self.stress[amid], self.points[amid], self.nu)
-        found = squares(np.concatenate([self.stress[rows], more]))
+        both_squares = squares(np.concatenate([self.stress[rows], more]))
         both = np.concatenate([rows, amid])
-        return CutReading(both, found, free.some(both, len(rows)))
+        return CutReading(both, both_squares, free.some(both, len(rows)))
 
     def largest(self, loads: Loads) -> tuple[Floats, Ints]:
-        """The largest von Mises stress (T,) Pa at every instant, and its point (T,)."""
+        """The largest von Mises stress (T,), Pa, at every instant, and its point (T,)."""
         return self._reading(loads).largest(self.coefficients(loads), loads.pressed)
 
     def varied(self, loads: Loads, times: float) -> float:
-        """The largest if so many times the distance from inner corners is left out, Pa."""
+        """The largest von Mises stress, Pa, for `times` the excluded distance from corners."""
         of = self._reading(loads, times)
         return float(of.largest(self.coefficients(loads), loads.pressed)[0].max())
 
     def beneath(self, loads: Loads, pressed: PressedArcs) -> tuple[Floats, Ints]:
-        """As `largest`, of what lies beneath the contact (fea.core.places)."""
+        """The largest von Mises stress (T,), Pa, beneath contact, and its point (T,)."""
         rows = np.flatnonzero(self.outside())
         of = replace(self._plain(rows), free=AwayFromPressed.of(self.points[rows], pressed.rings))
         return of.largest(self.coefficients(loads), pressed)
 
     def depths(self, loads: Loads, pressed: PressedArcs, instant: int, least: float) -> Steps:
-        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
+        """Distances from pressed cells that stresses reach (fea.harmonic.beneath)."""
         rows = np.flatnonzero(self.outside())
         square = squares(self.stress[rows])(self.coefficients(loads)[[instant]])[:, 0]
         far = distance(self.points[rows], pressed, instant)
         return stairs(np.sqrt(np.maximum(square, 0.0)), far, least)
 
     def inside(self, loads: Loads) -> tuple[ZoneMaximum, ...]:
-        """What is at the inner corners."""
+        """The largest stress at each inner corner."""
         out = []
         for corner in self.corners:
             (value, point), (felt, _) = (
-                self._within(loads, (corner.distance < 1.0) & (corner.distance >= least))
+                self._largest_among(loads, (corner.distance < 1.0) & (corner.distance >= least))
                 for least in (0.0, FEATURE_READING_DISTANCE)
             )
             out.append(ZoneMaximum(value, felt, _point(self.points[point])))
         return tuple(out)
 
-    def _within(self, loads: Loads, where: Mask) -> tuple[float, int]:
+    def _largest_among(self, loads: Loads, where: Mask) -> tuple[float, int]:
+        """The largest von Mises stress, Pa, over the points of a mask, and its point."""
         of = self._plain(np.flatnonzero(where))
         value, point = of.largest(self.coefficients(loads))
         return float(value.max()), int(point[value.argmax()])
 
     def left_at_ends(self, loads: Loads, instant: int) -> float:
-        """Of the error at an instant, Pa: what the ends of the piece do."""
+        """The error at an instant, Pa, since the piece is free at its ends."""
         return END_EFFECT_FACTOR * self._changed(loads, instant, self.ended)
 
     def felt_at(self, point: Point, loads: Loads, instant: int) -> float:
-        """Of the error of another piece at a point (m) at an instant, Pa: it does not know these
-        cuts.
-        """
+        """The error at a point (m) of another piece, Pa, which lacks these cuts."""
         if not self.piece.z0 < point[2] < self.piece.z1:
             return 0.0
         distance = np.linalg.norm(self.points[self.outer] - point, axis=1)
@@ -192,46 +195,51 @@ class LocalFields:
         return NEIGHBOUR_EFFECT_FACTOR * self._changed(loads, instant, about)
 
     def _changed(self, loads: Loads, instant: int, where: Mask) -> float:
+        """The largest von Mises stress, Pa, of the change by the cuts, on the outline."""
         square = squares(self.changed[where])(self.coefficients(loads)[instant][None])
         return float(np.sqrt(max(square.max(initial=0.0), 0.0)))
 
     def may_reach(self, loads: Loads, stress: float) -> bool:
-        """Whether finer meshes may find so much, Pa, here."""
+        """Whether finer meshes may find a stress, Pa, in this piece."""
         top = max(float(self.largest(loads)[0].max()), *(s.felt for s in self.inside(loads)), 0.0)
         return top * (1.0 + MAX_REFINED_RISE / self.finer**2) >= stress
 
     def swing(self, loads: Loads) -> float:
-        """The largest von Mises stress of what is not the mean of all instants, Pa."""
-        found, c = self._reading(loads).squares, self.coefficients(loads)
+        """The largest von Mises stress, Pa, of the deviation from the mean of all instants."""
+        square_of, c = self._reading(loads).squares, self.coefficients(loads)
         c = c - c.mean(axis=0)
-        parts = [found(c[k : k + 64]).max(initial=0.0) for k in range(0, len(c), 64)]
+        parts = [square_of(c[k : k + 64]).max(initial=0.0) for k in range(0, len(c), 64)]
         return float(np.sqrt(max(0.0, *parts)))
 
     def high(self, loads: Loads, instant: int) -> tuple[Point, ...]:
-        """Points near the cuts where stress is nearly the maximum at an instant, well apart; none
-        where it is lower there than elsewhere in the piece.
+        """Well separated points near the cuts where stress is nearly the maximum at an instant.
+
+        None where stress is higher elsewhere in the piece.
         """
         c, of = self.coefficients(loads)[instant], self._reading(loads)
         value = np.zeros(len(self.points))
         np.maximum.at(value, of.rows, of.stress(c[None], loads.pressed, instant)[:, 0])
         least, hole = CUT_REFINE_ABOVE * value.max(), self.piece.smallest
         low, high = zone(self.piece)
+        # Stress away from the cuts counts in the maximum only: meshes are not refined there.
         value *= (self.points[:, 2] > low - hole) & (self.points[:, 2] < high + hole)
-        found: list[int] = []
+        places: list[int] = []
         apart = CUT_MIN_SPACING * hole
         positive = _unmirrored(self.piece, self.points)
+        # Greedy choice: the highest point first, then the next one far enough from all chosen ones.
+        # Mirror images count as one place.
         for k in np.argsort(-value, kind="stable"):
-            if value[k] < least or len(found) == CUT_MAX_PLACES:
+            if value[k] < least or len(places) == CUT_MAX_PLACES:
                 break
-            if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in found):
-                found.append(int(k))
-        return tuple(_point(self.points[k]) for k in found)
+            if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in places):
+                places.append(int(k))
+        return tuple(_point(self.points[k]) for k in places)
 
 
 def coefficients_of(loads: Loads, units: tuple[Unit, ...]) -> Floats:
-    """How much of each unit acts at each instant, (T, L).
+    """The amount of each unit (load and phase) at each instant, (T, L).
 
-    Raises: ArgumentError when a part of the loads is not among them.
+    Raises: ArgumentError when a part of the loads is not among the units.
     """
     acting, out = loads.coefficients(), np.zeros((len(loads), len(units)))
     for load, amounts in acting.items():
@@ -250,12 +258,12 @@ def _point(x: Floats) -> Point:
 
 
 def _in_piece(piece: Piece, x: Floats) -> Floats:
-    """Points (P, 3) in the frame of a piece."""
+    """Points (P, 3), m, in the frame of a piece."""
     return np.asarray((x - [0.0, 0.0, piece.origin]) @ turn_of(piece.angle))
 
 
 def _unmirrored(piece: Piece, x: Floats) -> Floats:
-    """The images of points (P, 3) that are meshed, in the frame of a piece."""
+    """The mirror images of points (P, 3) in the meshed part of a piece, in its frame."""
     out = _in_piece(piece, x)
     for mirror in piece.mirrors:
         out[:, "xyz".index(mirror)] = np.abs(out[:, "xyz".index(mirror)])
@@ -270,8 +278,10 @@ def mesh_of(
     high: Sequence[Point],
     bands: Sequence[tuple[float, float]] = (),
 ) -> LocalModel:
-    """The mesh of a piece, finest about points (m, in the pin's frame) where stress was
-    high on the meshes before. bands: loaded ones of the pin, with cuts in them.
+    """The mesh of a piece, finest about points where stress was high on the meshes before.
+
+    high: m, in the pin's frame.
+    bands: loaded ones of the pin, with cuts in them.
 
     Raises: MeshError.
     """
@@ -280,11 +290,11 @@ def mesh_of(
     if here:
         spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
     mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
-    held, loaded = _within(piece, clamps), bearings(piece, bands)
+    held, loaded = _largest_among(piece, clamps), bearings(piece, bands)
     return LocalModel(piece, mesh, material, held, loaded, finer.spots)
 
 
-def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
+def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
     """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
     return tuple(
         name
@@ -296,7 +306,7 @@ def _within(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def section_points(model: LocalModel) -> Floats:
-    """(r, z), m, where the stress of the uncut pin is needed."""
+    """The points (r, z), m, at which the stress of the uncut pin is needed."""
     x = model.images[:, model.cut].reshape(-1, 3)
     return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2] + model.piece.origin], axis=1)
 
@@ -310,22 +320,30 @@ def local_fields(
     distance: float,
     weight: Floats | float = 1.0,
 ) -> LocalFields:
-    """Of the uncut pin's fields, and their stress `at_points` (section_points, 6, K). distance: as
-    inner_corners. weight: as LocalModel.solve.
+    """The unit fields of a piece on one mesh.
+
+    fields: of the uncut pin.
+    at_points: its stress (S, 6, K) at the section_points.
+    distance: as for inner_corners.
+    weight: as for LocalModel.solve.
 
     Raises: SolveError.
     """
     x = model.images
     r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + model.piece.origin
+    # Step 1: the uncut pin's stress at the nodes of the faces: inside it on cuts, on its skin
+    # elsewhere.
     amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
     amplitude[:, model.cut] = at_points.reshape(len(x), -1, *at_points.shape[1:])
     profile = ~model.cut
     amplitude[:, profile] = on_skin(fields, r[:, profile], z[:, profile])
     angle = np.arctan2(x[..., 1], x[..., 0])
-    own = [fields.loads.index(load) for load, _ in units]
-    stress = cartesian(amplitude[..., own], angle, model.piece.angle, units)
-    largest = np.abs(fields.stress[..., own]).max(axis=(0, 1))
+    columns = [fields.loads.index(load) for load, _ in units]
+    # Step 2: unit loads by phase along x, y, z of the piece; the piece is solved under them.
+    stress = cartesian(amplitude[..., columns], angle, model.piece.angle, units)
+    largest = np.abs(fields.stress[..., columns]).max(axis=(0, 1))
     read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
+    # Step 3: back into the pin's frame.
     points = read.points @ turn_of(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
     flat_r, flat_z = r.ravel(), z.ravel()
     ends = [

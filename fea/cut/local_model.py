@@ -1,15 +1,20 @@
-"""The piece of a pin about its cuts, under what the cuts relieve of the uncut pin's stress.
+"""The piece of a pin about its cuts as a solid, loaded by the tractions that its cuts relieve.
 
-The displacement of the cut pin is that of the uncut one, and a difference: what the tractions
--s . n on the surfaces of the cuts do to the cut pin, s being the uncut pin's stress there, n the
-outward normal. These tractions balance where no load acts on what is cut away, so that by
+The displacement of the cut pin is that of the uncut one plus a difference: the response of the cut
+pin to the tractions -s . n on the surfaces of the cuts, s being the uncut pin's stress there, n the
+outward normal. These tractions are in equilibrium where no load acts on what is cut away, so by
 Saint-Venant's principle the difference is a rigid motion a diameter or so away: the piece about the
-cuts is enough, free at its ends. All loads of the pin act on the uncut one alone, and whatever the
-cuts change of its compliance moves its ends rigidly, which is no stress if supports are statically
-determinate.
+cuts is enough, free at its ends. All loads of the pin act on the uncut one alone. The change of
+compliance by the cuts moves the ends of the piece rigidly, which is no stress if supports are
+statically determinate.
 
-About mirror planes of the piece the difference is split by parity (fea.cut.parity): only what lies
-on one side of them is meshed, and factored once for each class that acts.
+If the piece has mirror planes, the difference is split by parity (fea.cut.parity): only one side of
+the planes is meshed, and the system is factored once for each class that acts.
+
+`LocalModel.solve` takes the uncut stress and goes through these steps for each class: nodal forces
+of the relieving tractions (`_forces`); lost loads moved to the rest of their bands (`_spread`);
+balance and constraints (`_balanced`, `_fixed`); solution (`_displace`); motions of the ends
+(`_moved`); stress on the faces from surface strains and known tractions (`_stress`).
 """
 
 from __future__ import annotations
@@ -35,23 +40,27 @@ from geometry.mesh.cut_piece import Piece
 from geometry.mesh.solid_mesh import SolidMesh
 from pinbase.arrays import Floats, Ints, Mask
 
-MIN_CLASS_TRACTION = 2e-4  # of the tractions: less of a class is the noise of the section's mesh
-TRACTION_RANK_TOLERANCE = 1e-5  # of the tractions of a class: what less of them does is not solved
-MAX_UNBALANCED_TRACTION = 0.1  # of the tractions, by the section's mesh
-ROUNDED_CORNER_SCATTER = (
-    0.06  # scatter of stress on rounded corners on the first mesh, by flats and keyways
-)
-MIN_READ_STRESS = 0.02  # of the pin's largest stress: less of it is not looked at
+# Chosen by judgement, as parts of the tractions on the cuts or of the pin's largest stress:
+MIN_CLASS_TRACTION = 2e-4  # a smaller class is the noise of the section's mesh
+TRACTION_RANK_TOLERANCE = 1e-5  # smaller singular values of a class's forces are not solved
+MAX_UNBALANCED_TRACTION = 0.1  # a larger imbalance is not due to the section's mesh
+MIN_READ_STRESS = 0.02  # stress below it is not resolved
+# Relative scatter of stress on rounded corners on the first mesh, measured on flats and keyways
+# (`python -m benchmarks cut-scatter`).
+ROUNDED_CORNER_SCATTER = 0.06
 END_SURFACES = ("start", "end")
 
 
 @dataclass(frozen=True)
 class Read:
-    """At points (P, 3), m, of a piece, those of each image after the other: the stress of the cut
-    pin (P, 6, L), Pa, and by how much it is not that of the uncut one; which are on a cut;
-    displaced: (P, 3, L) m by how much the cuts move them, besides a rigid motion of all. moved: (2,
-    6, L) by how much they move the piece's lower and upper ends, besides the same motion, as a
-    shift (m) and a turn (rad) about the origin of its frame.
+    """The solution at points (P, 3), m, of a piece, image after image.
+
+    stress: (P, 6, L) Pa, of the cut pin.
+    difference: (P, 6, L) Pa, from the uncut pin.
+    cut: (P,) which points are on a cut.
+    displaced: (P, 3, L) m, displacements by the cuts, up to a rigid motion of the whole.
+    moved: (2, 6, L) motions of the piece's lower and upper ends by the cuts, up to the same motion,
+    as a shift (m) and a turn (rad) about the origin of its frame.
     """
 
     points: Floats
@@ -63,7 +72,9 @@ class Read:
 
 
 class LocalModel:
-    """A piece on one mesh, `finer` than the first. clamps: names of clamped surfaces of it.
+    """A piece on one mesh, `finer` than the first one.
+
+    clamps: names of its clamped surfaces.
     bearings: loaded bands with cuts in them.
     """
 
@@ -85,7 +96,7 @@ class LocalModel:
 
     @property
     def unknowns(self) -> int:
-        """Displacement components, constrained ones included."""
+        """Number of displacement components, constrained ones included."""
         return self.space.unknowns
 
     def mirrored(self, boundary: str) -> bool:
@@ -105,15 +116,13 @@ class LocalModel:
 
     @cached_property
     def cut(self) -> Mask:
-        """(P,) which points are on cuts."""
+        """Mask (P,) of the points on cuts."""
         parts = [np.full(len(r.nodes), r.face.cut) for r in self.readings]
         return np.concatenate(parts)
 
     @cached_property
     def scatter(self) -> Floats:
-        """(P,) of the stress at the points with the positions of nodes, relative, beyond that of
-        all pieces.
-        """
+        """Relative scatter (P,) of stress with the positions of nodes, of rounded corners."""
         parts = [
             np.full(
                 len(r.nodes), ROUNDED_CORNER_SCATTER * r.face.name.endswith(("fillet", "mouth"))
@@ -124,17 +133,17 @@ class LocalModel:
 
     @cached_property
     def nodes(self) -> Ints:
-        """Of its faces, face by face, (P,)."""
+        """Node numbers (P,) of its faces, face by face."""
         return np.concatenate([r.nodes for r in self.readings])
 
     @cached_property
     def points(self) -> Floats:
-        """These nodes (P, 3), m, from the mirror plane or the lower end on."""
+        """The nodes of its faces (P, 3), m, from the mirror plane or the lower end on."""
         return np.asarray(self.space.nodes[self.nodes])
 
     @property
     def images(self) -> Floats:
-        """The points and their images, (G, P, 3)."""
+        """The points and their mirror images, (G, P, 3)."""
         return np.asarray(self.parities.images[:, None] * self.points)
 
     def solve(
@@ -144,14 +153,18 @@ class LocalModel:
         shears: Sequence[bool] = (),
         weight: Floats | float = 1.0,
     ) -> Read:
-        """Of the stress of the uncut pin at all images (G, P, 6, L), Pa, along x, y and z. most:
-        the largest anywhere in the pin, (L,). shears: which loads shear the bands they act on, all
-        by default. weight: (L,) how accurate each must be.
+        """The solution under what the cuts relieve of the uncut pin's stress.
+
+        uncut: (G, P, 6, L) Pa, the uncut pin's stress at all images, along x, y and z.
+        most: (L,) Pa, its largest anywhere in the pin.
+        shears: (L,) which loads shear the bands they act on, all by default.
+        weight: (L,) how accurate each load must be.
 
         Raises: SolveError.
         """
         by_kind = np.ones(uncut.shape[3], dtype=bool)
         by_kind[: len(shears)] = shears
+        # Step 1: split by parity, and scale the loads so that each weighs by its accuracy.
         by_class = self.parities.split(uncut)
         largest = np.maximum(
             np.abs(by_class[:, self.cut]).max(axis=(0, 1, 2)), MIN_READ_STRESS * most
@@ -160,10 +173,13 @@ class LocalModel:
         difference = np.zeros_like(by_class)
         moved = np.zeros((2, 6, uncut.shape[3]))
         displaced = np.zeros((*by_class.shape[:2], 3, uncut.shape[3]))
+        # Step 2: nodal forces of the tractions that relieve the cuts, and their size in all
+        # classes.
         forces = [self._forces(part / scale) for part in by_class]
         pressed = self._forces(_pressure(len(self.points)))
         most = max(float(np.linalg.norm(f)) for f in (pressed, *forces))
         whole = np.maximum(_size(pressed), np.sum([_size(f) for f in forces], axis=0))
+        # Step 3: solve each class that acts; the smaller ones are noise of the section's mesh.
         for c, parity in enumerate(self.parities.classes):
             if np.linalg.norm(forces[c]) > MIN_CLASS_TRACTION * most:
                 more, spread = self._spread(by_class[c] / scale, parity, by_kind)
@@ -171,6 +187,8 @@ class LocalModel:
                 moved += self._moved(u, parity) * scale
                 displaced[c] = u.reshape(-1, 3, u.shape[1])[self.nodes] * scale
                 difference[c] = self._stress(u, by_class[c] / scale, spread, c) * scale
+        # Step 4: add the uncut stress. Cuts are free of traction: along their faces' directions the
+        # components zz, yz and xz, normal ones, vanish.
         total = self._in_faces(by_class) + difference
         total[:, self.cut, 2:5] = 0.0
         whole, changed = (self._everywhere(x) for x in (total, difference))
@@ -179,20 +197,21 @@ class LocalModel:
         return Read(self.images.reshape(-1, 3), whole, changed, cut, displaced, moved)
 
     def _moved(self, u: Floats, parity: tuple[int, ...]) -> Floats:
-        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class. Of what
-        its mirror planes leave only those that belong to the class; about the origin.
+        """The rigid motions (2, 6, L) of both ends by displacements (3 N, L) of a class.
+
+        Mirror planes leave only those motions that belong to the class.
         """
         out, boundaries = np.zeros((2, 6, u.shape[1])), self.space.mesh.boundaries
         across = dict(zip(self.parities.mirrors, parity, strict=True))
         around = Parities(tuple(m for m in across if m != "z"))
-        own = around.rigid(tuple(s for m, s in across.items() if m != "z"))
+        allowed = around.rigid(tuple(s for m, s in across.items() if m != "z"))
         for e, name in enumerate(END_SURFACES):
             if name not in boundaries or (name == "start" and "z" in across):
                 continue
             nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
             rows = (3 * nodes[:, None] + np.arange(3)).ravel()
-            modes = _rigid(self.space.nodes)[rows][:, own]
-            out[e, own] = np.linalg.lstsq(modes, u[rows])[0]
+            modes = _rigid(self.space.nodes)[rows][:, allowed]
+            out[e, allowed] = np.linalg.lstsq(modes, u[rows])[0]
         out[:, 3:] /= np.abs(self.space.nodes).max()
         if "z" in across:  # u(M x) = parity M u(x): shifts but that along z, and the spin, as u
             sign = across["z"] * np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
@@ -200,18 +219,19 @@ class LocalModel:
         return out
 
     def _everywhere(self, by_class: Floats) -> Floats:
-        """Stress (C, P, 6, L) along the faces' directions along x, y, z at all images, (G P, 6,
-        L).
+        """Stress along x, y, z at all images, (G P, 6, L), from that along the faces' directions.
+
+        by_class: (C, P, 6, L).
         """
         back = np.concatenate([r.directions for r in self.readings]).swapaxes(1, 2)
         summed = np.tensordot(self.parities.characters.T, by_class, axes=1)
-        found = np.stack([rotated(part, back) for part in summed])
-        found *= self.parities.stress_signs[:, None, :, None]
-        return np.asarray(found.reshape(-1, *found.shape[2:]))
+        stress = np.stack([rotated(part, back) for part in summed])
+        stress *= self.parities.stress_signs[:, None, :, None]
+        return np.asarray(stress.reshape(-1, *stress.shape[2:]))
 
     @cached_property
     def triangles(self) -> Ints:
-        """(M, 3) of the points at all images: the faces, four to a facet."""
+        """Triangles (M, 3) of the points at all images: the faces, four to a facet."""
         first, out = 0, []
         for r in self.readings:
             corners = np.searchsorted(r.nodes, self.surface.corners[r.face.rows])
@@ -224,33 +244,40 @@ class LocalModel:
     def _spread(
         self, stress: Floats, parity: tuple[int, ...], shears: Mask
     ) -> tuple[Floats, Floats]:
-        """What of a class acted on bands where they are cut away, on the rest of them: nodal forces
-        (3 N, L), and tractions (P, 3, L) at the points.
+        """The loads on removed areas, moved to the rest of their bands (lost_loads).
+
+        Returns nodal forces (3 N, L), and tractions (P, 3, L) at the points.
+        stress: (P, 6, L) Pa, the uncut pin's.
+        shears: (L,).
         """
         forces = np.zeros((self.unknowns, stress.shape[2]))
         at_points = np.zeros((len(self.points), 3, stress.shape[2]))
-        own = self.parities.rigid(parity)
-        modes = _rigid(self.space.nodes)[:, own]
-        for bearing in self.bearings if own.any() else ():
+        allowed = self.parities.rigid(parity)
+        modes = _rigid(self.space.nodes)[:, allowed]
+        for bearing in self.bearings if allowed.any() else ():
+            # The resultants that the cuts' tractions take from the band, in the motions of the
+            # class.
             lost = modes.T @ self._forces(stress, bearing.cuts)
             on = bearing.on(self.points, self.normals) & ~self.cut
             for shear in (True, False):
                 here = np.flatnonzero(shears == shear)
-                trial = trial_forces(self.space, self.surface, bearing, shear)[:, own]
+                trial = trial_forces(self.space, self.surface, bearing, shear)[:, allowed]
+                # Amounts of the trial tractions that restore these resultants.
                 amount = -np.linalg.solve(modes.T @ trial, lost[:, here])
                 forces[:, here] += trial @ amount
-                t = trials(self.points[on], self.normals[on], shear)[..., own]
+                t = trials(self.points[on], self.normals[on], shear)[..., allowed]
                 at_points[np.ix_(on, np.arange(3), here)] += t @ amount
         return forces, at_points
 
     @cached_property
     def normals(self) -> Floats:
-        """At the points, outwards, (P, 3)."""
+        """Outward normals (P, 3) at the points."""
         return np.concatenate([r.directions[:, 2] for r in self.readings])
 
     def _forces(self, stress: Floats, only: tuple[str, ...] = ()) -> Floats:
-        """Nodal forces (3 N, L) of the tractions that relieve cuts, or some of them by name, of a
-        stress (P, 6, L).
+        """Nodal forces (3 N, L) of the tractions -s . n that relieve cuts of a stress (P, 6, L).
+
+        only: names of cuts, all by default.
         """
         out = np.zeros((len(self.space.nodes), 3, stress.shape[2]))
         (x, y), weight = quadrature()
@@ -274,12 +301,17 @@ class LocalModel:
         return out.reshape(-1, stress.shape[2])
 
     def _displace(self, forces: Floats, parity: tuple[int, ...], whole: Floats) -> Floats:
-        """Displacements (3 N, L) of a class, of as many fields as differ; balanced before. whole:
-        the size of all classes' forces.
+        """Displacements (3 N, L) of a class, after balancing its forces.
+
+        forces: (3 N, L) N.
+        parity: of the class.
+        whole: (3 N,) size of all classes' forces.
         """
         free = np.ones(self.unknowns)
         free[self._fixed(parity)] = 0.0
         held = np.zeros(0, dtype=np.int64)
+        # Without clamps rigid motions are left: forces are balanced, and one corner's unknown is
+        # held for each motion, chosen by pivoted QR so that they are independent.
         if not self.clamps:
             modes = _rigid(self.space.nodes)[:, self.parities.rigid(parity)]
             forces = self._balanced(forces, modes, whole)
@@ -287,22 +319,25 @@ class LocalModel:
                 at = np.flatnonzero(free * self._at_corners)
                 _, _, pivot = scipy.linalg.qr(modes[at].T, mode="economic", pivoting=True)
                 held = at[pivot[:count]]
+        # Many loads stress the cuts in few ways: solve for the singular vectors of the forces
+        # alone.
         left, size, right = scipy.linalg.svd(free[:, None] * forces, full_matrices=False)
         rank = int(np.sum(size > TRACTION_RANK_TOLERANCE * size[0]))
         some = left[:, :rank] * size[:rank]
-        found = (
+        u = (
             self._two_level.solve(free, held, some)
             if self.unknowns > MAX_FACTORED_UNKNOWNS
             else None
         )
-        if found is None:
+        # Small systems are factored, and those on which the iteration fails.
+        if u is None:
             free[held] = 0.0
-            found = self._system.solve(self.stiffness.copy(), free, some)
-        return np.asarray(found @ right[:rank])
+            u = self._system.solve(self.stiffness.copy(), free, some)
+        return np.asarray(u @ right[:rank])
 
     @cached_property
     def _at_corners(self) -> Floats:
-        """(3 N,) 1 for unknowns of corners of elements, 0 amid their edges."""
+        """1 for unknowns at corners of elements, 0 amid their edges, (3 N,)."""
         out = np.zeros((len(self.space.nodes), 3))
         out[self.space.elements[:, :4]] = 1.0
         return out.ravel()
@@ -317,28 +352,31 @@ class LocalModel:
 
     @cached_property
     def stiffness(self) -> sp.csr_matrix:
-        """N/m."""
+        """The stiffness matrix, N/m."""
         return self.space.stiffness(self.material)
 
     def _fixed(self, parity: tuple[int, ...]) -> Ints:
-        """Unknowns that are zero on mirror planes and clamps."""
-        found = [np.zeros(0, dtype=np.int64)]
+        """Numbers of the unknowns that are zero on mirror planes and clamps."""
+        unknowns = [np.zeros(0, dtype=np.int64)]
         boundaries = self.space.mesh.boundaries
 
         def add(name: str, components: tuple[int, ...]) -> None:
             nodes = self.space.basis.get_dofs(boundaries[name]).flatten()
-            found.extend(3 * nodes + a for a in components)
+            unknowns.extend(3 * nodes + a for a in components)
 
         for mirror, components in self.parities.fixed(parity).items():
             add("start" if mirror == "z" else f"mirror {mirror}", components)
         for name in self.clamps:
             add(name, (0, 1, 2))
-        return np.unique(np.concatenate(found))
+        return np.unique(np.concatenate(unknowns))
 
     def _balanced(self, forces: Floats, modes: Floats, whole: Floats) -> Floats:
-        """Without the resultant that the mesh of the section leaves, taken up by the cuts' nodes.
+        """Forces without the small resultant that the mesh of the section leaves.
 
-        Raises: SolveError when it is more than that.
+        It is taken up by the cuts' nodes, in proportion to the forces there.
+        modes: (3 N, m) rigid motions.
+
+        Raises: SolveError when the resultant is more than that.
         """
         if not modes.shape[1]:
             return forces
@@ -349,13 +387,15 @@ class LocalModel:
                 f"equilibrium (by {lost.max():.1e}), so a load acts on what is cut away",
                 "cut-unbalanced",
             )
-        there = np.linalg.norm(forces.reshape(len(self.space.nodes), -1), axis=1)
-        weight = there.repeat(3)[:, None] * modes
+        force_size = np.linalg.norm(forces.reshape(len(self.space.nodes), -1), axis=1)
+        weight = force_size.repeat(3)[:, None] * modes
         return np.asarray(forces - weight @ np.linalg.solve(modes.T @ weight, modes.T @ forces))
 
     def _stress(self, u: Floats, uncut: Floats, spread: Floats, c: int) -> Floats:
-        """What a displacement (3 N, L) adds to the stress of the uncut pin (P, 6, L), along the
-        faces' directions. spread: tractions (P, 3, L) that act besides.
+        """The stress (P, 6, L) that displacements (3 N, L) add, along faces' directions.
+
+        spread: (P, 3, L) Pa, tractions that act besides.
+        c: number of the class.
         """
         E, nu, mu = self.material.youngs_modulus, self.material.poisson_ratio, self.material.lame[1]
         out, first = np.zeros((*uncut.shape[:2], u.shape[1])), 0
@@ -364,10 +404,14 @@ class LocalModel:
             here = slice(first, first + len(r.nodes))
             first += len(r.nodes)
             e = r.strain(u.reshape(-1, 3, u.shape[1]), self.parities, character)
+            # Components along the normal are the known tractions; on cuts minus those of the uncut
+            # stress.
             out[here, [4, 3, 2]] = np.einsum("pia,pal->pil", r.directions, spread[here])
             normal = out[here, 2]
             if r.face.cut:
                 normal = -rotated(uncut[here], r.directions)[:, 2]
+            # The others follow from the strains in the surface by Hooke's law with a known normal
+            # stress.
             plane = E / (1.0 - nu**2)
             out[here, 0] = plane * (e[:, 0] + nu * e[:, 1]) + nu / (1.0 - nu) * normal
             out[here, 1] = plane * (e[:, 1] + nu * e[:, 0]) + nu / (1.0 - nu) * normal
@@ -375,7 +419,7 @@ class LocalModel:
         return out
 
     def _in_faces(self, stress: Floats) -> Floats:
-        """Stress (C, P, 6, L) along x, y, z along the faces' directions."""
+        """Stress (C, P, 6, L) along the faces' directions from that along x, y, z."""
         directions = np.concatenate([r.directions for r in self.readings])
         return np.stack([rotated(part, directions) for part in stress])
 
@@ -388,18 +432,18 @@ def rotated(stress: Floats, directions: Floats) -> Floats:
 
 
 def _pressure(count: int) -> Floats:
-    """A stress of one in all directions, (P, 6, 1)."""
+    """The stress (P, 6, 1) of a unit tension in all directions."""
     return np.repeat([[1.0], [1.0], [1.0], [0.0], [0.0], [0.0]], count, axis=1).T[..., None]
 
 
 def _size(forces: Floats) -> Floats:
-    """The size of nodal forces (3 N, L) in place of their components."""
+    """The size of nodal forces (3 N, L), repeated for their three components."""
     size = np.linalg.norm(forces.reshape(-1, 3, forces.shape[1]), axis=1)
     return np.asarray(size.repeat(3, axis=0))
 
 
 def _rigid(nodes: Floats) -> Floats:
-    """Shifts along the axes and turns about them (3 N, 6), lengths scaled."""
+    """Shifts along the axes and turns about them as displacements (3 N, 6), lengths scaled."""
     x = nodes / np.abs(nodes).max()
     modes = np.zeros((len(x), 3, 6))
     for a in range(len(AXIS_NAMES)):

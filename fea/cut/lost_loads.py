@@ -1,7 +1,7 @@
-"""What a load would do where a band is cut away goes to the rest of the band nearby.
+"""Loads on a band where it is cut away are carried by the rest of the band nearby.
 
 A link's force is that of the study, however its band is cut. The pressure on the rest of the band
-stays as it is, and what acted on what is cut away is replaced by small tractions on the band about
+stays as it is, and the tractions on the removed area are replaced by small ones on the band about
 the cut with the same force and couple: for a load that shears its band of constant direction and
 growing along z, otherwise normal to it, as cos theta. By Saint-Venant's principle another choice
 changes stress about the cut alone, by the order of the part of the force that is lost.
@@ -25,8 +25,11 @@ ON_BAND_TOLERANCE = 1e-9  # of a band's length
 
 @dataclass(frozen=True)
 class Bearing:
-    """A loaded band with cuts in it, between two z (m, in the frame of the piece; on both sides of
-    its mirror plane, if it has one across the axis). cuts: by name.
+    """A loaded band with cuts in it.
+
+    z0, z1: m, its ends in the frame of the piece; on both sides of the piece's mirror plane, if it
+    has one across the axis.
+    cuts: their names.
     """
 
     z0: float
@@ -34,7 +37,7 @@ class Bearing:
     cuts: tuple[str, ...]
 
     def on(self, x: Floats, normal: Floats) -> Mask:
-        """Which points (..., 3) with outward normals are on it."""
+        """Mask (...) of the points (..., 3) with outward normals (..., 3) that are on the band."""
         near = ON_BAND_TOLERANCE * (self.z1 - self.z0)
         between = (x[..., 2] >= self.z0 - near) & (x[..., 2] <= self.z1 + near)
         radial = np.sum(x[..., :2] * normal[..., :2], axis=-1)
@@ -42,8 +45,9 @@ class Bearing:
 
 
 def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearing, ...]:
-    """Of the loaded bands (z0, z1) of the pin, m, those in which a piece has cuts. All that is lost
-    in a piece is lost on its band where it has one only, also where its cuts meet.
+    """The loaded bands of the pin, z0 and z1 in m, in which a piece has cuts.
+
+    Where there is only one, all that is lost in the piece is lost on it, also where its cuts meet.
     """
     out = []
     for low, high in bands:
@@ -59,8 +63,10 @@ def bearings(piece: Piece, bands: Sequence[tuple[float, float]]) -> tuple[Bearin
 
 
 def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
-    """Tractions (..., 3, 6) at points (..., 3) of a band, each with the resultant of a force along
-    an axis or a couple about it.
+    """Tractions (..., 3, 6) on a band, each with the resultant of a unit force or couple.
+
+    x, normal: (..., 3) points and outward normals.
+    shears: of constant direction instead of normal to the band.
     """
     out = np.zeros((*x.shape, 6))
     z = x[..., 2, None]
@@ -78,7 +84,7 @@ def trials(x: Floats, normal: Floats, shears: bool) -> Floats:
 def trial_forces(
     space: Discretisation, surface: SurfaceMesh, bearing: Bearing, shears: bool
 ) -> Floats:
-    """Nodal forces (3 N, 6) of these on a band."""
+    """Nodal forces (3 N, 6) of the tractions of `trials` on a band."""
     (a, b), weight = quadrature()
     shapes, _ = slopes_at(a, b)
     out = np.zeros((len(space.nodes), 3, 6))

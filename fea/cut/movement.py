@@ -1,8 +1,8 @@
-"""Displacements of a cut pin: those of the uncut one, and what the cuts add to them.
+"""Displacements of a pin with cuts: those of the uncut pin and what the cuts add to them.
 
 A local solid is free at its ends (fea.cut.local_model), which its cuts move rigidly against each
-other. So what lies below a piece stays where it is, what lies above moves as its upper end does
-against the lower, and all that moves as a whole until its first clamp is where it was.
+other. So what lies below a piece stays where it is, what lies above moves with its upper end
+relative to the lower, and the whole is moved back so that its first clamp stays where it was.
 """
 
 from __future__ import annotations
@@ -16,15 +16,17 @@ from pinbase.arrays import Floats
 
 
 def rigid(motion: Floats, x: Floats) -> Floats:
-    """Displacements (P, 3, L) of points (P, 3) by a shift and a turn about the origin (6, L)."""
+    """Displacements (P, 3, L) of points (P, 3) by a shift and a turn about the origin, (6, L)."""
     shift, turn = np.split(motion, 2)
     return np.asarray(shift + np.cross(turn[None], x[:, :, None], axis=1))
 
 
 def axis_kept(moved: Floats, length: float) -> Floats:
-    """The rigid motion (6, L) about the pin's start in whose frame both ends of its axis stay where
-    they were, if its end moves so (6, L) and its start does not: the supports of a pin that nothing
-    clamps (fea.harmonic.model).
+    """The rigid motion (6, L), about the pin's start, that keeps both ends of its axis in place.
+
+    moved: (6, L) the motion of the pin's end while its start stays. This is how a pin that nothing
+    clamps is supported (fea.harmonic.model).
+    length: m.
     """
     out = np.zeros_like(moved)
     out[3] = moved[3] - moved[1] / length
@@ -35,14 +37,17 @@ def axis_kept(moved: Floats, length: float) -> Floats:
 def displacement(
     fields: MeridianFields, r: Floats, z: Floats, angle: Floats, units: tuple[Unit, ...]
 ) -> Floats:
-    """Of the uncut pin under unit loads, (P, 3, L) m, at points of its section and angles."""
+    """The displacement (P, 3, L), m, of the uncut pin under unit loads.
+
+    r, z, angle: (P,) m and rad of the points.
+    """
     known = fields.points[: len(fields.displacement)]
-    own = [fields.loads.index(load) for load, _ in units]
+    columns = [fields.loads.index(load) for load, _ in units]
     at = np.stack([r, z], axis=1)
     amplitude = np.asarray(
-        continuation(known, at) @ fields.displacement[..., own].reshape(len(known), -1)
+        continuation(known, at) @ fields.displacement[..., columns].reshape(len(known), -1)
     ).reshape(len(at), 3, -1)
-    n, phase = (np.array(found) for found in ([load.n for load, _ in units], [p for _, p in units]))
+    n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
     psi = n * angle[:, None] - phase * np.pi / 2.0
     radial, round_, along = np.moveaxis(amplitude, 1, 0)
     radial, round_, along = radial * np.cos(psi), round_ * np.sin(psi), along * np.cos(psi)

@@ -21,20 +21,22 @@ AXIS_NAMES = "xyz"
 
 @dataclass(frozen=True)
 class Parities:
-    """mirrors: planes by the axis across them, each through the origin; G = 2^M images of a point
-    and as many classes of fields.
+    """The symmetry of a body about mirror planes through the origin.
+
+    mirrors: M planes, by the axis across each. A point has G = 2^M images, and fields fall into as
+    many classes.
     """
 
     mirrors: tuple[str, ...]
 
     @cached_property
     def classes(self) -> tuple[tuple[int, ...], ...]:
-        """The parity about each mirror, class by class."""
+        """The parity about each mirror, for every class."""
         return tuple(itertools.product((1, -1), repeat=len(self.mirrors)))
 
     @cached_property
     def images(self) -> Floats:
-        """(G, 3) factors of a point's coordinates; the first are ones."""
+        """Factors (G, 3) of a point's coordinates at its images, the first being itself."""
         out = np.ones((len(self.classes), 3))
         for g, crossed in enumerate(self.classes):
             for mirror, sign in zip(self.mirrors, crossed, strict=True):
@@ -43,39 +45,35 @@ class Parities:
 
     @cached_property
     def characters(self) -> Floats:
-        """(C, G) factor of a class's field at an image, after the mirrors themselves."""
+        """The factor (C, G) of a class's field at an image, besides the mirroring."""
         crossed = np.array(self.classes).reshape(len(self.classes), -1) < 0
         odd = crossed  # of a class, where its parity is -1
         return np.where((odd.astype(int) @ crossed.T.astype(int)) % 2, -1.0, 1.0)
 
     @cached_property
     def reflected(self) -> Floats:
-        """(G,) -1 for images that are left-handed."""
+        """-1 for images that are left-handed, else 1, (G,)."""
         return np.asarray(self.images.prod(axis=1))
 
     @cached_property
     def stress_signs(self) -> Floats:
-        """(G, 6) by which the mirrors of an image change the components of a stress."""
+        """The signs (G, 6) by which the mirrors of an image change the components of a stress."""
         return np.stack([self.images[:, a] * self.images[:, b] for a, b in VOIGT_TO_TENSOR], axis=1)
 
     def split(self, stress: Floats) -> Floats:
-        """Of stress at all images (G, P, 6, L) the part of each class at the points themselves, (C,
-        P, 6, L).
-        """
+        """The part (C, P, 6, L) of each class in a stress at all images (G, P, 6, L)."""
         back = stress * self.stress_signs[:, None, :, None]
         return np.asarray(np.tensordot(self.characters, back, axes=1) / len(self.images))
 
     def everywhere(self, displacement: Floats) -> Floats:
-        """Displacements at all images (G P, 3, L) of those of each class at the points themselves,
-        (C, P, 3, L).
-        """
-        found = np.einsum(
+        """Displacements (G P, 3, L) at all images from those of each class, (C, P, 3, L)."""
+        displaced = np.einsum(
             "cg,ga,cpal->gpal", self.characters, self.images, displacement, optimize=True
         )
-        return np.asarray(found.reshape(-1, *found.shape[2:]))
+        return np.asarray(displaced.reshape(-1, *displaced.shape[2:]))
 
     def fixed(self, parity: tuple[int, ...]) -> dict[str, tuple[int, ...]]:
-        """Components that vanish on each mirror."""
+        """The components that vanish on each mirror for a class."""
         out = {}
         for mirror, sign in zip(self.mirrors, parity, strict=True):
             across = AXIS_NAMES.index(mirror)
@@ -84,7 +82,7 @@ class Parities:
         return out
 
     def rigid(self, parity: tuple[int, ...]) -> Mask:
-        """(6,) which of the shifts along and the turns about the axes belong to a class."""
+        """Mask (6,) of the rigid motions of a class: shifts along the axes and turns about them."""
         out = np.ones(6, dtype=bool)
         for mirror, sign in zip(self.mirrors, parity, strict=True):
             across = np.arange(3) == AXIS_NAMES.index(mirror)

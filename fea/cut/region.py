@@ -1,4 +1,4 @@
-"""How much of a pin about its cuts is solid, and which cut pins can be solved so at all."""
+"""The pieces of a pin about its cuts that are solid, and the pins to which this applies."""
 
 from __future__ import annotations
 
@@ -13,26 +13,30 @@ from fea.cut.inside import crosses_end, is_inside
 from geometry import Cut, CutPin, Pin
 from geometry.mesh.cut_piece import Piece, clipped
 
-PIECE_REACH = 1.4  # of the diameter, past a cut: in a shaft, ends there change stress by 0.1 %
-REACH_FACTOR = 1.6  # times that, where it is seen not to be enough, as in tubes
-MERGE_DISTANCE = 0.5  # of the diameter: cuts closer to each other are in one piece
-MIN_REMAINDER = 0.25  # of the diameter: less than that beyond a piece is part of it
-STEP_CLEARANCE = 0.1  # of the diameter, at least between the end of a piece and a step
-PIECE_LENGTH_TOLERANCE = 1e-9  # of the diameter: two lengths
+# All are parts of the diameter. The reach was found on shafts, where ends at that distance change
+# stress by 0.1 %; `python -m benchmarks cut-pins` checks it. The others are chosen by judgement.
+PIECE_REACH = 1.4  # length of a piece beyond its cuts
+REACH_FACTOR = 1.6  # times that, where the reach is seen not to be enough, as in tubes
+MERGE_DISTANCE = 0.5  # cuts closer to each other are in one piece
+MIN_REMAINDER = 0.25  # a shorter rest of the pin beyond a piece is part of it
+STEP_CLEARANCE = 0.1  # least distance between the end of a piece and a step
+PIECE_LENGTH_TOLERANCE = 1e-9  # lengths that differ by less are equal
 
 
 @dataclass(frozen=True)
 class RingedCutPin(CutPin):
-    """A pin with cuts whose bands are cut into rings, for contact pressures. whole: the same pin
-    without rings.
+    """A pin with cuts whose bands are divided into rings, for contact pressures.
+
+    whole: the same pin without rings.
     """
 
     whole: CutPin | None = None
 
     @cached_property
     def volume(self) -> float:
-        """Of the pin without cuts, m^3: contact balances the weight of that. (Rounded mouths cannot
-        be made where rings meet.)
+        """The volume of the pin without cuts, m^3: contact balances the weight of that.
+
+        (Rounded mouths cannot be made where rings meet.)
         """
         return self.profile.volume
 
@@ -43,8 +47,9 @@ def unringed(pin: CutPin) -> CutPin:
 
 
 def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reason | None:
-    """Why a local solid does not do for this pin, clamped and loaded at surfaces (by name); None
-    where it does.
+    """Why a local solid does not apply to a pin, or None.
+
+    clamps, loaded: surfaces, by name.
     """
     for name in (*clamps, *loaded):
         if name.removesuffix(" end") in pin.cuts:
@@ -53,6 +58,7 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
         low, high = feature.opens
         for name in dict.fromkeys((*loaded, *clamps)):
             z0, z1 = surface_ends(pin, name)
+            # A cut matters to a surface that it opens into or whose face it lies in.
             if not (low < z1 and z0 < high) and name not in feature.faces:
                 continue
             if name in clamps:
@@ -68,8 +74,9 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
 
 
 def _joined(pin: CutPin, loaded: Sequence[str]) -> Reason | None:
-    """The same, where a passage may join cuts in several loaded bands, so that what each loses is
-    not known.
+    """A refusal where a passage joins cuts in several loaded bands, or None.
+
+    Then the load that each band loses is not known.
     """
     bands = loaded_bands(pin, loaded)
     for name, cut in pin.cuts.items():
@@ -80,16 +87,16 @@ def _joined(pin: CutPin, loaded: Sequence[str]) -> Reason | None:
 
 
 def loaded_bands(pin: CutPin, loaded: Sequence[str]) -> tuple[tuple[float, float], ...]:
-    """The z of both ends, m, of loaded bands (by name) with cuts in them."""
-    found = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
+    """z of both ends, m, of the loaded bands (by name) with cuts in them."""
+    ends = (surface_ends(pin, name) for name in dict.fromkeys(loaded) if name in pin.connections)
     cuts = pin.cuts.values()
     return tuple(
-        (z0, z1) for z0, z1 in found if any(is_inside(c, pin.profile, z0, z1) for c in cuts)
+        (z0, z1) for z0, z1 in ends if any(is_inside(c, pin.profile, z0, z1) for c in cuts)
     )
 
 
 def corner_refusal(pin: CutPin, singularities: Sequence[Zone]) -> Reason | None:
-    """The same, where a cut lies at one of the singularities of the pin without cuts."""
+    """A refusal where a cut lies at a singularity of the pin without cuts, or None."""
     for cut, feature in pin.cuts.items():
         low, high = feature.opens
         if any(low <= s.z <= high for s in singularities):
@@ -104,7 +111,7 @@ def _solid(why: str, code: str) -> Reason:
 
 
 def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
-    """z of both ends of a surface, m; what is no band is somewhere on the pin."""
+    """z of both ends of a surface, m; the whole pin for a surface that is not a band."""
     if name in ("start", "end"):
         z = 0.0 if name == "start" else pin.length
         return z, z
@@ -115,7 +122,7 @@ def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:
 
 
 def zone(piece: Piece) -> tuple[float, float]:
-    """Between which z (m) the stress of the uncut pin does not count."""
+    """The z (m) between which the stress of the uncut pin does not count."""
     low, high = _ends(piece.cuts.values())
     if "z" in piece.mirrors:
         low = -high
@@ -134,14 +141,18 @@ def pieces(
     bands: Sequence[tuple[float, float]] = (),
     apart: float = 1.0,
 ) -> tuple[Piece, ...]:
-    """One about each cut, or about cuts that are close to each other, along the pin; beyond: how
-    far past these, of the diameter. bands: loaded ones with cuts in them (loaded_bands). apart:
-    how much farther from each other than usual cuts are in one piece.
+    """A piece about each cut, or about cuts that are close to each other, along the pin.
+
+    beyond: length of a piece past its cuts, of the diameter.
+    bands: loaded ones with cuts in them (loaded_bands).
+    apart: factor of the usual distance up to which cuts share a piece.
     """
     cuts = sorted(pin.cuts.items(), key=lambda named: named[1].extent)
     groups = [dict(cuts[:1])]
     for name, cut in cuts[1:]:
         (low, high), end = cut.extent, _ends(groups[-1].values())[1]
+        # Cuts are merged if the gap to the group before is short, in proportion to the piece's
+        # reach.
         near = (
             MERGE_DISTANCE
             * apart
@@ -157,7 +168,7 @@ def pieces(
 
 
 def _diameter(pin: Pin, low: float, high: float) -> float:
-    """The largest between two z, m."""
+    """The largest diameter between two z, m."""
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
     return max(max(s.diameters) for s, a, b in ends if b >= low and a <= high)
 
@@ -169,11 +180,14 @@ def _piece(
     beyond: float,
     bands: Sequence[tuple[float, float]],
 ) -> Piece:
+    """The piece about a group of cuts."""
     low, high = _ends(cuts.values())
     low, high = max(low, 0.0), min(high, pin.length)
     reach = beyond * _diameter(pin, low, high)
     reach = beyond * _diameter(pin, max(low - reach, 0.0), min(high + reach, pin.length))
     z0, z1 = _end(pin, low - reach, -1.0), _end(pin, high + reach, 1.0)
+    # A mirror plane across the axis is used only if profile, cuts, clamps and loaded bands allow
+    # it; then the piece is centred on it and half of it is meshed.
     angle, mirrors = _about(pin, list(cuts.values()))
     middle = 0.5 * (low + high)
     clamped = any(z0 <= b and a <= z1 for a, b in (surface_ends(CutPin(pin), c) for c in clamps))
@@ -184,14 +198,15 @@ def _piece(
         z0, z1, mirrors = middle - half, middle + half, (*mirrors, "z")
     start = middle if "z" in mirrors else z0
     moved = {name: cut.moved(start, angle) for name, cut in cuts.items()}
-    there = {n: cut for n, cut in moved.items() if start == z0 or cut.extent[1] > 0.0}
+    cuts_of_piece = {n: cut for n, cut in moved.items() if start == z0 or cut.extent[1] > 0.0}
     part, open_ends = clipped(pin, start, z1), (z0 > pin.tolerance, z1 < pin.length - pin.tolerance)
-    return Piece(part, z0, z1, angle, there, mirrors, open_ends)
+    return Piece(part, z0, z1, angle, cuts_of_piece, mirrors, open_ends)
 
 
 def _about(pin: Pin, cuts: list[Cut]) -> tuple[float, tuple[str, ...]]:
-    """The angle by which the frame is turned that has most mirror planes along the axis, and those:
-    of single cuts and amid two of them.
+    """The angle by which the piece's frame is turned, and the mirror planes along the axis there.
+
+    It is the angle with most mirror planes among those of single cuts and those midway between two.
     """
     angles = [cut.angle for cut in cuts]
     angles += [0.5 * (a.angle + b.angle) for a, b in combinations(cuts, 2)]
@@ -206,13 +221,16 @@ def _about(pin: Pin, cuts: list[Cut]) -> tuple[float, tuple[str, ...]]:
 
 
 def _symmetric(pin: Pin, cuts: list[Cut], plane: str) -> bool:
-    """Whether a plane through the origin mirrors cuts to cuts."""
+    """Whether a plane through the origin mirrors the cuts onto each other."""
     near = PIECE_LENGTH_TOLERANCE * pin.smallest_diameter
     return all(any(cut.mirrored(plane).like(o, near) for o in cuts) for cut in cuts)
 
 
 def _end(pin: Pin, z: float, way: float) -> float:
-    """Where a piece ends: past steps and fillets that are close, or with the pin."""
+    """The z, m, at which a piece ends: clear of steps and fillets, or with the pin.
+
+    way: 1 or -1, the direction in which the piece extends.
+    """
     margin = STEP_CLEARANCE * pin.smallest_diameter
     order = range(len(pin.segments) - 1)
     for i in order if way > 0.0 else reversed(order):
@@ -227,7 +245,7 @@ def _end(pin: Pin, z: float, way: float) -> float:
 
 
 def _even(pin: Pin, z0: float, z1: float, middle: float) -> bool:
-    """Whether the profile is the same on both sides of z = middle, as far as the piece goes."""
+    """Whether the profile is a plain cylinder on both sides of z = middle in the piece."""
     half = max(middle - z0, z1 - middle)
     inside = middle - half >= -pin.tolerance and middle + half <= pin.length + pin.tolerance
     ends = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)

@@ -1,4 +1,4 @@
-"""The surface of a cut pin as it is shown: local solids in place, the uncut pin between them."""
+"""The surface of a cut pin for views: local solids in place, the uncut pin between them."""
 
 from __future__ import annotations
 
@@ -16,17 +16,23 @@ from fea.harmonic.evaluate import HarmonicField
 from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats, Ints, Mask
 
-CUT_VIEW_SECTORS = 72  # of the surface, away from the pieces
-DISPLACEMENT_FIT_POINTS = 40  # points of another piece to which its displacements are fitted
-TRANSVERSE_DISTANCE_WEIGHT = 0.1  # of their distance from there across the pin counts
+# Chosen by judgement:
+CUT_VIEW_SECTORS = 72  # sectors about the axis, away from the pieces
+DISPLACEMENT_FIT_POINTS = 40  # nearest points of a piece to which its displacements are fitted
+TRANSVERSE_DISTANCE_WEIGHT = 0.1  # of distances across the pin when these are chosen
 PIECE_END_TOLERANCE = 1e-9  # of a piece's length
 
 
 @dataclass(frozen=True)
 class ShownCut:
-    """The surface as it is shown: points (P, 3) m, triangles (M, 3), and of L unit loads, each in
-    one phase, stress (P, 6, L) Pa and displacement (P, 3, L) m; read: (P,) where the maximum is
-    looked for. outline: (P,) what is on that of the pin without cuts.
+    """The surface as it is shown, under L unit loads, each in one phase.
+
+    points: (P, 3) m.
+    triangles: (M, 3).
+    stress: (P, 6, L) Pa.
+    displacement: (P, 3, L) m.
+    read: (P,) where the maximum is looked for.
+    outline: (P,) what is on the outline of the pin without cuts.
     """
 
     points: Floats
@@ -40,8 +46,9 @@ class ShownCut:
 def shown(
     section: HarmonicField, pieces: Sequence[LocalFields], held: ClampReaction | None
 ) -> ShownCut:
-    """held: the first clamp, which stays where it is; of a pin without one both ends of its axis
-    stay on it.
+    """The whole surface of a cut pin.
+
+    held: the first clamp, which stays in place; without one both ends of the axis stay on it.
     """
     between = [(p.piece.z0, p.piece.z1) for p in pieces]
     uncut = _revolved(section, pieces[0].units, between)
@@ -49,10 +56,12 @@ def shown(
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
     displacement = np.concatenate([p.displacement for p in parts])
+    # Displacements add up: what lies above a piece moves with its upper end.
     for piece, start in zip(pieces, starts[1:], strict=False):
         displacement += _moved_by(piece, points, int(start))
     length = float(section.fields.points[:, 1].max())
     whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
+    # Take off the rigid motion of the support.
     motion = reached(held, pieces) if held else axis_kept(whole, length)
     return ShownCut(
         points,
@@ -65,13 +74,16 @@ def shown(
 
 
 def _piece(piece: LocalFields) -> ShownCut:
+    """The surface of a piece as it is shown."""
     outline = np.isin(np.arange(len(piece.points)), piece.outer)
     return ShownCut(piece.points, piece.triangles, piece.stress, piece.uncut, piece.read, outline)
 
 
-def _moved_by(piece: LocalFields, points: Floats, own: int) -> Floats:
-    """How far the cuts of a piece move points (P, 3) of the pin against what lies below it, (P, 3,
-    L) m; its own points begin at number `own`. Beside it they do so by its outline.
+def _moved_by(piece: LocalFields, points: Floats, first: int) -> Floats:
+    """The displacement (P, 3, L), m, of points (P, 3) of the pin by the cuts of a piece.
+
+    It is relative to what lies below the piece. own: number of the first of the piece's points.
+    Other points beside the piece move with its outline.
     """
     z0, z1 = piece.piece.z0, piece.piece.z1
     near = PIECE_END_TOLERANCE * (z1 - z0)
@@ -79,24 +91,25 @@ def _moved_by(piece: LocalFields, points: Floats, own: int) -> Floats:
     above = np.flatnonzero(points[:, 2] >= z1 - near)
     out[above] = rigid(piece.moved[1] - piece.moved[0], points[above])
     amid = np.flatnonzero((points[:, 2] > z0 + near) & (points[:, 2] < z1 - near))
-    amid = amid[(amid < own) | (amid >= own + len(piece.points))]
+    amid = amid[(amid < first) | (amid >= first + len(piece.points))]
     if len(amid):
         out[amid] = _beside(piece, points[amid])
-    out[own : own + len(piece.points)] = piece.displaced
+    out[first : first + len(piece.points)] = piece.displaced
     return out
 
 
 def _beside(piece: LocalFields, points: Floats) -> Floats:
-    """The same at points (P, 3) of another piece, inside of its outline too: linear functions that
-    fit best what is on the outline all about the axis near there.
+    """The displacement (P, 3, L), m, by a piece's cuts at points (P, 3) of another one beside it.
+
+    Linear functions are fitted to the displacements of the outline all about the axis near there.
     """
     outline, squeezed = (
         piece.points[piece.outer],
         np.array([TRANSVERSE_DISTANCE_WEIGHT, TRANSVERSE_DISTANCE_WEIGHT, 1.0]),
     )
     count = min(DISPLACEMENT_FIT_POINTS, len(outline))
-    found = cKDTree(outline * squeezed).query(points * squeezed, count)
-    distance, near = (np.asarray(x) for x in found)
+    neighbours = cKDTree(outline * squeezed).query(points * squeezed, count)
+    distance, near = (np.asarray(x) for x in neighbours)
     confidence = 1.0 - (distance / (1.001 * distance[:, -1:])) ** 2
     offsets = (outline[near] - points[:, None]) / np.abs(outline).max()
     terms = np.concatenate([np.ones((*near.shape, 1)), offsets], axis=2) * confidence[..., None]
@@ -112,6 +125,8 @@ def _revolved(
     ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
     rows, part = [ends], [np.tile([0.0, 1.0], (len(ends), 1))]
     keep_rows, keep_part = np.concatenate(rows), np.concatenate(part)
+    # Edges of the outline, cut where pieces begin and end: each from a to b, from and to a part of
+    # its length.
     for low, high in pieces:
         keep_rows, keep_part = _outside_of(fields.points[:, 1], keep_rows, keep_part, low, high)
     a, b, t = keep_rows[:, 0].repeat(2), keep_rows[:, 1].repeat(2), keep_part.ravel()
@@ -120,10 +135,10 @@ def _revolved(
         w = t.reshape(-1, *(1,) * (values.ndim - 1))
         return np.asarray((1.0 - w) * values[a] + w * values[b])
 
-    own = [fields.loads.index(load) for load, _ in units]
+    columns = [fields.loads.index(load) for load, _ in units]
     r, z = along(fields.points[: fields.skin]).T
     stress, moved = (
-        along(x[: fields.skin])[..., own] for x in (fields.stress, fields.displacement)
+        along(x[: fields.skin])[..., columns] for x in (fields.stress, fields.displacement)
     )
     angle = np.arange(CUT_VIEW_SECTORS) * 2.0 * np.pi / CUT_VIEW_SECTORS
     n, phase = (np.array(x) for x in ([load.n for load, _ in units], [p for _, p in units]))
@@ -138,6 +153,7 @@ def _revolved(
     turn[:, 1, 0] = np.sin(angle)
     turn[:, 0, 1] = -np.sin(angle)
     turn[:, 2, 2] = 1.0
+    # Unit stresses at each angle, rotated to Cartesian axes.
     tensor = np.einsum(
         "sai,psijl,sbj->psabl", turn, stress[:, :, TENSOR_TO_VOIGT], turn, optimize=True
     )
@@ -164,8 +180,11 @@ def _revolved(
 def _outside_of(
     z: Floats, rows: Ints, part: Floats, low: float, high: float
 ) -> tuple[Ints, Floats]:
-    """Edges between points `rows` (E, 2), from one to another part of their length (E, 2), without
-    what lies between two z.
+    """The parts of edges that lie outside an interval of z.
+
+    rows: (E, 2) points of the edges.
+    part: (E, 2) where each begins and ends, of its length. low,
+    high: m.
     """
     out_rows, out_part = [], []
     for (a, b), (s, t) in zip(rows, part, strict=True):

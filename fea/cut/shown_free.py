@@ -1,5 +1,6 @@
-"""The stress of a cut pin's surface as it is shown where lugs press on it: as that of other pins
-(fea.harmonic.shown_surface), by its points in space.
+"""The stress of a cut pin's surface for views where lugs press on it.
+
+The rules are those of pins without cuts (fea.harmonic.shown_surface), applied to points in space.
 """
 
 from __future__ import annotations
@@ -14,25 +15,28 @@ from fea.cut.shown import ShownCut
 from fea.solid.superposition import squares
 from pinbase.arrays import Floats, Ints, Mask
 
-INSTANT_BATCH = 64  # instants
+INSTANT_BATCH = 64  # instants at once: limits memory
 
 
 def free_picture(
     surface: ShownCut, c: Floats, pressed: PressedArcs, instant: int
 ) -> tuple[Floats, Floats, Mask]:
-    """Stress (P, 6) Pa at an instant, the envelope (P,) Pa over all, of amounts (T, L) of the unit
-    loads, and where (P,) lugs press at this one: there the envelope has the others, NaN if none.
+    """Stress (P, 6), Pa, at an instant, the envelope (P,), Pa, and where (P,) lugs press.
+
+    c: (T, L) amounts of the unit loads. Where lugs press at this instant the envelope is that of
+    the others, NaN if there are none.
     """
     free = FreePoints.of(surface.points, surface.outline, pressed.rings)
     most = np.full(len(surface.points), -1.0)
-    found = squares(surface.stress)
+    square_of = squares(surface.stress)
     for k in range(0, len(c), INSTANT_BATCH):
-        here = np.sqrt(found(c[k : k + INSTANT_BATCH]))
+        here = np.sqrt(square_of(c[k : k + INSTANT_BATCH]))
         for t in range(here.shape[1]):
             here[~free.read(pressed, k + t), t] = -1.0
         np.maximum(most, here.max(axis=1), out=most)
     stress, read = surface.stress @ c[instant], free.read(pressed, instant)
     on = _on(surface, free.arc, pressed, instant) & ~read
+    # Points that are neither read nor pressed take the stress of the nearest one that is read.
     left = ~read & ~on
     if left.any() and read.any():
         near = cKDTree(surface.points[read]).query(surface.points[left])[1]
@@ -42,7 +46,7 @@ def free_picture(
 
 
 def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mask:
-    """On which points (P,) a lug presses, at the end of a ring on both sides of it."""
+    """Mask (P,) of the points that a lug presses on; at the end of a ring, on both sides of it."""
     rings, (x, y, z) = pressed.rings, surface.points.T
     off = np.abs(np.hypot(x, y)[:, None] - rings.radius) <= ON_CYLINDER_TOLERANCE * rings.radius
     on = surface.outline.copy()

@@ -1,10 +1,10 @@
-"""Redundant supports of a pin with cuts: by how much what cuts change of its compliance changes
-their reactions.
+"""The reactions of redundant supports of a pin with cuts.
 
 The local solid about a cut is free at its ends, which its cut moves rigidly against each other
-(fea.cut.local_model). Between two clamps nothing may move: the clamp beyond is moved back as much.
-So the uncut pin has unit loads more, rigid motions of all its clamps but the first, the cuts answer
-these like any others, and the motions that close all gaps are in proportion to the other loads.
+(fea.cut.local_model). Between two clamps nothing may move, so the clamp beyond is moved back by as
+much. The uncut pin therefore has additional unit loads, rigid motions of all its clamps but the
+first; the cuts respond to these as to any others, and the motions that close all gaps are linear in
+the other loads.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from fea.cut.local_fields import LocalFields, coefficients_of
 from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats
 
-MAX_GAP_CONDITION = 1e8  # condition of the gaps' equations
+MAX_GAP_CONDITION = 1e8  # largest condition number of the equations that close the gaps
 
 
 @dataclass(frozen=True)
 class ClampReaction:
-    """A clamped surface by its name, and z (m) of its middle."""
+    """A clamped surface: its name, and z (m) of its middle."""
 
     name: str
     z: float
@@ -33,17 +33,20 @@ class ClampReaction:
 
 @dataclass(frozen=True)
 class LoadsWithReactions(PinLoads):
-    """Loads with the motions of clamps that go with them, among `acting` (T, 2) by unit load."""
+    """Loads together with the motions of clamps that they cause.
+
+    acting: (T, 2) by unit load, these motions included.
+    """
 
     acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """How much of each unit load acts, (T, 2) by phase."""
+        """The amount (T, 2), by phase, of each unit load."""
         return self.acting
 
 
 def motions(supports: Sequence[ClampReaction]) -> tuple[Unit, ...]:
-    """Rigid motions of all clamps but the first: along x, y, z, about x (backwards), y, z."""
+    """The rigid motions of all clamps but the first: along x, y, z, about x (backwards), y, z."""
     out: list[Unit] = []
     for s in supports[1:]:
         shift, turn = UnitLoad(s.name, "shift", 1), UnitLoad(s.name, "turn", 1)
@@ -52,13 +55,15 @@ def motions(supports: Sequence[ClampReaction]) -> tuple[Unit, ...]:
     return tuple(out)
 
 
-MOTION_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of these motions, the sign
+MOTION_SIGNS = np.array([1.0, 1.0, 1.0, -1.0, 1.0, 1.0])  # of the motions of one clamp
 
 
 @dataclass(frozen=True)
 class ClampMotions:
-    """motions: of clamps, as unit loads; amounts: (M, L) of them per unit of each of the units of
-    loads.
+    """The motions of clamps that go with loads.
+
+    motions: of clamps, as unit loads.
+    amounts: (M, L) of each motion per unit of each of L units.
     """
 
     units: tuple[Unit, ...]
@@ -66,7 +71,7 @@ class ClampMotions:
     amounts: Floats
 
     def held(self, loads: Loads) -> Loads:
-        """Loads with the motions that go with them."""
+        """The loads together with the motions of clamps that they cause."""
         if not self.motions:
             return loads
         q = coefficients_of(loads, self.units) @ self.amounts.T
@@ -83,7 +88,9 @@ class ClampMotions:
 
 
 def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) -> ClampMotions:
-    """Of pieces under all units, the motions of clamps among them last.
+    """The motions of clamps that close the gaps which cuts open between them.
+
+    pieces: under all units, the motions of clamps last.
 
     Raises: SolveError where the gaps cannot be closed.
     """
@@ -91,8 +98,10 @@ def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) 
     first = len(units) - len(moved)
     if not moved:
         return ClampMotions(units, (), np.zeros((0, first)))
-    there = [reached(s, pieces) for s in supports]
-    gap = np.concatenate([MOTION_SIGNS[:, None] * (x - there[0]) for x in there[1:]])
+    positions = [reached(s, pieces) for s in supports]
+    gap = np.concatenate([MOTION_SIGNS[:, None] * (x - positions[0]) for x in positions[1:]])
+    # Gap of each clamp: its own motion plus what the cuts make of all motions and loads; none is
+    # left.
     system = np.eye(len(moved)) + gap[:, first:]
     scale = np.tile(
         np.repeat([1.0, pieces[0].piece.profile.largest_diameter], 3), len(supports) - 1
@@ -107,8 +116,9 @@ def reactions(supports: Sequence[ClampReaction], pieces: Sequence[LocalFields]) 
 
 
 def reached(support: ClampReaction, pieces: Sequence[LocalFields]) -> Floats:
-    """The rigid motion of the place of a clamp against the pin's start by all cuts before it,
-    (6, L): a shift and a turn about the pin's origin.
+    """The rigid motion (6, L) of a clamp relative to the pin's start by all cuts before it.
+
+    It is a shift and a turn about the pin's origin.
     """
     out = np.zeros((6, len(pieces[0].units)))
     for p in pieces:

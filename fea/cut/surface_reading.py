@@ -1,10 +1,10 @@
-"""Strain in the surface of a solid from the displacements there, at the nodes of its smooth faces.
+"""Strain in the surface of a solid from the displacements at the nodes of its smooth faces.
 
-Displacements of quadratic tetrahedra are more exact than their derivatives by more than one order.
-So at a node of a face the cubic polynomial of the two coordinates in the tangent plane is taken
-that fits displacements at the nearest nodes of the face, or at their images in mirror planes, best
+Displacements of quadratic tetrahedra are more accurate than their derivatives by more than one
+order. So at each node of a face a cubic polynomial in the two coordinates of the tangent plane is
+fitted to the displacements of the nearest nodes of the face, or of their images in mirror planes
 (nearer ones count more), and its slopes are the gradient in the surface. With the traction on the
-face, which is known, that is all of the stress.
+face, which is known, that gives all of the stress.
 
 Source: Zhang & Naga, SIAM J. Sci. Comput. 26 (2005) 1192 (polynomial preserving recovery), here on
 the surface alone.
@@ -23,15 +23,19 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints
 
-FIT_NODES = 36  # nodes that a polynomial is fitted to; it has ten terms
-MIN_NORMAL_COSINE = 0.3  # least cosine between the normals of a node and such a neighbour
-_REGULARISATION = 1e-10  # added where neighbours leave a term open, of their number
+FIT_NODES = 36  # nodes to which a polynomial, of ten terms, is fitted; chosen by judgement
+MIN_NORMAL_COSINE = 0.3  # between the normals of a node and a neighbour in its fit, by judgement
+_REGULARISATION = 1e-10  # of the number of neighbours, where these leave a term open
 _POWERS = [(i, j) for n in range(4) for i, j in ((n - k, k) for k in range(n + 1))]
 
 
 @dataclass(frozen=True)
 class Face:
-    """A smooth face: rows of its facets (F,) among the boundary's; cut: whether it is of a cut."""
+    """A smooth face of a piece.
+
+    rows: (F,) its facets among the boundary's.
+    cut: whether it belongs to a cut.
+    """
 
     name: str
     rows: Ints
@@ -40,8 +44,11 @@ class Face:
 
 @dataclass(frozen=True)
 class FaceReading:
-    """Nodes (P,) of a face and its directions there (P, 3, 3): two along it and its outward normal.
-    slopes: along both of the first, (P, G P) of what is at the nodes and their images.
+    """The nodes (P,) of a face, with what is needed to read strains there.
+
+    directions: (P, 3, 3) two along the face and its outward normal.
+    slopes: matrices (P, G P) that give derivatives along the first two from values at the nodes and
+    their images.
     """
 
     face: Face
@@ -50,8 +57,10 @@ class FaceReading:
     slopes: tuple[sp.csr_matrix, sp.csr_matrix]
 
     def strain(self, u: Floats, parities: Parities, character: Floats) -> Floats:
-        """Strain 11, 22, 12, (P, 3, L), of displacements (N, 3, L) of a class with characters
-        (G,).
+        """Strains 11, 22 and 12 in the surface, (P, 3, L).
+
+        u: (N, 3, L) m, displacements of one class.
+        character: (G,) of the class.
         """
         here = u[self.nodes]
         images = character[:, None] * parities.images  # (G, 3)
@@ -70,7 +79,7 @@ class FaceReading:
 def read_face(
     space: Discretisation, surface: SurfaceMesh, face: Face, parities: Parities
 ) -> FaceReading:
-    """Of a mesh of what is on the positive side of the mirrors."""
+    """The reading of a face of a mesh that covers the positive side of the mirrors."""
     corners, normals = surface.corners[face.rows], surface.normals[face.rows]
     nodes, where = np.unique(corners, return_inverse=True)
     mean = np.zeros((len(nodes), 3))
@@ -78,13 +87,13 @@ def read_face(
     x = space.nodes[nodes]
     directions = _directions(mean)
     images, facing = (
-        (parities.images[:, None] * each).reshape(-1, 3) for each in (x, directions[:, 2])
+        (parities.images[:, None] * vectors).reshape(-1, 3) for vectors in (x, directions[:, 2])
     )
     return FaceReading(face, nodes, directions, _slopes(x, directions, images, facing))
 
 
 def _directions(normal: Floats) -> Floats:
-    """Two along the face and its normal: the first as near to a coordinate's as there is one."""
+    """Directions (P, 3, 3): two along the face, the first nearest to an axis, and the normal."""
     n = normal / np.linalg.norm(normal, axis=1, keepdims=True)
     along = np.eye(3)[np.argmin(np.abs(n), axis=1)]
     first = along - np.sum(along * n, axis=1, keepdims=True) * n
@@ -95,9 +104,16 @@ def _directions(normal: Floats) -> Floats:
 def _slopes(
     x: Floats, directions: Floats, images: Floats, facing: Floats
 ) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-    """At nodes x (P, 3) with directions (P, 3, 3), from values at images (G P, 3) with normals."""
+    """Matrices (P, G P) of the derivatives along the first two directions at nodes.
+
+    x: (P, 3) nodes.
+    directions: (P, 3, 3).
+    images, facing: (G P, 3) nodes, images included, and their normals.
+    """
     count = min(FIT_NODES, len(images))
-    distance, near = (np.asarray(found) for found in cKDTree(images).query(x, count))
+    distance, near = (np.asarray(result) for result in cKDTree(images).query(x, count))
+    # Weights fall with distance to nothing for the last neighbour; nodes that face elsewhere are
+    # left out.
     same = np.einsum("psa,pa->ps", facing[near], directions[:, 2]) > MIN_NORMAL_COSINE
     confidence = (1.0 - (distance / (1.001 * distance[:, -1:])) ** 2) * same
     offsets = np.einsum("psa,pca->psc", images[near] - x[:, None], directions[:, :2])
@@ -105,10 +121,11 @@ def _slopes(
     a, b = np.moveaxis(offsets / reach[:, None, None], -1, 0)
     terms = np.stack([a**i * b**j for i, j in _POWERS], axis=1) * confidence[:, None]
     form = terms @ terms.swapaxes(1, 2)
+    # Regularised normal equations; one step of refinement removes the bias of the regularisation.
     definite = form + _REGULARISATION * form[:, :1, :1] * np.eye(len(_POWERS))
     wanted = np.broadcast_to(np.eye(len(_POWERS))[:, 1:3], (*form.shape[:2], 2))
     value = np.linalg.solve(definite, wanted)
-    value = value + np.linalg.solve(definite, wanted - form @ value)  # as if nothing were added
+    value = value + np.linalg.solve(definite, wanted - form @ value)
     weights = value.swapaxes(1, 2) @ terms * confidence[:, None] / reach[:, None, None]
     row = np.arange(len(x)).repeat(count)
     shape = (len(x), len(images))

@@ -1,11 +1,12 @@
-"""Conjugate gradients for quadratic tetrahedra, preconditioned on two levels: by steps of Jacobi's
-method on blocks of nodes, combined as Chebyshev polynomials, and by linear tetrahedra on the same
-corners, which are an eighth of the nodes and factored.
+"""Conjugate gradients for quadratic tetrahedra with a two-level preconditioner.
+
+The smoother is a Chebyshev polynomial of Jacobi steps on blocks of nodes. The coarse level is that
+of linear tetrahedra on the same corners, an eighth of the nodes, which is factored.
 
 Time and memory grow with the number of unknowns, those of a factorisation with its power 2 and 4/3.
 
-Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), 9.2, 12.3.2; Helenbrook
-& Atkins, AIAA J. 44 (2006) 566 (lower orders as coarse levels).
+Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed. (2003), 9.2, 12.3.2; Helenbrook &
+Atkins, AIAA J. 44 (2006) 566 (lower orders as coarse levels).
 """
 
 from __future__ import annotations
@@ -19,19 +20,18 @@ from fea.core.linear_solver import ConstrainedSystem
 from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints
 
-MAX_FACTORED_UNKNOWNS = 8_000  # unknowns: as many or fewer are factored in less time
-ENERGY_TOLERANCE = 1e-5  # energy of the residual over that of the largest forces, square root
+MAX_FACTORED_UNKNOWNS = 8_000  # up to which factoring takes less time
+ENERGY_TOLERANCE = 1e-5  # root of the residual's energy over that of the largest forces
 MAX_CONJUGATE_GRADIENT_STEPS = 60  # 10 to 15 are usual
-SMOOTHER_DEGREE = 2  # of the polynomial
-SMOOTHER_EIGENVALUE_RATIO = 8.0  # largest eigenvalue over the least that it damps
-POWER_ITERATIONS, EIGENVALUE_MARGIN = (
-    12,
-    1.1,
-)  # iterations to find the largest one, which is so much above what they find
+# Chosen by judgement:
+SMOOTHER_DEGREE = 2  # of the Chebyshev polynomial
+SMOOTHER_EIGENVALUE_RATIO = 8.0  # largest eigenvalue over the least that is damped
+POWER_ITERATIONS = 12  # to estimate the largest eigenvalue
+EIGENVALUE_MARGIN = 1.1  # bound of the largest eigenvalue over its estimate, which is from below
 
 
 class TwoLevel:
-    """The stiffness matrix (csr, N/m) of a mesh, of whose unknowns any may be zero."""
+    """Systems with the stiffness matrix (csr, N/m) of a mesh, of whose unknowns any may be zero."""
 
     def __init__(self, space: Discretisation, stiffness: sp.csr_matrix) -> None:
         self._stiffness, self._count = stiffness, len(space.nodes)
@@ -40,18 +40,22 @@ class TwoLevel:
         self._coarse = sp.csr_matrix(up.T @ (blocks @ up))
         self._up, self._down = up.tocsr(), up.T.tocsr()
         row = np.repeat(np.arange(self._count), np.diff(blocks.indptr))
-        self._own = blocks.data[blocks.indices == row][np.argsort(row[blocks.indices == row])]
+        self._diagonal_blocks = blocks.data[blocks.indices == row][
+            np.argsort(row[blocks.indices == row])
+        ]
         self._system = ConstrainedSystem(self._coarse, np.arange(self._coarse.shape[0]) // 3)
 
     @property
     def corners(self) -> Ints:
-        """Unknowns of the linear tetrahedra among all."""
+        """Numbers of the linear tetrahedra's unknowns among all."""
         return np.asarray((3 * self._corners[:, None] + np.arange(3)).ravel())
 
     def solve(self, free: Floats, held: Ints, forces: Floats) -> Floats | None:
-        """Unknowns (3 N, K) under forces, zero where `free` (3 N,) is 0; None where that does not
-        converge. held: unknowns, of corners, that hold what may still move rigidly without forces;
-        they are zero on the coarse level alone.
+        """Unknowns (3 N, K) under forces (3 N, K); None where the iteration does not converge.
+
+        free: (3 N,) 0 where unknowns are zero, else 1.
+        held: unknowns, of corners, that remove the rigid motions that remain without forces; they
+        are zero on the coarse level alone.
         """
         free = free[:, None]
         on_coarse = free.copy()
@@ -60,29 +64,33 @@ class TwoLevel:
         coarse = self._system.factorize(self._coarse.copy(), on_coarse[:, 0])
         smooth = self._smoother(free)
 
+        # One symmetric V-cycle: smooth, correct on the coarse level, smooth again.
         def precondition(r: Floats) -> Floats:
             x = smooth(r, None)
             left = self._down @ (r - free * (self._stiffness @ x))
             x = x + free * (self._up @ coarse(left * on_coarse))
             return smooth(r, x)
 
-        found, r = np.zeros_like(forces), free * forces
+        # Preconditioned conjugate gradients; all right-hand sides iterate side by side, each with
+        # its own step lengths.
+        solution, r = np.zeros_like(forces), free * forces
         z = precondition(r)
         energy = np.sum(r * z, axis=0)
         least, active, x, p = (
             ENERGY_TOLERANCE**2 * energy.max(),
             np.arange(r.shape[1]),
-            found.copy(),
+            solution.copy(),
             z,
         )
         for _ in range(MAX_CONJUGATE_GRADIENT_STEPS):
             done = energy <= least
+            # Right-hand sides that have converged leave, so that later steps cost less.
             if done.any():
-                found[:, active[done]] = x[:, done]
+                solution[:, active[done]] = x[:, done]
                 active, energy = active[~done], energy[~done]
                 x, r, p = x[:, ~done], r[:, ~done], p[:, ~done]
             if not len(active):
-                return found
+                return solution
             q = free * (self._stiffness @ p)
             length = energy / np.sum(p * q, axis=0)
             x, r = x + length * p, r - length * q
@@ -92,14 +100,15 @@ class TwoLevel:
         return None
 
     def _smoother(self, free: Floats) -> Callable[[Floats, Floats | None], Floats]:
-        """Symmetric: from zero, and from what the coarse level has corrected, the same."""
+        """The smoother, from zero or from what the coarse level has corrected."""
         K = self._stiffness
         mask = free.reshape(-1, 3)
-        blocks = self._own * mask[:, :, None] * mask[:, None]
+        blocks = self._diagonal_blocks * mask[:, :, None] * mask[:, None]
         blocks[:, range(3), range(3)] += 1.0 - mask
         inverse = np.linalg.inv(blocks) * mask[:, :, None] * mask[:, None]
         at = np.arange(self._count)
         jacobi = sp.bsr_matrix((inverse, at, np.arange(self._count + 1)), K.shape).tocsr()
+        # The largest eigenvalue of the Jacobi-preconditioned matrix, by the power method.
         v = free * np.random.default_rng(0).normal(size=free.shape)
         largest = 0.0
         for _ in range(POWER_ITERATIONS):
@@ -113,6 +122,7 @@ class TwoLevel:
         )
 
         def smooth(b: Floats, x: Floats | None) -> Floats:
+            # The three-term recurrence of Chebyshev's semi-iteration (Saad, algorithm 12.1).
             r = b if x is None else b - free * (K @ x)
             step = (jacobi @ r) / middle
             x = step if x is None else x + step
@@ -128,9 +138,7 @@ class TwoLevel:
 
 
 def _linear(space: Discretisation) -> tuple[Ints, sp.bsr_matrix]:
-    """The nodes that are corners, and what displacements there are at all nodes if they are linear
-    along the edges.
-    """
+    """The corner nodes, and the matrix that takes displacements there to all nodes linearly."""
     e, count = space.elements, len(space.nodes)
     corners = np.unique(e[:, :4])
     number = np.full(count, -1)

@@ -32,8 +32,9 @@ from pinbase.arrays import Floats, Ints
 
 
 class Section:
-    """Quadratic triangles on a section (m). Unknown 3 k + c belongs to node k: p, m or w.
+    """The harmonic equations of quadratic triangles on a section (m).
 
+    Unknown 3 k + c belongs to node k: p, m or w for c = 0, 1, 2.
     parts: (M,) the number of each element's material, from 0 on; without them there is one.
     """
 
@@ -61,8 +62,10 @@ class Section:
 
     @cached_property
     def _mapped(self) -> tuple[Floats, Floats, Floats]:
-        """At all points: N,r N,z and N / r, (M, Q, 3, 6), 1/m; r and z, (M, 2, Q), m; areas times r
-        (M, Q), m^3, zero at the samples.
+        """The isoparametric mapping at all Q points of the elements.
+
+        Returns N,r N,z and N / r, (M, Q, 3, 6), 1/m; r and z, (M, 2, Q), m; areas times r (M, Q),
+        m^3, zero at the samples.
         """
         x = self.nodes[self.elements].swapaxes(1, 2)
         at = x @ self._values
@@ -87,39 +90,41 @@ class Section:
 
     @property
     def quadrature(self) -> tuple[Floats, Floats]:
-        """Where integrals are taken, Q points of each element: N,r N,z and N / r there (M, Q, 3, 6)
-        in 1/m, and the areas times r (M, Q), m^3, that count for them.
+        """The data of integrals at the Q quadrature points of each element.
+
+        Returns N,r N,z and N / r, (M, Q, 3, 6), 1/m, and the areas times r, (M, Q), m^3, as
+        weights.
         """
         here = self._quadrature
         return self._gradients[:, here], self._weights[:, here]
 
     @property
     def radii(self) -> Floats:
-        """r of those points, (M, Q), m."""
+        """r of the quadrature points, (M, Q), m."""
         return self._mapped[1][:, 0, self._quadrature]
 
     @cached_property
     def pattern(self) -> Pattern:
-        """The pairs of nodes."""
+        """The pairs of nodes that share an element."""
         return Pattern(self.elements, len(self.nodes))
 
     def stiffness(self, materials: Material | Sequence[Material], n: int) -> sp.csr_matrix:
-        """Stiffness matrix of harmonic n, for displacements as above and around the whole axis. All
-        have the same pattern. materials: one, or that of each part.
+        """The stiffness matrix of harmonic n, for displacements as above and around the whole axis.
+
+        All harmonics have the same pattern.
+        materials: one, or that of each part.
         """
-        each = (materials,) if isinstance(materials, Material) else materials
+        by_part = (materials,) if isinstance(materials, Material) else materials
         E = strain_map(n)
         blocks = np.zeros((len(self.pattern), 9))
-        for products, material in zip(self._products, each, strict=True):
+        for products, material in zip(self._products, by_part, strict=True):
             by = np.einsum("sca,st,tdb->abcd", E, around(n) * elasticity(material), E)
             blocks += products @ by.reshape(9, 9)
         return self.pattern.matrix(blocks.reshape(-1, 3, 3))
 
     @cached_property
     def _products(self) -> list[Floats]:
-        """By part, integrals (P, 9) of the products of a, b, c of one node with those of the other,
-        for the pairs of nodes, per radian.
-        """
+        """Integrals (P, 9), per radian, of products of a, b, c of pairs of nodes, by part."""
         root = np.sqrt(self._weights[:, self._quadrature])
         parts = self._gradients[:, self._quadrature] * root[..., None, None]
         x = parts.reshape(len(parts), -1, 3, 6).transpose(0, 3, 2, 1).reshape(len(parts), 18, -1)
@@ -127,28 +132,35 @@ class Section:
         if self.parts is None:
             return [self.pattern.sums(products).reshape(-1, 9)]
         masks = (self.parts == k for k in range(int(self.parts.max()) + 1))
-        each = (products * mask[:, None, None, None, None] for mask in masks)
-        return [self.pattern.sums(own).reshape(-1, 9) for own in each]
+        products_of_parts = (products * mask[:, None, None, None, None] for mask in masks)
+        return [
+            self.pattern.sums(part_products).reshape(-1, 9) for part_products in products_of_parts
+        ]
 
     @cached_property
     def integrals(self) -> Floats:
-        """Of the shape functions times r over the section, (N,), m^3."""
-        found = self._weights @ self._values.T
+        """Integrals of the shape functions times r over the section, (N,), m^3."""
+        element_integrals = self._weights @ self._values.T
         count = len(self.nodes)
-        return np.bincount(self.elements.ravel(), found.ravel(), count).astype(np.float64)
+        return np.bincount(self.elements.ravel(), element_integrals.ravel(), count).astype(
+            np.float64
+        )
 
     def sampled_strains(self, n: Ints | int, u: Floats) -> Floats:
-        """Strains (M, 3, 6, K), shears doubled, of displacements (N, 3, K) of harmonics n, one or
-        (K,), at three points of each element, where they are most exact.
+        """Strains (M, 3, 6, K), shears doubled, at three points of each element.
+
+        There they are most exact.
+        n: harmonics, one or (K,).
+        u: displacements (N, 3, K), m.
         """
         return self._sampled(np.eye(6), n, u)
 
     def sampled_stress(self, material: Material, n: Ints | int, u: Floats) -> Floats:
-        """The stress of these strains, Pa."""
+        """The stress (M, 3, 6, K), Pa, of the sampled strains."""
         return self._sampled(elasticity(material), n, u)
 
     def _sampled(self, linear: Floats, n: Ints | int, u: Floats) -> Floats:
-        """Linear (6, 6) in these strains."""
+        """A linear function (6, 6) of the sampled strains."""
         m, k = len(self.elements), u.shape[2]
         out = np.empty((m, 18, k))
         harmonics = np.broadcast_to(n, k)
@@ -163,18 +175,18 @@ class Section:
 
     @cached_property
     def samples(self) -> Floats:
-        """Where those are, (3 M, 2): r, z in m, element by element."""
-        found = self._mapped[1][:, :, self._sampled_points]
-        return np.ascontiguousarray(found.swapaxes(1, 2).reshape(-1, 2))
+        """The sample points (3 M, 2), r and z in m, element by element."""
+        at_samples = self._mapped[1][:, :, self._sampled_points]
+        return np.ascontiguousarray(at_samples.swapaxes(1, 2).reshape(-1, 2))
 
 
 def around(n: int) -> float:
-    """Integral of cos^2 psi about the axis, and where n > 0 of sin^2 psi."""
+    """The integral of cos^2 psi about the axis, and for n > 0 of sin^2 psi."""
     return math.pi if n else 2.0 * math.pi
 
 
 def elasticity(material: Material) -> Floats:
-    """Stress from strain, (6, 6) in Pa: rr, tt, zz, tz, rz, rt, the shears of strain doubled."""
+    """The elasticity matrix (6, 6), Pa: rr, tt, zz, tz, rz, rt, the shears of strain doubled."""
     lam, mu = material.lame
     D = np.diag([2.0 * mu] * 3 + [mu] * 3)
     D[:3, :3] += lam
@@ -183,8 +195,9 @@ def elasticity(material: Material) -> Floats:
 
 @lru_cache
 def _rules() -> tuple[Floats, Floats, int]:
-    """Points in a triangle (2, Q): those of a rule of fourth degree, with weights (Q,), then three
-    where strains are sampled, with none; and how many the first are.
+    """Points (2, Q) of a reference triangle, weights (Q,), and the number of quadrature points.
+
+    First come those of a rule of fourth degree, then three samples of strain, with no weight.
     """
     points, weights = get_quadrature(RefTri, 4)
     samples = get_quadrature(RefTri, 2)[0]
@@ -193,8 +206,9 @@ def _rules() -> tuple[Floats, Floats, int]:
 
 
 def strain_map(n: int) -> Floats:
-    """What the part a, b or c of an unknown p, m or w adds to each strain (rr, tt, zz, 2 tz, 2 rz,
-    2 rt) of harmonic n, (6, 3, 3).
+    """The strains (6, 3, 3) of harmonic n per part a, b or c of an unknown p, m or w.
+
+    Strains are rr, tt, zz, 2 tz, 2 rz, 2 rt.
     """
     out = np.zeros((6, 3, 3))
     p, m, w = range(3)

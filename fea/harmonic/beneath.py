@@ -1,8 +1,8 @@
-"""What lies beneath contact: stress farther than a distance from everything that lugs press on,
-and how far from there it exceeds a limit.
+"""Stress beneath contact: farther than a distance from all pressed cells, and the reach of stress.
 
-Inside, stress falls from the edge of a lug like d^-0.2 (what the pressure makes and what bends the
-pin together), so that no distance is natural there; hence both numbers.
+Inside, stress falls from the edge of a lug like d^-0.2 (pressure and bending together), so that no
+distance is natural there; hence both the largest stress beyond a distance and the distance that a
+stress reaches.
 """
 
 from __future__ import annotations
@@ -22,11 +22,10 @@ from fea.singular.singularities import outside
 from geometry import Pin
 from pinbase.arrays import Floats, Ints, Mask
 
-ARC_STRIDE = 8  # arcs, of which one is looked at for the reach
+# Chosen by judgement:
+ARC_STRIDE = 8  # one arc in so many is evaluated for the reach
 EDGE_CIRCLE_POINTS = 9  # points of a quarter circle about the edge of a lug
-OUTSIDE_MARGIN = (
-    1e-6  # of the distance: so much farther are points that are meant to be just outside
-)
+OUTSIDE_MARGIN = 1e-6  # of the distance: puts points just outside it despite round-off
 
 
 Steps = tuple[tuple[float, float], ...]  # of a stress, Pa, and the distance, m, that it reaches
@@ -34,7 +33,11 @@ Steps = tuple[tuple[float, float], ...]  # of a stress, Pa, and the distance, m,
 
 @dataclass(frozen=True)
 class Beneath:
-    """The largest von Mises stress, Pa, at a location (x, y, z), m; the number of its instant."""
+    """The largest von Mises stress beneath contact, Pa.
+
+    location: (x, y, z), m.
+    instant: its number.
+    """
 
     value: float
     location: tuple[float, float, float]
@@ -42,8 +45,9 @@ class Beneath:
 
 
 class Away:
-    """Where on the circumference points (S, 2) are farther than BENEATH diameters from every cell
-    that is pressed, at the instants of a contact (fea.harmonic.superposition: Region).
+    """The part of the circumference farther than BENEATH_DISTANCE diameters from pressed cells.
+
+    points: (S, 2) m. It is a Region of fea.harmonic.superposition.
     """
 
     def __init__(self, points: Floats, pressed: PressedArcs) -> None:
@@ -55,11 +59,11 @@ class Away:
         self._row[some] = np.arange(some.sum())
 
     def masked(self, points: Ints) -> Mask:
-        """Which of some points are read on a part of the circumference only."""
+        """Mask of the points that are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
     def read(self, points: Ints, instants: Ints) -> Mask:
-        """On which arcs (J, BINS) pairs of points and instants are read."""
+        """The arcs (J, ARC_COUNT) on which pairs of points and instants are read."""
         out, rows = np.ones((len(points), ARC_COUNT), dtype=bool), self._row[points]
         for t in np.unique(instants).tolist():
             if t not in self._known:
@@ -72,12 +76,15 @@ class Away:
 
 
 def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
-    """How many arcs from a pressed one on a ring points (S, 2) are nearer to it than a distance
-    (R,), m: (S, R), -1 where they are farther anyway.
+    """The number of arcs (S, R) from a pressed arc up to which a point is within a distance.
+
+    points: (S, 2) m.
+    distance: (R,) m. -1 where the point is farther from the ring anyway.
     """
     r, z = points[:, :1], points[:, 1:]
     along = np.maximum(0.0, np.maximum(rings.start - z, z - rings.end))
-    rest = along**2 + (r - rings.radius) ** 2 - distance**2  # 2 r R (cos a - 1) more with the angle
+    # Law of cosines: with the angle a the squared distance grows by 2 r R (1 - cos a).
+    rest = along**2 + (r - rings.radius) ** 2 - distance**2
     arm = np.maximum(2.0 * r * rings.radius, np.finfo(float).tiny)
     angle = np.arccos(np.clip(1.0 + rest / arm, -1.0, 1.0))
     return np.where(rest < 0.0, np.floor(angle / (2.0 * np.pi) * ARC_COUNT + 0.5), -1).astype(
@@ -86,9 +93,13 @@ def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
 
 
 def arcs_apart(on: Mask) -> Ints:
-    """How many arcs each (R, BINS) is from the nearest one of a mask; BINS of an empty one."""
+    """The number of arcs from each arc (R, ARC_COUNT) to the nearest one of a mask.
+
+    It is ARC_COUNT for an empty mask.
+    """
     turns = np.tile(on, 3)
     number = np.arange(3 * ARC_COUNT)
+    # The last marked arc up to each, and the first one from each on, over three turns.
     before = np.maximum.accumulate(np.where(turns, number, -ARC_COUNT), axis=1)
     after = np.minimum.accumulate(np.where(turns, number, 4 * ARC_COUNT)[:, ::-1], axis=1)[:, ::-1]
     apart = np.minimum(number - before, after - number)[:, ARC_COUNT : 2 * ARC_COUNT]
@@ -96,7 +107,7 @@ def arcs_apart(on: Mask) -> Ints:
 
 
 def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Beneath:
-    """Of a pin on which lugs press, outside of singular zones."""
+    """The largest stress beneath contact, outside of singular zones."""
     assert loads.pressed is not None
     around = Circumference(fields, loads, Away(fields.points, loads.pressed))
     top = around.top(_away_from(zones, fields))
@@ -112,8 +123,9 @@ def depths(
     zones: tuple[Zone, ...],
     least: float,
 ) -> Steps:
-    """Pairs of a stress, Pa, and the distance, m, from every pressed cell to which it reaches at an
-    instant: falling stresses above a least one, each farther than all before.
+    """Pairs of a stress, Pa, and the distance, m, from pressed cells that it reaches at an instant.
+
+    Stresses fall to `least` and distances grow: each is farther than all before.
     """
     assert loads.pressed is not None
     rows = np.flatnonzero(_away_from(zones, fields))
@@ -126,8 +138,9 @@ def depths(
 
 
 def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
-    """Of points with a stress and a distance (N,) each: those that no point with more of both
-    covers, by falling stress.
+    """The points that no other point exceeds in both stress and distance, by falling stress.
+
+    stress, away: (N,) each.
     """
     order = np.lexsort((-away, -stress))
     order = order[stress[order] > least]
@@ -138,13 +151,14 @@ def stairs(stress: Floats, away: Floats, least: float = 0.0) -> Steps:
 
 
 def _away_from(zones: tuple[Zone, ...], fields: MeridianFields) -> Mask:
+    """Mask (S,) of the points that may be read: outside of zones and not marked as unread."""
     out = outside(zones, *fields.points.T)
     out[fields.unread] = False
     return out
 
 
 def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
-    """Of points (S, 2) at every EVERY-th arc from the nearest pressed cell, m."""
+    """Distances (S, A), m, of points (S, 2) from pressed cells, at every ARC_STRIDE-th arc."""
     rings, on = pressed.rings, pressed.on[instant]
     r, z = points[:, :1], points[:, 1:]
     apart = arcs_apart(on)[:, ::ARC_STRIDE]
@@ -160,8 +174,9 @@ def _distance(points: Floats, pressed: PressedArcs, instant: int) -> Floats:
 
 
 def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
-    """Points (P, 2), r and z in m, inside a pin just farther than BENEATH diameters from its rings:
-    under each, and about the ends of what they make up.
+    """Points (P, 2), r and z in m, just farther inside a pin than BENEATH_DISTANCE from its rings.
+
+    They lie under each ring and about the ends of what adjacent rings make up.
     """
     bands = [pin.band(name) for name in rings]
     away = 2.0 * BENEATH_DISTANCE * (1.0 + OUTSIDE_MARGIN)
@@ -169,6 +184,7 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     turns = np.linspace(0.0, np.pi / 2.0, EDGE_CIRCLE_POINTS)[1:]
     ends = [(z, sign, b.radius) for b in bands for z, sign in ((b.z0, -1.0), (b.z1, 1.0))]
     near = RING_END_TOLERANCE * pin.length
+    # Ends that two rings share are inside what they make up; only the others have a quarter circle.
     alone = [x for x in ends if sum(abs(x[0] - z) <= near for z, *_ in ends) == 1]
     about = [
         (radius * (1.0 - away * float(np.cos(t))), z + sign * radius * away * float(np.sin(t)))
@@ -178,6 +194,7 @@ def just_beneath(pin: Pin, rings: tuple[str, ...]) -> Floats:
     points = np.array([*under, *about]).reshape(-1, 2)
     if not len(points):
         return points
+    # Keep what lies inside the pin.
     inside = (points[:, 1] > 0.0) & (points[:, 1] < pin.length)
     points = points[inside]
     inner, outer = pin.radii_at(points[:, 1])

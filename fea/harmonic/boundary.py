@@ -1,4 +1,4 @@
-"""The outline of a section's mesh, and loads on it."""
+"""The outline of a section's mesh and the loads on it."""
 
 from __future__ import annotations
 
@@ -14,52 +14,54 @@ _EDGE_GAUSS_POINTS, _EDGE_GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 def shapes(x: Floats) -> Floats:
-    """Quadratic functions of an edge (ends, middle) at x (Q,) from -1 to 1, (Q, 3)."""
+    """Quadratic shape functions (Q, 3) of an edge (ends, middle) at x (Q,) from -1 to 1."""
     return np.stack([x * (x - 1.0) / 2.0, x * (x + 1.0) / 2.0, 1.0 - x * x], axis=1)
 
 
 def slopes(x: Floats) -> Floats:
-    """Their derivatives, (Q, 3)."""
+    """The derivatives (Q, 3) of the shape functions of an edge."""
     return np.stack([x - 0.5, x + 0.5, -2.0 * x], axis=1)
 
 
 class Outline:
-    """All edges of the outline off the axis: nodes (E, 3), ends and middle, each counter-clockwise;
+    """All edges of the outline off the axis.
+
+    nodes: (E, 3) ends and middle of each, counter-clockwise.
     after: (E,) which edge follows each, -1 at the axis.
     """
 
     def __init__(self, space: Section) -> None:
         edges = space.section.edges
         self._nodes = space.nodes
-        self._kept: dict[str, tuple[Floats, Floats]] = {}
+        self._surface_weights: dict[str, tuple[Floats, Floats]] = {}
         self.nodes: Ints = np.concatenate(list(edges.values()))
         self.after = _after(self.nodes)
-        ends = np.cumsum([len(found) for found in edges.values()])
+        ends = np.cumsum([len(edge_nodes) for edge_nodes in edges.values()])
         self.rows = {
-            name: np.arange(end - len(found), end)
-            for (name, found), end in zip(edges.items(), ends, strict=True)
+            name: np.arange(end - len(edge_nodes), end)
+            for (name, edge_nodes), end in zip(edges.items(), ends, strict=True)
         }
 
     def moved(self, nodes: Floats) -> Outline:
         """The same edges on a section whose nodes are elsewhere, (N, 2), m."""
         other = copy(self)
-        other._nodes, other._kept = nodes, {}
+        other._nodes, other._surface_weights = nodes, {}
         return other
 
     @property
     def every_node(self) -> Floats:
-        """Of the section, (N, 2): r, z in m."""
+        """All nodes of the section, (N, 2): r, z in m."""
         return self._nodes
 
     def constrained(self, surfaces: tuple[str, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        """(E,) which edges are on one of the surfaces."""
+        """Mask (E,) of the edges on any of the surfaces."""
         out = np.zeros(len(self.nodes), dtype=bool)
         for name in surfaces:
             out[self.rows[name]] = True
         return out
 
     def traction(self, parts: tuple[Traction, ...]) -> Floats:
-        """Amplitudes at the nodes of all edges, (E, 3, 3)."""
+        """Traction amplitudes (E, 3, 3), Pa, at the nodes of all edges."""
         out = np.zeros((*self.nodes.shape, 3))
         for part in parts:
             rows = self.rows[part.surface]
@@ -67,38 +69,40 @@ class Outline:
         return out
 
     def forces(self, parts: tuple[Traction, ...], n: int) -> Floats:
-        """Nodal forces (N, 3) along r, theta and z of tractions of harmonic n."""
+        """Nodal forces (N, 3), N, along r, theta and z of tractions of harmonic n."""
         if not parts:
             return np.zeros((len(self._nodes), 3))
         surfaces = tuple(part.surface for part in parts)
-        nodes, each = self.nodes[np.concatenate([self.rows[name] for name in surfaces])], []
+        nodes, by_part = self.nodes[np.concatenate([self.rows[name] for name in surfaces])], []
         for part in parts:
             z, weight = self._quadrature(part.surface)
-            each.append(np.einsum("eqi,eqa->eia", weight, part.at(z)))
-        found = around(n) * np.concatenate(each).reshape(-1, 3)
+            by_part.append(np.einsum("eqi,eqa->eia", weight, part.at(z)))
+        edge_forces = around(n) * np.concatenate(by_part).reshape(-1, 3)
         rows = nodes.ravel()
-        return np.stack([np.bincount(rows, x, len(self._nodes)) for x in found.T], axis=1)
+        return np.stack([np.bincount(rows, x, len(self._nodes)) for x in edge_forces.T], axis=1)
 
     def weights(self, rows: Ints) -> Floats:
-        """Of the nodes' values in integrals over some edges, length times r, (E, 3) m^2."""
+        """Weights (E, 3), m^2, of the nodes' values in integrals over edges, length times r."""
         x, values = self._nodes[self.nodes[rows]], shapes(_EDGE_GAUSS_POINTS)
         along = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
         return np.asarray((_EDGE_GAUSS_WEIGHTS * along * (x[..., 0] @ values.T)) @ values)
 
     def _quadrature(self, surface: str) -> tuple[Floats, Floats]:
-        """On the edges of a surface: z (E, Q), m, and the weights (E, Q, 3) of its nodes' values in
-        an integral over length times r, m^2.
+        """z (E, Q), m, of a surface's quadrature points, and nodes' weights (E, Q, 3), m^2.
+
+        The weights are for integrals over length times r.
         """
-        if surface not in self._kept:
+        if surface not in self._surface_weights:
             x, values = self._nodes[self.nodes[self.rows[surface]]], shapes(_EDGE_GAUSS_POINTS)
             at = np.einsum("qi,eia->eqa", values, x)
             length = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(_EDGE_GAUSS_POINTS), x), axis=2)
             weight = (_EDGE_GAUSS_WEIGHTS * length * at[..., 0])[..., None] * values
-            self._kept[surface] = at[..., 1], weight
-        return self._kept[surface]
+            self._surface_weights[surface] = at[..., 1], weight
+        return self._surface_weights[surface]
 
 
 def _after(edges: Ints) -> Ints:
+    """The edge (E,) that starts where each ends, -1 for none."""
     starts = np.full(int(edges.max()) + 1, -1)
     starts[edges[:, 0]] = np.arange(len(edges))
     return np.asarray(starts[edges[:, 1]])

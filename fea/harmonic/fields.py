@@ -1,4 +1,4 @@
-"""Stress on the meridian section under unit loads: the face that beam and harmonic models share."""
+"""Unit fields of stress and displacement on the meridian section."""
 
 from __future__ import annotations
 
@@ -20,16 +20,20 @@ from pinbase.arrays import Floats, Ints, Mask
 
 @dataclass(frozen=True)
 class MeridianFields:
-    """Amplitudes per unit of K loads at points (S, 2): r, z in m; stress (S, 6, K) in Pa.
+    """Amplitudes per unit of K loads on a section.
 
-    Components are rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p the first three
-    and rz go as cos psi, the others as sin psi, psi = n theta - p pi / 2. displacement (D, 3, K)
-    in m, of the first D points: r and z as cos psi, theta as sin psi. skin: how many of the points,
-    the first ones, follow the outline counter-clockwise. unknowns: of the system that was solved.
-    triangles: (M, 3) of points, which fill the section, if the model has such. unread: points whose
-    stress is too rough to look for a maximum among (fea.harmonic.pressure_edge). forces: (3 D, K)
-    of those D points along r, theta and z, N, that did the work of the loads, integrated about the
-    axis. mesh: of the section, if the model has one.
+    points: (S, 2) r, z in m.
+    stress: (S, 6, K) Pa, components rr, tt, zz, tz, rz, rt; under a load of harmonic n and phase p
+    the first three and rz vary as cos psi, the others as sin psi, psi = n theta - p pi / 2.
+    displacement: (D, 3, K) m, of the first D points: r and z vary as cos psi, theta as sin psi.
+    skin: count of the first points, which follow the outline counter-clockwise.
+    unknowns: of the system that was solved.
+    triangles: (M, 3) of points, which fill the section, if the model has such.
+    unread: points whose stress is too rough to look for a maximum among
+    (fea.harmonic.pressure_edge).
+    forces: (3 D, K) N, along r, theta and z of those D points, which did the work of the loads,
+    integrated about the axis.
+    mesh: of the section, if the model has one.
     """
 
     points: Floats
@@ -44,7 +48,7 @@ class MeridianFields:
     mesh: MeridianMesh | None = None
 
     def joined(self, other: MeridianFields) -> MeridianFields:
-        """With other loads' fields on the same points."""
+        """These fields and those of other loads on the same points."""
         stress, displacement = (
             np.concatenate([getattr(x, name) for x in (self, other)], axis=2)
             for name in ("stress", "displacement")
@@ -56,7 +60,7 @@ class MeridianFields:
 
     @cached_property
     def energy(self) -> StrainEnergy | None:
-        """Of the pin under these loads; None where their forces are not known."""
+        """The strain energy of the pin under these loads; None where their forces are not known."""
         if self.forces is None:
             return None
         n, work = np.array([load.n for load in self.loads]), np.zeros((len(self.loads),) * 2)
@@ -68,14 +72,16 @@ class MeridianFields:
         return StrainEnergy(units, np.asarray(np.kron(np.eye(2), work), np.float64))
 
     @cached_property
-    def found(self) -> dict[tuple[object, ...], Any]:
-        """What was found of some of the loads, by their numbers (fea.harmonic.superposition), and
-        of the surface (fea.harmonic.free_surface).
+    def derived(self) -> dict[tuple[object, ...], Any]:
+        """A store of derived quantities by key.
+
+        They are the five numbers of some of the loads (fea.harmonic.five_numbers), and readings of
+        the surface (fea.harmonic.free_surface).
         """
         return {}
 
     def outside(self, singularities: Iterable[Zone]) -> Mask:
-        """Which of the points may have the maximum: read, and in none of the singularities."""
+        """Mask (S,) of the points that may have the maximum: read, and in no singular zone."""
         out = outside(singularities, *self.points.T)
         out[self.unread] = False
         return out

@@ -1,5 +1,6 @@
-"""Stress as five numbers whose squares sum to von Mises stress squared, three of which go over the
-circumference as cos psi and two as sin psi.
+"""Stress as five numbers whose squares sum to von Mises stress squared.
+
+Over the circumference three of them vary as cos psi and two as sin psi.
 """
 
 from __future__ import annotations
@@ -22,19 +23,21 @@ COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses
 
 @dataclass(frozen=True)
 class Numbers:
-    """Of K unit loads at points: their five numbers (S, 5, K) and the most that each of the loads
-    does, (S, K), Pa.
+    """The five numbers of K unit loads at points.
+
+    five: (S, 5, K) Pa.
+    reach: (S, K) Pa, the largest von Mises stress of each load by itself.
     """
 
     five: Floats
-    each: Floats
+    reach: Floats
 
 
 def numbers(fields: MeridianFields, at: tuple[int, ...]) -> Numbers:
-    """Of some of the unit loads, by their numbers; found once for all instants of a case."""
-    found: Numbers | None = fields.found.get(at)
-    if found is None:
+    """The five numbers of some of the unit loads, by their positions; found once for a case."""
+    known: Numbers | None = fields.derived.get(at)
+    if known is None:
         five = VON_MISES_ROOT @ fields.stress[:, :, at]
         even, odd = (np.square(five[:, part]).sum(axis=1) for part in (COS, SIN))
-        found = fields.found[at] = Numbers(five, np.sqrt(np.maximum(even, odd)))
-    return found
+        known = fields.derived[at] = Numbers(five, np.sqrt(np.maximum(even, odd)))
+    return known

@@ -1,14 +1,16 @@
-"""The stress of a pin's surface where lugs press on it: where it is read, and as what.
+"""The stress of a pin's surface where lugs press on it: the points at which it is read.
 
-Three kinds of points. Those of the outline itself, on the part of the circumference that is free
-(fea.core.pressed). In the middle of a ring, pressed or not, the stress without the local one of the
-pressure, -p along the pin, -p across the surface and -2 nu p around, that of a half-plane under any
-pressure that changes little around it: it has the tension of a fibre that is bent under its lug,
-and leaves to contact what is contact's. It is not read under the rounding of a lug's edge and
-on the outermost pressed ring beside it, whose steps are larger than what is looked for. And the
-edges of lugs themselves, seen from where the surface beside them is free: stress there has a cusp,
-s_0 + a d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure, and is continued
-to d = 0 by these.
+There are three kinds of points:
+
+- Points of the outline, on the part of the circumference that is free (fea.core.pressed).
+- Middles of rings, pressed or not, without the local stress of the pressure, -p along the pin, -p
+  across the surface and -2 nu p around, that of a half-plane under a pressure that changes little
+  nearby. What remains is the tension of a fibre that bends under its lug; the rest belongs to
+  contact. These points are not read under the rounding of a lug's edge and on the outermost pressed
+  ring beside it, whose steps of pressure are larger than what is looked for.
+- Edges of lugs, seen from where the surface beside them is free. Stress there has a cusp, s_0 + a
+  d^(1 - s) + b d^(2 - s) at the distance d, with s the exponent of pressure, and is extrapolated to
+  d = 0 by these terms.
 """
 
 from __future__ import annotations
@@ -26,19 +28,23 @@ from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
 Floats32 = NDArray[np.float32]
-CUSP_FIT_DISTANCE = 0.06  # of the diameter, to where a cusp is fitted
-MIN_CUSP_POINTS = 6  # points to which it is
-MAX_KEPT_INSTANTS = 256  # instants whose arcs are kept: some 50 MB
-MIN_CUSP_DISTANCE_RATIO = 2.0  # the farthest of them over the nearest
+# The fit of a cusp, chosen by judgement; `python -m benchmarks places` checks the stress.
+CUSP_FIT_DISTANCE = 0.06  # of the diameter, up to which points take part in the fit
+MIN_CUSP_POINTS = 6  # points of the fit at least
+MIN_CUSP_DISTANCE_RATIO = 2.0  # distance of the farthest point over that of the nearest, at least
+MAX_KEPT_INSTANTS = 256  # instants whose arcs are kept: about 50 MB
 
 
 @dataclass(frozen=True)
 class SurfacePoints:
-    """Points of a surface and their unit stress: `fields` has no others. middle: (S,) z, m, of the
-    middle of the element on which each is. relieved: (S,) the ring in whose middle a point is that
-    has the stress without that of the pressure, -1 for others. on_skin: (S,) the point of the
-    section's skin that each is, -1 of others. cusps: by point at the edge of a lug how it is
-    continued. arcs: what FreeSurface has found of what is pressed at an instant.
+    """The points of a surface at which stress is read, and their unit stress (`fields`).
+
+    middle: (S,) m, z of the middle of the element on which each is.
+    relieved: (S,) the ring in whose middle a point is that lacks the local stress of the pressure,
+    -1 for others.
+    on_skin: (S,) the point of the section's skin that each is, -1 for none.
+    cusps: by point at the edge of a lug, how stress is extrapolated to it.
+    arcs: what FreeSurface has found of what is pressed at an instant.
     """
 
     fields: MeridianFields
@@ -50,12 +56,12 @@ class SurfacePoints:
 
 
 def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
-    """Of the fields of a pin on which these rings are, with Poisson's ratio. Found once."""
+    """The points of the surface of a pin with rings; nu: Poisson's ratio. They are found once."""
     key: tuple[object, ...] = ("surface", nu, rings.key)
-    found: dict[tuple[object, ...], SurfacePoints] = fields.found
-    if key not in found:
-        found[key] = _surface_points(fields, rings, nu)
-    return found[key]
+    known: dict[tuple[object, ...], SurfacePoints] = fields.derived
+    if key not in known:
+        known[key] = _surface_points(fields, rings, nu)
+    return known[key]
 
 
 def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
@@ -63,13 +69,15 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
     middle = x[len(EDGE_STATIONS) // 2 :: len(EDGE_STATIONS), 1].repeat(len(EDGE_STATIONS))
     ring = rings.amid(x[:, 0], x[:, 1], middle)
     rows = np.flatnonzero(ring >= 0)
+    # Three kinds of points follow each other: the skin, middles of rings, edges of lugs.
     relieved = skin[rows] - relief(nu)[:, None] * skin[rows, :1]
     cusps = _cusps(x, middle, rings)
     continued = [np.einsum("p,pck->ck", c.weights(x[c.near, 1]), skin[c.near]) for c in cusps]
     places = np.array([c.place for c in cusps]).reshape(-1, 2)
     first, none = len(x) + len(rows), np.full(len(places), -1)
-    out = np.isin(np.arange(len(x)), fields.unread)
-    unread = np.concatenate([out, out[rows], [out[c.near].any() for c in cusps]]).astype(bool)
+    rough = np.isin(np.arange(len(x)), fields.unread)
+    # A point is not read if any point that it is made of is too rough.
+    unread = np.concatenate([rough, rough[rows], [rough[c.near].any() for c in cusps]]).astype(bool)
     return SurfacePoints(
         replace(
             fields,
@@ -87,15 +95,21 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
 
 
 def relief(nu: float) -> Floats:
-    """The stress (6,) of a half-plane's surface over the stress across it, rr: what is local."""
+    """The local stress (6,) of a pressed half-plane's surface over its component rr."""
     return np.array([1.0, 2.0 * nu, 1.0, 0.0, 0.0, 0.0])
 
 
 @dataclass(frozen=True)
 class Cusp:
-    """Where contact ends at the edge of a lug, (r, z), on a side (-1: of lower z) and at a ring;
-    points of the skin beside it from which stress is continued, and those between both, for which
-    it stands: they feel the last step of the pressure.
+    """The end of contact at a lug's edge, and the points from which stress is extrapolated.
+
+    place: (r, z), m.
+    side: -1 towards lower z, else 1.
+    ring: at which contact ends.
+    exponent: of pressure.
+    near: points of the skin beside it for the fit.
+    between: points nearer than these, for which the
+    edge stands: they feel the last step of the pressure.
     """
 
     place: tuple[float, float]
@@ -106,20 +120,25 @@ class Cusp:
     between: Ints
 
     def weights(self, z: Floats, edge: float | None = None) -> Floats:
-        """(P,) of the stress at the points beside it, at z (P,), m. edge: its z, if elsewhere."""
+        """Weights (P,) of the points beside the edge, at z (P,), m, in the stress at the edge.
+
+        edge: m, its z, if it has moved.
+        """
         d = self.side * (z - (self.place[1] if edge is None else edge))
         powers = np.array([0.0, 1.0 - self.exponent, 2.0 - self.exponent])
         return np.asarray(np.linalg.pinv((d[:, None] / d.max()) ** powers)[0])
 
 
 def _cusps(x: Floats, middle: Floats, rings: Rings) -> list[Cusp]:
-    """Of all lugs: where rounding begins, since contact hardly reaches into it. Points from two
-    distances on, for contact that ends in the rounding and for one that does not.
+    """The cusps of all lugs, where their rounding begins, since contact hardly reaches into it.
+
+    For each the points begin at two distances, for contact that ends in the rounding and for one
+    that does not.
     """
     out = []
     for b in np.unique(rings.band):
-        own = np.flatnonzero(rings.band == b)
-        for along, side in ((own, -1.0), (own[::-1], 1.0)):
+        rings_of_lug = np.flatnonzero(rings.band == b)
+        for along, side in ((rings_of_lug, -1.0), (rings_of_lug[::-1], 1.0)):
             flat = int(np.cumprod(rings.edge[along]).sum())
             last, beyond = int(along[min(flat, len(along) - 1)]), along[:flat][::-1][:1]
             nearest = [2.0 * float(rings.length[k]) for k in beyond] + [float(rings.length[last])]
@@ -132,8 +151,11 @@ def _cusps(x: Floats, middle: Floats, rings: Rings) -> list[Cusp]:
 def _beside(
     skin: tuple[Floats, Floats], rings: Rings, edge: tuple[int, float], closest: float
 ) -> Cusp | None:
-    """At the end of a ring on a side, by points on the cylinder beside it, from a distance on; None
-    where they are too few.
+    """The cusp at the end of a ring, from points beside it; None where they are too few.
+
+    skin: points (P, 2), m, and z of the middle of each one's element.
+    edge: ring and side.
+    closest: m, distance at which the points begin.
     """
     (x, middle), (ring, side) = skin, edge
     radius, z = float(rings.radius[ring]), float((rings.start if side < 0.0 else rings.end)[ring])
@@ -149,7 +171,7 @@ def _beside(
 
 
 class FreeSurface:
-    """Where on the circumference points of a surface are read, at the instants of a contact."""
+    """The part of the circumference on which points of a surface in contact are read."""
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
         self.pressed, self.relieved = pressed, of.relieved
@@ -169,11 +191,11 @@ class FreeSurface:
         self._known = of.arcs
 
     def masked(self, points: Ints) -> Mask:
-        """Which of some points are read on a part of the circumference only."""
+        """Mask of the points that are read on a part of the circumference only."""
         return np.asarray(self._row[points] >= 0)
 
     def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
-        """On which arcs (J, BINS), or some of them, pairs of points and instants are read."""
+        """The arcs (J, A) on which pairs of points and instants are read; all arcs by default."""
         out = np.ones((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
         some = self._row[points] >= 0
         for t in np.unique(instants).tolist():
@@ -182,16 +204,19 @@ class FreeSurface:
         return out
 
     def _at(self, points: Ints, instant: int, arcs: Ints | slice) -> Mask:
-        """Where masked points are read, (P, arcs)."""
+        """The arcs (P, A) on which masked points are read at an instant."""
         key = self.pressed.on[instant].tobytes(), self.pressed.sector
         if key not in self._known:
             if len(self._known) == MAX_KEPT_INSTANTS:
                 self._known.clear()
             self._known[key] = self._arcs(instant)
+        # Points near a ring are shut by its pressed arcs; middles of rings follow the rule for
+        # these; points between a cusp and its fit give way to the edge; edges are read where the
+        # surface beside them is free.
         shut, edges, inner = (x[:, arcs] for x in self._known[key])
         out = (self._near[self._row[points]] @ shut) == 0.0
-        own = self.relieved[points]
-        out[own >= 0] = inner[own[own >= 0]]
+        ring = self.relieved[points]
+        out[ring >= 0] = inner[ring[ring >= 0]]
         for k in np.flatnonzero(self._stands[points].any(axis=0)):
             out[self._stands[points, k]] &= ~edges[k]
         at_edge = np.isin(points, self.edges)
@@ -200,8 +225,9 @@ class FreeSurface:
         return np.asarray(out)
 
     def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """What each ring shuts (fea.core.pressed), (3 R, BINS); where the edges of lugs are read,
-        (E, BINS), and the middles of rings, (R, BINS).
+        """Arcs that each ring shuts, (3 R, ARC_COUNT), and those read at edges and in rings.
+
+        Edges: (E, ARC_COUNT); middles: (R, ARC_COUNT).
         """
         shut = self.pressed.shut(instant).astype(np.float32)
         edges = np.ones((len(self.edges), ARC_COUNT), dtype=bool)
@@ -213,8 +239,11 @@ class FreeSurface:
 
 
 def reader(fields: MeridianFields, loads: Loads, nu: float) -> Circumference:
-    """Where the largest stress of a case is looked for: all of a section's points, or, where lugs
-    press on the pin, its surface (what lies beneath: fea.harmonic.beneath).
+    """The points among which the largest stress of a case is looked for.
+
+    All of a section's points, or, where lugs press on the pin, its surface (what lies beneath:
+    fea.harmonic.beneath).
+    nu: Poisson's ratio.
     """
     if loads.pressed is None:
         return Circumference(fields, loads)

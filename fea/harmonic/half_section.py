@@ -1,4 +1,4 @@
-"""Von Mises stress on a plane through a pin's axis: what is seen if it is cut open."""
+"""Von Mises stress on a plane through a pin's axis, as if it were cut open."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MIN_OUTLINE_RISE = 1e-9  # of the length: a smaller rise of the outline is round
 
 
 class MeridianPlane:
-    """The section of one mesh, on which any point can be asked for; zones: excluded ones."""
+    """The section of one mesh, at any point of which stress can be read; zones: excluded ones."""
 
     def __init__(self, fields: MeridianFields, zones: Iterable[Zone] = ()) -> None:
         self.fields, self.zones = fields, tuple(zones)
@@ -48,19 +48,21 @@ class MeridianPlane:
         return inner, outer
 
     def outside(self, points: Floats) -> Mask:
-        """Which of the points (.., 2) are in no excluded zone."""
+        """Mask (..) of the points (.., 2) that are in no excluded zone."""
         r, z = points.reshape(-1, 2).T
         return outside(self.zones, r, z).reshape(points.shape[:-1])
 
     def von_mises(self, loads: Loads, instant: int, angle: float, points: Floats) -> Floats:
-        """Stress (2, ..) Pa at points (.., 2), r and z in m, of the half plane at an angle (rad),
-        and of the one opposite to it.
+        """Stress (2, ..), Pa, at points of the half plane at an angle and of the one opposite.
+
+        angle: rad.
+        points: (.., 2) r and z in m.
         """
         rows = np.arange(len(self.fields.displacement))
         angles = np.array([angle, angle + np.pi])
         sides = von_mises(Circumference(self.fields, loads).stress(rows, instant, angles))
-        found = np.asarray(LinearNDInterpolator(self._between, sides)(points))
-        lost = np.isnan(found).any(axis=-1)  # outside of the triangles by round-off
+        values = np.asarray(LinearNDInterpolator(self._between, sides)(points))
+        lost = np.isnan(values).any(axis=-1)  # outside of the triangles by round-off
         if lost.any():
-            found[lost] = sides[cKDTree(self._between.points).query(points[lost])[1]]
-        return np.asarray(np.moveaxis(found, -1, 0))
+            values[lost] = sides[cKDTree(self._between.points).query(points[lost])[1]]
+        return np.asarray(np.moveaxis(values, -1, 0))

@@ -17,31 +17,34 @@ UnitFields = tuple[tuple[UnitLoad, ...], Floats, tuple[tuple[float, float], ...]
 
 
 class FirstMesh:
-    """What is solved on the first mesh of a pin, so that loads that come later are solved on it
-    alone.
-    """
+    """The models of a pin's first mesh, so that later loads are solved there alone."""
 
     def __init__(self) -> None:
         self._models: dict[tuple[object, ...], HarmonicModel] = {}
 
     def model(self, make: Callable[[], HarmonicModel], *key: object) -> HarmonicModel:
-        """The one that was made before of the same, otherwise a new one."""
+        """The model made before with the same key, otherwise a new one."""
         if key not in self._models:
             self._models[key] = make()
         return self._models[key]
 
     def fields(
-        self, level: int, make: Callable[[], HarmonicModel], key: Key, asked: UnitFields
+        self, level: int, make: Callable[[], HarmonicModel], key: Key, request: UnitFields
     ) -> MeridianFields:
-        """What is asked of the model of a mesh, which `key` names and `make` makes."""
+        """The requested unit fields of a mesh, which `key` names and `make` makes.
+
+        level: 0 for the first mesh.
+        """
         if level:
-            return make().solve(*asked)
-        return self.model(make, *key).solve_more(*asked)
+            return make().solve(*request)
+        return self.model(make, *key).solve_more(*request)
 
 
 class EveryMesh(FirstMesh):
-    """Unit fields of all meshes that were solved last, of any pins, so that other amounts of the
-    same unit loads are superposed only. most: bytes that are kept, meshes included.
+    """Unit fields of all meshes that were solved last, of any pins.
+
+    So other amounts of the same unit loads are only superposed.
+    most: bytes that are kept, meshes included.
     """
 
     def __init__(self, most: int = 10**8) -> None:
@@ -51,21 +54,21 @@ class EveryMesh(FirstMesh):
         self.solved = 0  # meshes
 
     def fields(
-        self, level: int, make: Callable[[], HarmonicModel], key: Key, asked: UnitFields
+        self, level: int, make: Callable[[], HarmonicModel], key: Key, request: UnitFields
     ) -> MeridianFields:
-        """As that of FirstMesh; what was kept is what would be found anew, to the last bit."""
-        loads, read, ends = asked
+        """The requested unit fields; a kept result equals a new one to the last bit."""
+        loads, read, ends = request
         whole = (*key, loads, read.tobytes(), ends)
-        found = self._fields.pop(whole, None)
-        if found is None:
-            fields = make().solve(*asked)
+        entry = self._fields.pop(whole, None)
+        if entry is None:
+            fields = make().solve(*request)
             self.solved += 1
-            found = fields, _size(fields)
-            self._bytes += found[1]
-        self._fields[whole] = found
+            entry = fields, _size(fields)
+            self._bytes += entry[1]
+        self._fields[whole] = entry
         while self._bytes > self._most and len(self._fields) > 1:
             self._bytes -= self._fields.popitem(last=False)[1][1]
-        return found[0]
+        return entry[0]
 
 
 def _size(fields: MeridianFields) -> int:

@@ -27,10 +27,10 @@ from pinbase.arrays import Floats, Ints
 
 
 class HarmonicBody:
-    """A body of revolution on one mesh of its section, clamped at surfaces (by name): how it moves.
+    """A body of revolution on one mesh of its section, clamped at surfaces (by name).
 
-    material: one, or those of the section's parts. Without surfaces as many unknowns are
-    constrained as there are rigid motions, about `pivot` (0 to 1, of the length).
+    material: one, or those of the section's parts. Without clamps as many unknowns are constrained
+    as there are rigid motions, about `pivot` (0 to 1, of the length).
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class HarmonicBody:
         return np.stack([generalised(self.outline.forces(part, n)) for part in parts], axis=1)
 
     def displace(self, n: int, forces: Floats, moved: Floats | None = None) -> Floats:
-        """Unknowns (unknowns, K) of harmonic n under forces on them, and motions of clamps."""
+        """Unknowns (unknowns, K) of harmonic n under forces on them and motions of clamps."""
         fixed = np.concatenate([self._on_axis(n), self._constrained(n)])
         K = self.space.stiffness(self.materials, n)
         if n < 2:
@@ -67,8 +67,10 @@ class HarmonicBody:
         return self._system.solve(K, free, forces - K @ moved) + moved
 
     def motions(self, n: int, surfaces: Sequence[str], turns: Sequence[bool]) -> Floats:
-        """Unknowns (unknowns, K) of harmonic n where clamps are shifted or turned by one; of no
-        surface ("") zero.
+        """Unknowns (unknowns, K) of harmonic n where clamps are shifted or turned by one.
+
+        surfaces: K names; for "" the column is zero.
+        turns: (K,) whether each is a turn.
         """
         modes, out = rigid_motions(self.space.nodes, n), np.zeros((3 * len(self.space.nodes), 0))
         for surface, turn in zip(surfaces, turns, strict=True):
@@ -81,8 +83,11 @@ class HarmonicBody:
         return out
 
     def _require_equilibrium(self, K: sp.csr_matrix, n: int) -> None:
-        """A section that moves as a whole takes no force, so that whatever its displacements are,
-        the forces of its supports answer its loads.
+        """Check that rigid motions of the section take no force.
+
+        Then, whatever its displacements are, the forces of its supports balance its loads.
+
+        Raises: SolveError.
         """
         modes = rigid_motions(self.space.nodes, n)
         lost = np.abs(K @ modes).max(axis=0) / (np.abs(K.data).max() * np.abs(modes).max(axis=0))
@@ -100,6 +105,7 @@ class HarmonicBody:
         return np.concatenate({0: [p, m], 1: [p, w]}.get(n, [p, m, w]))
 
     def _constrained(self, n: int) -> Ints:
+        """Unknowns that are zero on clamps or, without these, that prevent rigid motions."""
         if self.clamps:
             edges = self.outline.nodes[self.outline.constrained(self.clamps)]
             return (3 * np.unique(edges)[:, None] + np.arange(3)).ravel()
@@ -118,8 +124,11 @@ class HarmonicBody:
 
 @dataclass(frozen=True)
 class Moved:
-    """Displacements u (N, 3, K), m, of a section's nodes under K unit loads, which are the forces
-    `applied` to them (N, 3, K), N, and tractions on the outline's edges (E, 3, 3, K), Pa.
+    """Displacements of a section's nodes under K unit loads, and the loads themselves.
+
+    u: (N, 3, K) m.
+    applied: (N, 3, K) N, nodal forces.
+    tractions: (E, 3, 3, K) Pa, on the outline's edges.
     """
 
     loads: tuple[UnitLoad, ...]
@@ -129,45 +138,45 @@ class Moved:
 
     @property
     def harmonics(self) -> Ints:
-        """Of the loads, (K,)."""
+        """The harmonic of each load, (K,)."""
         return np.array([load.n for load in self.loads])
 
     def joined(self, other: Moved) -> Moved:
-        """With other loads."""
+        """These displacements and those under other loads."""
         both = ((getattr(x, name) for x in (self, other)) for name in ("u", "applied", "tractions"))
         return Moved(self.loads + other.loads, *(np.concatenate([*x], axis=-1) for x in both))
 
     def summed(self, loads: tuple[UnitLoad, ...]) -> Moved:
-        """Under loads that are sums of these (UnitLoad.alone)."""
+        """The displacements under loads that are sums of these (UnitLoad.single_surface_loads)."""
         if loads == self.loads:
             return self
         share = shares(self.loads, loads)
         none = (
             np.zeros((*x.shape[:-1], len(loads))) for x in (self.u, self.applied, self.tractions)
         )
-        found, wanted = Moved(loads, *none), np.array([load.n for load in loads])
+        total, wanted = Moved(loads, *none), np.array([load.n for load in loads])
         for n in np.unique(wanted):
-            here, there = np.flatnonzero(self.harmonics == n), np.flatnonzero(wanted == n)
-            part = share[np.ix_(here, there)]
+            here, columns = np.flatnonzero(self.harmonics == n), np.flatnonzero(wanted == n)
+            part = share[np.ix_(here, columns)]
             for name in ("u", "applied", "tractions"):
-                getattr(found, name)[..., there] = getattr(self, name)[..., here] @ part
-        return found
+                getattr(total, name)[..., columns] = getattr(self, name)[..., here] @ part
+        return total
 
 
 def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
-    """How much of loads that act on one surface each is in others, (A, K)."""
+    """The amount (A, K) of each load that acts on one surface in other loads."""
     number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
     for k, load in enumerate(loads):
-        for one, amount in load.alone.items():
+        for one, amount in load.single_surface_loads.items():
             out[number[one], k] = amount
     return out
 
 
 class HarmonicModel(HarmonicBody):
-    """A pin on one mesh of its section, clamped at surfaces (by name).
+    """A pin on one mesh of its section, clamped at surfaces (by name), under unit loads.
 
-    Without any, the loads' balance is closed by tractions on the bands (fea.core.tractions);
-    `pivot` changes nothing but the motion.
+    Without clamps the loads' imbalance is closed by tractions on the bands (fea.core.tractions);
+    `pivot` changes nothing but the rigid motion.
 
     Leaves out: plasticity, contact and clearance (loads are tractions).
     """
@@ -191,9 +200,10 @@ class HarmonicModel(HarmonicBody):
         extra: Floats = NO_POINTS,
         ends: Iterable[tuple[float, float]] = (),
     ) -> MeridianFields:
-        """The same as `solve`, of at least these loads: with those of former calls for the same
-        points, which are not solved again. What presses on several surfaces is superposed of what
-        presses on each, since other such pressures may come later.
+        """The unit fields of at least these loads; earlier ones are not solved again.
+
+        extra, ends: as for `solve`, the same in all calls. Pressures on several surfaces are
+        superposed from those on each, since other such pressures may come later.
         """
         known = self._found
         new = loads if known is None else tuple(x for x in loads if x not in known.loads)
@@ -204,8 +214,9 @@ class HarmonicModel(HarmonicBody):
         return self._found
 
     def _superposed(self, loads: tuple[UnitLoad, ...]) -> Moved:
+        """The displacements under loads, superposed from those on single surfaces, solved once."""
         known = self._moved
-        alone = tuple(dict.fromkeys(one for load in loads for one in load.alone))
+        alone = tuple(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
         new = alone if known is None else tuple(x for x in alone if x not in known.loads)
         if new:
             moved = self._solved(new)
@@ -219,28 +230,32 @@ class HarmonicModel(HarmonicBody):
         extra: Floats = NO_POINTS,
         ends: Iterable[tuple[float, float]] = (),
     ) -> MeridianFields:
-        """Unit fields, at `extra` points (P, 2) inside the section too, and close to the `ends` of
-        pressures on its outline, (r, z) in m.
+        """The unit fields of loads.
+
+        extra: (P, 2) m, further points inside the section.
+        ends: (r, z), m, ends of pressures on its outline.
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
         return self._read(self._solved(loads), extra, ends)
 
     def _solved(self, loads: tuple[UnitLoad, ...]) -> Moved:
+        """The displacements under unit loads, harmonic by harmonic."""
         u = np.zeros((len(self.space.nodes), 3, len(loads)))
         applied = np.zeros_like(u)
         tractions = np.zeros((*self.outline.nodes.shape, 3, len(loads)))
-        found = Moved(loads, u, applied, tractions)
-        for n in sorted(set(found.harmonics.tolist())):
-            here = np.flatnonzero(found.harmonics == n)
+        moved = Moved(loads, u, applied, tractions)
+        for n in sorted(set(moved.harmonics.tolist())):
+            here = np.flatnonzero(moved.harmonics == n)
             forces, tractions[..., here] = self._applied(n, [loads[k] for k in here])
             applied[:, :, here] = _polar(forces) * [[0.5], [0.5], [1.0]]
             u[:, :, here] = _polar(self.displace(n, forces, self._shifted(n, loads, here)))
-        return found
+        return moved
 
     def _read(
         self, moved: Moved, extra: Floats, ends: Iterable[tuple[float, float]]
     ) -> MeridianFields:
+        """The unit fields, read at the points of this mesh."""
         read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
         displacement, stress = read.of(moved.harmonics, moved.u, moved.tractions)
         return MeridianFields(
@@ -257,13 +272,13 @@ class HarmonicModel(HarmonicBody):
         )
 
     def _shifted(self, n: int, loads: tuple[UnitLoad, ...], here: Ints) -> Floats | None:
-        """Motions of clamps (unknowns, K); None where there are none."""
-        own = [loads[k] for k in here]
-        moves = [load.kind in ("shift", "turn") for load in own]
+        """Motions of clamps (unknowns, K) of harmonic n; None where there are none."""
+        units = [loads[k] for k in here]
+        moves = [load.kind in ("shift", "turn") for load in units]
         if not any(moves):
             return None
-        names = [load.surface if move else "" for load, move in zip(own, moves, strict=True)]
-        return self.motions(n, names, [load.kind == "turn" for load in own])
+        names = [load.surface if move else "" for load, move in zip(units, moves, strict=True)]
+        return self.motions(n, names, [load.kind == "turn" for load in units])
 
     def _applied(self, n: int, loads: list[UnitLoad]) -> tuple[Floats, Floats]:
         """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K)."""
@@ -278,16 +293,18 @@ def applied(
     loads: Sequence[UnitLoad],
     integrals: Floats | None = None,
 ) -> tuple[Floats, Floats]:
-    """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K) of unit loads of
-    harmonic n on a pin like the model's and its section, whose nodes are elsewhere. integrals: of
-    its shape functions (Section.integrals); those of the model by default.
+    """Nodal forces (unknowns, K) and tractions at the outline's nodes (E, 3, 3, K) of unit loads.
+
+    pin: like the model's, outline: of its section, whose nodes may be elsewhere.
+    n: harmonic of all loads.
+    integrals: of its shape functions (Section.integrals); those of the model by default.
     """
 
     def spread(parts: Sequence[tuple[Traction, ...]]) -> tuple[Floats, Floats]:
         forces = [generalised(outline.forces(part, n)) for part in parts]
         return np.stack(forces, axis=1), np.stack([outline.traction(p) for p in parts], axis=3)
 
-    alone = list(dict.fromkeys(one for load in loads for one in load.alone))
+    alone = list(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
     forces, tractions = spread([tractions_of(pin, load) for load in alone])
     if alone != list(loads):
         share = shares(alone, loads)
@@ -299,6 +316,8 @@ def applied(
             forces[:, k] = body_force(model.material, n, within)
     if model.clamps or n > 1:
         return forces, tractions
+    # Without clamps: closing tractions with amounts that cancel the resultants, pressures for loads
+    # that do not shear their bands.
     modes = rigid_motions(outline.every_node, n)
     for shears in (True, False):
         here = [k for k, load in enumerate(loads) if load.shears == shears]
@@ -312,7 +331,7 @@ def applied(
 
 
 def body_force(material: Material, n: int, integrals: Floats) -> Floats:
-    """Of a pin's mass in a field of 1 m/s^2 along x, or along z where n = 0."""
+    """Forces on the unknowns of a pin's mass in 1 m/s^2 along x, or along z for n = 0."""
     if material.density is None:
         raise SolveError(
             f"material {material.name} has no density, which weight and inertia need",
@@ -323,7 +342,7 @@ def body_force(material: Material, n: int, integrals: Floats) -> Floats:
 
 
 def generalised(forces: Floats) -> Floats:
-    """Forces on the unknowns p, m, w of nodal forces (N, 3) along r, theta and z."""
+    """Forces on the unknowns p, m, w from nodal forces (N, 3) along r, theta and z."""
     R, T, Z = forces.T
     return np.stack([R + T, R - T, Z], axis=1).ravel()
 
@@ -335,8 +354,10 @@ def _polar(u: Floats) -> Floats:
 
 
 def rigid_motions(nodes: Floats, n: int) -> Floats:
-    """Unknowns of the rigid motions of harmonic 1 (shift along x, turn about y) or 0 (shift along
-    z, spin), (3 N, 2); a load's work on them is its resultant.
+    """Unknowns (3 N, 2) of the rigid motions of harmonic 1 or 0.
+
+    n = 1: shift along x, turn about y. n = 0: shift along z, spin. A load's work on them is its
+    resultant.
     """
     r, z = nodes.T
     zero = np.zeros_like(r)

@@ -1,5 +1,7 @@
-"""A singularity on one mesh of the harmonic model: how stress grows towards it, how
-strongly, and how much the maximum outside depends on the distance that is left out.
+"""A singularity on one mesh of the harmonic model.
+
+How stress grows towards it, how strongly, and how much the maximum outside depends on the excluded
+distance.
 """
 
 from __future__ import annotations
@@ -14,39 +16,39 @@ from fea.core.mesh_result import FEATURE_READING_DISTANCE, SingularIntensity, Zo
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference
-from fea.singular.fit_exponent import growth_exponent, strength
+from fea.singular.fit_exponent import growth_exponent, singular_intensity
 from fea.singular.williams import notch_factor
 from pinbase.arrays import Floats, Mask
 
-CORNER_ELEMENT_SIZES = (
-    1e-2,
-    1e-3,
-    1e-4,
-)  # element at a corner or clamp's edge, of its scale, mesh by mesh
-EXPONENT_FIT_RANGE = (4.0, 0.01)  # exponents: from so many elements to so much of the scale
+# Element at a corner or a clamp's edge over its scale, mesh by mesh: each a decade finer.
+CORNER_ELEMENT_SIZES = (1e-2, 1e-3, 1e-4)
+# From so many elements to so much of the scale (`python -m benchmarks corners`).
+EXPONENT_FIT_RANGE = (4.0, 0.01)
 
 
 def inside(
     fields: MeridianFields, around: Circumference, singularity: Zone, close: float, nu: float
 ) -> ZoneMaximum:
-    """What is inside of a singularity. close: its element, of its scale; nu: Poisson's ratio."""
+    """The largest stress in a singular zone and, on the finest grading, its exponent and strength.
+
+    close: element size at the singularity, of its scale.
+    nu: Poisson's ratio.
+    """
     distance, within, felt = _places(fields, singularity)
     far = around.top(felt)
     near = around.top(within & ~felt, far.value)
     top = near if near.value > far.value else far
     c, s = math.cos(top.angle), math.sin(top.angle)
     at = (singularity.r * c, singularity.r * s, singularity.z)
-    found = ZoneMaximum(top.value, far.value, at)
+    maximum = ZoneMaximum(top.value, far.value, at)
     if not singularity.measured or close != CORNER_ELEMENT_SIZES[-1]:
-        return found
+        return maximum
     exponent, how_strong = _growth(fields, around, singularity, distance, top.instant, nu)
-    return replace(found, exponent=exponent, strength=how_strong)
+    return replace(maximum, exponent=exponent, strength=how_strong)
 
 
 def _places(fields: MeridianFields, singularity: Zone) -> tuple[Floats, Mask, Mask]:
-    """Distances (S,) from a singularity, m, which points are in it, and at which of them it is
-    felt.
-    """
+    """Distances (S,), m, from a singularity, and masks of points in it and where it is felt."""
     r, z = fields.points.T
     distance = np.hypot(r - singularity.r, z - singularity.z)
     within = distance <= singularity.radius
@@ -63,7 +65,7 @@ def felt_beyond(
     singularities: Iterable[Zone],
     maximum: float,
 ) -> bool:
-    """Whether stress in one of them is felt to exceed a maximum, Pa."""
+    """Whether stress where a singularity is felt exceeds a maximum, Pa, in any of them."""
     return any(around.exceeds(_places(fields, p)[2], maximum) for p in singularities)
 
 
@@ -75,7 +77,11 @@ def _growth(
     instant: int,
     nu: float,
 ) -> tuple[float | None, SingularIntensity | None]:
-    """Exponent and strength from the side of the singularity on which stress is larger."""
+    """Exponent and intensity on the side of the singularity where stress is larger.
+
+    distance: (S,) m of the points.
+    nu: Poisson's ratio.
+    """
     skin = distance[: fields.skin]
     d = skin / singularity.scale
     near = np.flatnonzero(
@@ -83,6 +89,7 @@ def _growth(
     )
     if not len(near):
         return None, None
+    # The largest stress over the circumference where the skin is resolved and near enough.
     value, _ = around.round(near, np.full(len(near), instant))
     first = int(np.argmin(skin))
     sides = [near < first, near > first]
@@ -92,7 +99,7 @@ def _growth(
     theory = singularity.torsion_theory if around.twists else singularity.theory
     if exponent is None or not theory:
         return exponent, None
-    along = strength(skin[near[side]], value[side], theory, following)
+    along = singular_intensity(skin[near[side]], value[side], theory, following)
     if singularity.kind != "sharp corner":
         return exponent, SingularIntensity(along, theory)
     return exponent, SingularIntensity(
@@ -103,11 +110,12 @@ def _growth(
 def interval(
     fields: MeridianFields, around: Circumference, singularities: Collection[Zone]
 ) -> tuple[float, float]:
-    """The least and the largest maximum (Pa) outside the singularities, if half and twice as far
-    from them is left out, but no farther than where the next feature begins.
+    """The least and the largest maximum (Pa) outside the singularities by excluded distance.
+
+    They are half and twice as large, but no larger than where the next feature begins.
     """
-    found = []
+    maxima = []
     for times in DISTANCE_VARIATIONS:
         varied = [p.varied(times) for p in singularities]
-        found.append(around.top(fields.outside(varied)).value)
-    return min(found), max(found)
+        maxima.append(around.top(fields.outside(varied)).value)
+    return min(maxima), max(maxima)

@@ -21,25 +21,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea.core.local_fit import at_one_place
+from fea.core.local_fit import fit_weights
 from fea.core.material import Material
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
 from fea.harmonic.surface_stress import in_axes
 from pinbase.arrays import Floats, Ints
 
+# Chosen by judgement; tests/fea/harmonic/test_jumps.py holds their effect against exact stresses.
 EDGE_DIRECTIONS = 25  # from the surface on one side of the edge to that on the other
-UNUSABLE_ELEMENTS = 1.5  # elements next to the edge whose stress is of no use
+UNUSABLE_ELEMENTS = 1.5  # elements next to the edge whose stress is not used
 UNREAD_ELEMENTS = 3.0  # elements next to it where stress is not read
-CONTINUATION_SAMPLES = 45  # of the stress further on, from which it is continued
+CONTINUATION_SAMPLES = 45  # samples further on from which the smooth part is extrapolated
 
 
 @dataclass(frozen=True)
 class Jump:
-    """Such an edge at (r, z), m. before, after: the edges of the outline that meet there; normal:
-    (2,), outwards. reach: m, within which nothing else inside is read. samples: numbers (S,) of
-    those (3 M) that are continued, with weights (S,). field: (D, 6), what a pressure of 1 on
-    `before` adds to that.
+    """The end of a pressure on a smooth outline, and how stress is read there.
+
+    r, z: m.
+    before, after: edges of the outline that meet there.
+    normal: (2,) outwards.
+    reach: m, within which nothing else inside is read.
+    samples: (S,) numbers of those (3 M) that are extrapolated, with weights (S,).
+    field: (D, 6) what a pressure of 1 on `before` adds, by direction.
     """
 
     r: float
@@ -53,8 +58,10 @@ class Jump:
     field: Floats
 
     def stress(self, sampled: Floats, traction: Floats) -> Floats:
-        """(D, 6, K) Pa, of stress at all samples (3 M, 6, K) and tractions (E, 3, 3, K) at the
-        nodes of the outline's edges.
+        """Stress (D, 6, K), Pa, in all directions at the jump.
+
+        sampled: (3 M, 6, K) Pa at all samples.
+        traction: (E, 3, 3, K) Pa at the nodes of the outline's edges.
         """
         smooth = np.einsum("s,sck->ck", self.weights, sampled[self.samples])
         more = traction[self.after, 0] - traction[self.before, 1]
@@ -67,25 +74,27 @@ def jumps(
     material: Material,
     singularities: Iterable[tuple[float, float]],
 ) -> tuple[Jump, ...]:
-    """At places (r, z), m, where edges of the outline meet smoothly."""
+    """The jumps at places (r, z), m, where edges of the outline meet smoothly."""
     ends = space.nodes[outline.nodes[:, 1]]
     befores = (int(np.hypot(*(ends - singularity).T).argmin()) for singularity in singularities)
     return tuple(_jump(space, outline, material, before) for before in befores)
 
 
-def unread(found: tuple[Jump, ...], points: Floats, skin: int) -> Ints:
-    """Which of points (P, 2), r and z in m, inside the section are too close to a jump, (U,). The
-    first ones, `skin`, are on its outline, where a fillet may begin whose peak must not be missed;
-    the last ones are the jumps' own.
+def unread(every_jump: tuple[Jump, ...], points: Floats, skin: int) -> Ints:
+    """Numbers (U,) of points inside the section that are too close to a jump to be read.
+
+    points: (P, 2) r and z in m. The first `skin` points are on the outline, where a fillet may
+    begin whose peak must not be missed; the last ones are the jumps' own.
     """
-    inside = slice(skin, len(points) - EDGE_DIRECTIONS * len(found))
+    inside = slice(skin, len(points) - EDGE_DIRECTIONS * len(every_jump))
     close = np.zeros(len(points), dtype=bool)
-    for jump in found:
+    for jump in every_jump:
         close[inside] |= np.hypot(*(points[inside] - [jump.r, jump.z]).T) < jump.reach
     return np.flatnonzero(close)
 
 
 def _jump(space: Section, outline: Outline, material: Material, before: int) -> Jump:
+    """The jump at the end of an edge of the outline."""
     after = int(outline.after[before])
     first, singularity, last = space.nodes[
         [outline.nodes[before, 0], outline.nodes[before, 1], outline.nodes[after, 1]]
@@ -104,21 +113,26 @@ def _jump(space: Section, outline: Outline, material: Material, before: int) -> 
 def at_edge(
     nodes: tuple[Floats, Floats, Floats], samples: Floats, nu: float
 ) -> tuple[Floats, Floats, Floats]:
-    """Normal (2,), weights (S,) and field (D, 6), as a Jump has them, where the middle one of three
-    nodes is, each (2,), m, of samples (S, 2), m.
+    """The normal (2,), weights (S,) and field (D, 6) of a jump at the middle one of three nodes.
+
+    nodes: (2,) m each.
+    samples: (S, 2) m.
     """
     first, middle, last = nodes
     along = (last - first) / np.linalg.norm(last - first)
     normal = np.array([along[1], -along[0]])
-    weights = at_one_place(samples - middle, np.ones(len(samples)))
+    weights = fit_weights(samples - middle, np.ones(len(samples)))
     x, y = np.stack([along, -normal]) @ (samples - middle).T
-    there = _field(np.arctan2(y, x), along, nu)
+    at_samples = _field(np.arctan2(y, x), along, nu)
     field = _field(np.linspace(0.0, np.pi, EDGE_DIRECTIONS), along, nu)
-    return normal, weights, field - weights @ there
+    return normal, weights, field - weights @ at_samples
 
 
 def _field(chi: Floats, along: Floats, nu: float) -> Floats:
-    """Stress (J, 6) in directions chi (J,) of the pressure 1 on the half of a plane's edge."""
+    """Stress (J, 6) in directions chi (J,), rad, by a unit pressure on half of a half-plane's edge.
+
+    along: (2,) tangent. The formulae are those of the module.
+    """
     both, apart = chi / np.pi, np.sin(chi) * np.cos(chi) / np.pi
     ss, nn, ns = -(both + apart), -(both - apart), np.sin(chi) ** 2 / np.pi
     none = np.zeros_like(chi)

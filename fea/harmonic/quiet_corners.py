@@ -1,7 +1,8 @@
 """Fillets where stress is too low to be the maximum, and whose elements may stay coarse.
 
-A fillet takes a thousand unknowns, so a pin of two hundred would take them all for the few that
-count. Where there is such a crowd, a mesh that is coarse at all of them says which these are.
+A fillet takes a thousand unknowns, so for a pin with two hundred most would be spent on fillets
+that do not matter. Where fillets are so many, a mesh that is coarse at all of them finds those that
+do.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from fea.harmonic.free_surface import reader
 from geometry import Pin
 from geometry.shape.polygon import Rounding
 
-NUMEROUS_FILLETS_ABOVE = 24  # fillets, from which on it is worth a mesh to look
+NUMEROUS_FILLETS_ABOVE = 24  # fillets above which the coarse mesh pays; chosen by judgement
 # Of the maximum: on 199 fillets of a cantilever the coarse mesh finds 0.90 to 0.99 of what the
 # first mesh of a run does.
 LOW_STRESS_RATIO = 0.8
@@ -23,13 +24,13 @@ FILLET_REACH_RATIO = 1.5  # radii of a fillet from its corner within which its s
 
 
 def numerous_fillets(pin: Pin) -> tuple[int, ...]:
-    """All fillets of a pin, as numbers of corners from 0, if they are many; none otherwise."""
+    """The fillets of a pin, as numbers of corners from 0, if they are numerous; none otherwise."""
     fillets = _fillets(pin)
     return tuple(fillets) if len(fillets) > NUMEROUS_FILLETS_ABOVE else ()
 
 
 def _fillets(pin: Pin) -> dict[int, Rounding]:
-    """Of the shaft, by their numbers."""
+    """The fillets of the shaft, by their numbers."""
     every = {rounding.name: rounding for rounding in pin.roundings}
     names = ((i, f"fillet {i + 1}") for i in range(len(pin.segments) - 1))
     return {i: every[name] for i, name in names if name in every}

@@ -13,7 +13,7 @@ from pinbase.arrays import Floats, Ints
 
 
 def revolve(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) -> Picture:
-    """Skin and loads as they are at an instant; nu: Poisson's ratio."""
+    """The skin of a pin as a surface, at an instant; nu: Poisson's ratio."""
     shown = shown_surface(fields, loads, nu)
     stress, pressed = shown.stress(instant)
     points, displacement, turned = _turned(fields, loads, shown, shown.rows, instant, stress)
@@ -29,14 +29,17 @@ def revolve(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) ->
 
 
 def revolve_solid(fields: MeridianFields, loads: PinLoads, instant: int, nu: float) -> Picture:
-    """The whole body as wedges, straight between the corners of the section's triangles, its
-    surface as `revolve` shows it; without an envelope.
+    """The whole body as wedges at an instant, without an envelope.
+
+    Wedges are straight between the corners of the section's triangles; the surface is as `revolve`
+    shows it.
     """
     rows, numbers = np.unique(fields.triangles, return_inverse=True)
     shown = shown_surface(fields, loads, nu)
     stress = Circumference(fields, loads).stress(rows, instant, shown.angles)
     pressed = np.zeros(stress.shape[:2], dtype=bool)
     if loads.pressed is not None:
+        # On the surface the stress that is shown replaces that of the section's points.
         outer = np.flatnonzero(rows < fields.skin)
         place = np.searchsorted(shown.rows, rows[outer], side="right") - 1
         on_skin, on = shown.stress(instant)
@@ -61,8 +64,9 @@ def _turned(
     instant: int,
     stress: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    """Of every point on all meridians: x, y, z (P, 3), displacement (P, 3), stress (P, 6), which is
-    (rows, A, 6) in cylindrical coordinates.
+    """Position (P, 3), displacement (P, 3) and stress (P, 6) of rows on all meridians, in x, y, z.
+
+    stress: (rows, A, 6) Pa, in cylindrical coordinates.
     """
     sectors = len(shown.angles)
     r, z = np.repeat(fields.points[rows], sectors, axis=0).T
@@ -70,6 +74,7 @@ def _turned(
     rr, tt, zz, tz, rz, rt = stress.reshape(-1, 6).T
     u_r, u_t, u_z = _moved(fields, loads, rows, instant, shown.angles).T
     c, s = np.cos(angle), np.sin(angle)
+    # Rotation of the tensor from cylindrical to Cartesian axes.
     twice = 2.0 * c * s * rt
     return (
         np.stack([r * c, r * s, z], axis=1),
@@ -89,6 +94,7 @@ def _turned(
 
 
 def _quads(count: int, sectors: int) -> Ints:
+    """Quadrilaterals between adjacent rows and sectors."""
     i = np.arange(count - 1)[:, None] * sectors
     j = np.arange(sectors)[None]
     k = (j + 1) % sectors
@@ -96,17 +102,17 @@ def _quads(count: int, sectors: int) -> Ints:
 
 
 def _wedges(triangles: Ints, sectors: int) -> Ints:
-    """Of triangles (M, 3) of numbered rows."""
+    """Wedges (.., 6) between adjacent sectors over triangles (M, 3) of numbered rows."""
     turn = np.arange(sectors)[:, None]
-    here = triangles[:, None] * sectors + turn
-    there = triangles[:, None] * sectors + (turn + 1) % sectors
-    return np.concatenate([there, here], axis=2).reshape(-1, 6)
+    meridian = triangles[:, None] * sectors + turn
+    next_meridian = triangles[:, None] * sectors + (turn + 1) % sectors
+    return np.concatenate([next_meridian, meridian], axis=2).reshape(-1, 6)
 
 
 def _moved(
     fields: MeridianFields, loads: PinLoads, rows: Ints, instant: int, angles: Floats
 ) -> Floats:
-    """Displacement along r, theta, z (P, 3) at points on all meridians."""
+    """Displacements (P, 3) along r, theta, z at rows on all meridians."""
     amounts: dict[tuple[int, int], Floats] = {}  # of every harmonic and phase
     for load, both in loads.coefficients().items():
         unit = fields.displacement[rows, :, fields.loads.index(load)]

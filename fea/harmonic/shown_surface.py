@@ -1,11 +1,11 @@
-"""The stress of a pin's surface as it is shown: each side of a pressed ring by itself.
+"""The stress of a pin's surface for views: each side of a pressed ring by itself.
 
-At the end of a ring the outline has two points in one place, one for each side, which the step of
-the pressure tells apart. Where a lug presses on one side only, the free side is shown. Beside
-pressed cells (fea.core.pressed) the mesh does not resolve that step; there the stress is that of
-the edge of a lug, continued from where it is resolved (fea.harmonic.free_surface), and elsewhere
-that of the nearest point at which the surface is read. So what is shown of the free surface is
-nowhere more than what is read of it.
+At the end of a ring the outline has two points in one place, one for each side of the step of
+pressure. Where a lug presses on one side only, the free side is shown. Beside pressed cells
+(fea.core.pressed) the mesh does not resolve that step; there the stress is that of the edge of a
+lug, extrapolated from where it is resolved (fea.harmonic.free_surface), and elsewhere that of the
+nearest point at which the surface is read. So no stress shown on the free surface exceeds what is
+read of it.
 """
 
 from __future__ import annotations
@@ -23,40 +23,46 @@ from fea.harmonic.free_surface import FreeSurface, surface_points
 from fea.harmonic.superposition import Circumference
 from pinbase.arrays import Floats, Ints, Mask
 
-VIEW_SECTORS = 60
+VIEW_SECTORS = 60  # sectors about the axis under prescribed loads; chosen by judgement
 FINER_VIEW_SECTORS = 72, 90, 120, 180, 360  # numbers of sectors that begin where arcs do
-MIN_SECTORS_PER_CELL = 2  # sectors at least
+MIN_SECTORS_PER_CELL = 2  # sectors to a cell of contact, at least
 POINT_TOLERANCE = 1e-9  # of the length: points that are one
 
 
 class ShownStress(Protocol):
-    """What is shown of a surface at the instants of a case. rows: of the skin, the first one (P,)
-    at each place; angles: (A,) rad.
+    """The stress that is shown of a surface at the instants of a case.
+
+    rows: (P,) of the skin, the first one at each place.
+    angles: (A,) rad.
     """
 
     rows: Ints
     angles: Floats
 
     def stress(self, instant: int) -> tuple[Floats, Mask]:
-        """(P, A, 6) Pa: rr, tt, zz, tz, rz, rt, and where (P, A) a lug presses on what is shown."""
+        """The stress (P, A, 6), Pa, at an instant, and where (P, A) a lug presses on what is shown.
+
+        Components are rr, tt, zz, tz, rz, rt.
+        """
         ...
 
     def envelope(self, instant: int) -> Floats:
-        """The largest von Mises stress (P, A) Pa of the free surface over all instants, of what is
-        shown at this one; NaN where lugs press on it at all of them.
+        """The largest von Mises stress (P, A), Pa, of the free surface over all instants.
+
+        It includes what is shown at this instant. NaN where lugs press at all instants.
         """
         ...
 
 
 def shown_surface(fields: MeridianFields, loads: PinLoads, nu: float) -> ShownStress:
-    """Of a pin under loads, with Poisson's ratio."""
+    """The surface of a pin under loads as it is shown; nu: Poisson's ratio."""
     if loads.pressed is None:
         return _Plain(fields, loads)
     return _Free(fields, loads, loads.pressed, nu)
 
 
 def sectors_of(pressed: PressedArcs | None) -> int:
-    """Into how many sectors a surface is divided, so that cells of contact are resolved."""
+    """The number of sectors about the axis that resolves the cells of contact."""
     if pressed is None:
         return VIEW_SECTORS
     return next(
@@ -67,13 +73,13 @@ def sectors_of(pressed: PressedArcs | None) -> int:
 
 
 def _first(x: Floats) -> Mask:
-    """Which points (S,) of the skin, in their order, are the first ones in their place."""
+    """Mask (S,) of the points of the skin that are the first ones in their place."""
     step = np.linalg.norm(np.diff(x, axis=0), axis=1)
     return np.concatenate([[True], step > POINT_TOLERANCE * np.ptp(x[:, 1])])
 
 
 class _Plain:
-    """Under prescribed loads: all of it, and of two points in one place the first."""
+    """The surface under prescribed loads: all of it, of two points in one place the first."""
 
     def __init__(self, fields: MeridianFields, loads: PinLoads) -> None:
         self.angles = np.asarray(np.arange(VIEW_SECTORS) * 2.0 * np.pi / VIEW_SECTORS)
@@ -81,18 +87,18 @@ class _Plain:
         self.around = Circumference(fields, loads)
 
     def stress(self, instant: int) -> tuple[Floats, Mask]:
-        found = self.around.stress(self.rows, instant, self.angles)
-        return found, np.zeros(found.shape[:2], dtype=bool)
+        stress = self.around.stress(self.rows, instant, self.angles)
+        return stress, np.zeros(stress.shape[:2], dtype=bool)
 
     def envelope(self, instant: int) -> Floats:
         # Odd harmonics: half a turn says it all.
         turn = len(self.angles) // 2 if self.around.odd else len(self.angles)
-        found = self.around.envelope(self.rows, self.angles[:turn])
-        return np.tile(found, len(self.angles) // turn)
+        half = self.around.envelope(self.rows, self.angles[:turn])
+        return np.tile(half, len(self.angles) // turn)
 
 
 class _Free:
-    """Where lugs press on it."""
+    """The surface where lugs press on it."""
 
     def __init__(
         self, fields: MeridianFields, loads: PinLoads, pressed: PressedArcs, nu: float
@@ -112,7 +118,8 @@ class _Free:
         read = self._read(self.skin, instant)
         pressed = np.logical_and.reduceat(self._on(instant), self.rows)
         free = np.logical_or.reduceat(read, self.rows)
-        taken = np.where(free[self.place], read, True)[..., None]  # what is pressed: of both sides
+        # Average over the points of one place: the free ones if any is free, otherwise all.
+        taken = np.where(free[self.place], read, True)[..., None]
         out = np.add.reduceat(taken * every, self.rows) / np.add.reduceat(
             taken.astype(float), self.rows
         )
@@ -129,19 +136,22 @@ class _Free:
         most = np.maximum.reduceat(self.around.envelope(self.skin, self.angles, read), self.rows)
         shown, pressed = self.stress(instant)
         now = np.where(pressed, -1.0, von_mises(shown))
-        found = np.maximum(most, now)
-        return np.where(found < 0.0, np.nan, found)
+        envelope = np.maximum(most, now)
+        return np.where(envelope < 0.0, np.nan, envelope)
 
     def _read(self, points: Ints, instant: int) -> Mask:
         return self.free.read(points, np.full(len(points), instant), self.arcs)
 
     def _on(self, instant: int) -> Mask:
-        """On which points of the skin (S, A) a lug presses."""
+        """Mask (S, A) of the points of the skin on which a lug presses."""
         on = self.pressed.on[instant][:, self.arcs]
         return np.asarray(on[self.ring] & (self.ring >= 0)[:, None])
 
     def _continue(self, out: Floats, free: Mask, instant: int) -> None:
-        """To the edges of lugs, and in a line between them and the first points that are read."""
+        """Extend the stress, in place, to the edges of lugs.
+
+        Between an edge and the first point that is read it varies linearly.
+        """
         for edge, cusp in reversed(self.cusps.items()):
             near, between = cusp.near, cusp.between
             here = self._read(np.array([edge]), instant)[0]
@@ -159,7 +169,7 @@ class _Free:
             free[places] = True
 
     def _fill(self, out: Floats, free: Mask, left: Mask) -> None:
-        """What is `left` of places and angles, by the nearest ones that are free."""
+        """Fill the remaining places and angles (`left`), in place, from the nearest free ones."""
         if not (left.any() and free.any()):
             return
         r, z = self.x[self.rows].T

@@ -1,4 +1,4 @@
-"""Stress and displacement on a section from the unknowns of one harmonic: its skin, its inside."""
+"""Stress and displacement on a section, on its skin and inside, from the unknowns of a harmonic."""
 
 from __future__ import annotations
 
@@ -23,14 +23,15 @@ ON_AXIS_TOLERANCE = 1e-9  # r on it at most, of the largest
 
 @dataclass(frozen=True)
 class Reading:
-    """Where stress is read on a mesh, the same in all harmonics: points (S, 2), r and z in m, of
-    which the first, `skin`, are five to each edge of the outline, the next those of `inner` nodes,
-    and the others, where stress alone is read, I inside the section and those of the jumps.
+    """The points of a mesh at which stress is read, the same in all harmonics.
 
-    extrapolated: (E, 5) which points of the skin have their stress from inside, at `rough` nodes,
-    because the surface is clamped and its traction unknown, or on the axis. continued: takes values
-    at samples in the elements to inner nodes, rough nodes and the I points
-    (fea.core.local_fit.continuation).
+    points: (S, 2) r and z in m: first `skin` points, five to each edge of the outline, then the
+    `inner` nodes, then those where stress alone is read, I inside the section and those of the
+    jumps.
+    extrapolated: (E, 5) points of the skin whose stress comes from inside, at `rough` nodes,
+    because the surface is clamped and its traction unknown, or on the axis.
+    continued: matrix from values at samples in the elements to inner nodes, rough nodes and the I
+    points (fea.core.local_fit.continuation).
     """
 
     space: Section
@@ -45,9 +46,11 @@ class Reading:
     jumps: tuple[Jump, ...]
 
     def of(self, n: Ints | int, u: Floats, traction: Floats) -> tuple[Floats, Floats]:
-        """Displacement (D, 3, K) in m and stress (S, 6, K) in Pa, amplitudes, of displacements u
-        (N, 3, K) of harmonics n, one or (K,), under tractions (E, 3, 3, K), Pa, at the nodes of the
-        outline's edges.
+        """Displacement (D, 3, K), m, and stress (S, 6, K), Pa, amplitudes.
+
+        n: harmonics, one or (K,).
+        u: (N, 3, K) m.
+        traction: (E, 3, 3, K) Pa at the nodes of the outline's edges.
         """
         K = u.shape[2]
         sampled = self.space.sampled_stress(self.material, n, u).reshape(-1, 6, K)
@@ -58,22 +61,20 @@ class Reading:
         from_inside = np.einsum(
             "qi,eiak->eqak", shapes(EDGE_STATIONS), at_nodes[self.outline.nodes]
         )
-        found = skin(self.space, self.outline, self.material, n, u, traction)
-        on_skin = np.where(self.extrapolated[..., None, None], from_inside, found.stress)
-        displacements = [found.displacement.reshape(-1, 3, K), u[self.inner]]
+        on_outline = skin(self.space, self.outline, self.material, n, u, traction)
+        on_skin = np.where(self.extrapolated[..., None, None], from_inside, on_outline.stress)
+        displacements = [on_outline.displacement.reshape(-1, 3, K), u[self.inner]]
         stresses = [on_skin.reshape(-1, 6, K), inner, inside]
         stresses.extend(jump.stress(sampled, traction) for jump in self.jumps)
         return np.concatenate(displacements), np.concatenate(stresses)
 
     @cached_property
     def rows(self) -> Ints:
-        """(N,) which of the points is at each node."""
+        """The point at each node, (N,)."""
         return points_of_nodes(self.outline, len(self.space.nodes))
 
     def at_points(self, forces: Floats) -> sp.csc_matrix:
-        """Forces (N, 3, K) on the nodes as forces (3 D, K) on the points that have a
-        displacement.
-        """
+        """Forces (3 D, K) on points with a displacement, from nodal ones, (N, 3, K)."""
         count, loads = self.skin + len(self.inner), forces.shape[2]
         dense = np.zeros((loads, count, 3))
         dense[:, self.rows] = forces.transpose(2, 0, 1)
@@ -84,12 +85,12 @@ class Reading:
 
     @property
     def triangles(self) -> Ints:
-        """(M, 3) of the points, which fill the section."""
+        """Triangles (M, 3) of the points, which fill the section."""
         return np.asarray(self.rows[self.space.elements[:, :3]])
 
 
 def points_of_nodes(outline: Outline, count: int) -> Ints:
-    """(N,) which of a reading's points is at each of `count` nodes."""
+    """The point of a reading at each of `count` nodes, (N,)."""
     row = np.zeros(count, dtype=np.int64)
     inner = np.flatnonzero(~_mask(count, outline.nodes))
     row[inner] = len(EDGE_STATIONS) * len(outline.nodes) + np.arange(len(inner))
@@ -100,11 +101,11 @@ def points_of_nodes(outline: Outline, count: int) -> Ints:
 
 
 def _mask(count: int, *nodes: Ints) -> Mask:
-    """Which of `count` nodes are among some."""
-    found = np.zeros(count, dtype=bool)
+    """Mask (N,) of the given nodes among `count`."""
+    marked = np.zeros(count, dtype=bool)
     for some in nodes:
-        found[some] = True
-    return found
+        marked[some] = True
+    return marked
 
 
 def reading(
@@ -115,21 +116,29 @@ def reading(
     inside: Floats = NO_POINTS,
     ends: Iterable[tuple[float, float]] = (),
 ) -> Reading:
-    """clamps: surfaces that are clamped. inside: points (I, 2), m. ends: places on the outline
-    where a pressure ends.
+    """The points at which stress is read on a mesh.
+
+    clamps: surfaces that are clamped.
+    inside: further points (I, 2), m.
+    ends: places (r, z), m, on the outline where a pressure ends.
     """
-    found = jumps(space, outline, material, ends)
-    on_jumps = np.array([[j.r, j.z] for j in found]).reshape(-1, 2).repeat(EDGE_DIRECTIONS, axis=0)
+    every_jump = jumps(space, outline, material, ends)
+    on_jumps = (
+        np.array([[j.r, j.z] for j in every_jump]).reshape(-1, 2).repeat(EDGE_DIRECTIONS, axis=0)
+    )
     skin_at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), space.nodes[outline.nodes])
     count = len(space.nodes)
     inner = np.flatnonzero(~_mask(count, outline.nodes))
     constrained = outline.constrained(clamps)
+    # Stress on clamped edges and on the axis comes from inside, at `rough` nodes.
     on_axis = ON_AXIS_TOLERANCE * space.nodes[:, 0].max()
     axis = outline.nodes[space.nodes[outline.nodes, 0] < on_axis]
     rough = np.flatnonzero(_mask(count, outline.nodes[constrained], axis))
+    # Points of the skin, inner nodes, further points inside, points of jumps; the last two have no
+    # displacement.
     points = [skin_at.reshape(-1, 2), space.nodes[inner], inside, on_jumps]
-    there = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
-    continued = continuation(space.samples, there)
+    targets = np.concatenate([space.nodes[inner], space.nodes[rough], inside])
+    continued = continuation(space.samples, targets)
     return Reading(
         space,
         outline,
@@ -140,5 +149,5 @@ def reading(
         constrained[:, None] | (skin_at[..., 0] < on_axis),
         rough,
         continued,
-        found,
+        every_jump,
     )

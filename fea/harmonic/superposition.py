@@ -1,18 +1,27 @@
-"""The largest von Mises stress over the circumference, by superposing unit fields of several
-harmonics.
+"""The largest von Mises stress over the circumference, by superposing unit fields of harmonics.
 
-In a metric of von Mises a stress is five numbers whose squares sum to his equivalent squared; over
-the circumference three of them go as cos psi and two as sin psi. With one harmonic alone the square
-is a quadratic form of (cos n theta, sin n theta) with entries A, B, C, so that its maximum is
-closed:
+In the metric of von Mises a stress is five numbers whose squares sum to the equivalent stress
+squared (fea.harmonic.five_numbers); over the circumference three of them vary as cos psi and two as
+sin psi.
+
+One harmonic alone: the square is a quadratic form of (cos n theta, sin n theta) with entries A, B,
+C, so its maximum is known in closed form:
 
     (A + C) / 2 + sqrt(((A - C) / 2)^2 + B^2)
 
-With several, von Mises being a seminorm, the sum of these maxima is a bound from above; only points
-whose bound exceeds what has been found elsewhere are sampled; von Mises squared is a trigonometric
-polynomial, so samples give its highest crest (fea.harmonic.trigonometric_maximum). What each unit
-load can do at a point at most is a coarser bound, which says in what order points are looked at and
-when to stop.
+Several harmonics: `Circumference._search` is a branch and bound over points and instants. Its
+bounds, from the cheapest and loosest to the dearest and tightest, are
+
+1. `reach`: the sum over unit loads of the most that each does at the point, a matrix product;
+2. `bound`: the sum over harmonics of the maxima above. It is a bound since von Mises is a seminorm:
+   the stress of a sum is at most the sum of the stresses;
+3. `_tightened`: the LOW_HARMONICS lowest harmonics are sampled together, only the maxima of the
+   others are added.
+
+Pairs of a point and an instant that no bound rules out are evaluated (`round`): von Mises squared
+is a trigonometric polynomial, so samples determine its highest crest
+(fea.harmonic.trigonometric_maximum). Points come in falling order of `reach`, so the search ends at
+the first batch that cannot exceed what has been reached.
 """
 
 from __future__ import annotations
@@ -29,21 +38,19 @@ from fea.core.pin_loads import Loads, require_solved
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, EVEN_COUNT, SIN, numbers
 from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled
-from fea.harmonic.trigonometric_maximum import closed, upper_bound
+from fea.harmonic.trigonometric_maximum import form_maximum, upper_bound
 from pinbase.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
 
-FIRST_PAIRS = 16  # pairs of points and instants that are sampled to begin with
-PAIR_BATCH = 4096  # pairs sampled at once
-POINT_BATCH = 64  # points looked at together
-CACHED_POINT_BATCH = (
-    16  # the same at all instants and angles, so that they stay in the processor's cache
-)
-LOW_HARMONICS = 4  # harmonics whose sum is sampled for a closer bound
-MAX_QUADRATIC_FORM_LOADS = (
-    4  # unit loads of a harmonic: up to so many, quadratic forms of them take less than sums
-)
+# The sizes below change the time of the search, never its result; chosen by judgement.
+FIRST_PAIRS = 16  # pairs of points and instants that are evaluated first
+PAIR_BATCH = 4096  # pairs sampled at once: limits the memory of the samples
+POINT_BATCH = 64  # points bounded together
+CACHED_POINT_BATCH = 16  # points of an envelope at once: their samples stay in the CPU cache
+LOW_HARMONICS = 4  # lowest harmonics, which are sampled together for a tighter bound
+# Unit loads of one harmonic up to which quadratic forms take fewer operations than summed stresses.
+MAX_QUADRATIC_FORM_LOADS = 4
 ALL_INSTANTS = slice(None)
 
 
@@ -58,19 +65,29 @@ class Crest:
 
 
 class Region(Protocol):
-    """Where on the circumference points are read, at the instants of a case."""
+    """The part of the circumference on which each point is read, instant by instant."""
 
     def masked(self, points: Ints) -> Mask:
-        """Which of some points (J,) are read on a part of it only."""
+        """Mask (J,) of the points (J,) that are read on a part of the circumference only."""
         ...
 
     def read(self, points: Ints, instants: Ints) -> Mask:
-        """On which arcs (J, BINS) pairs of points and instants are read (fea.core.pressed)."""
+        """The arcs (J, ARC_COUNT) on which pairs of points and instants, (J,) each, are read.
+
+        Source of the arcs: fea.core.pressed.
+        """
         ...
 
 
 class Circumference:
-    """A case on the section's points; region: where these are read, all round by default."""
+    """The von Mises stress of one case at all points of a section, at any instant and angle.
+
+    fields: of the unit loads at S points.
+    loads: T instants of the case.
+    region: where on the circumference points are read; all round by default.
+
+    Raises: ArgumentError when a unit load that acts is not among the fields.
+    """
 
     def __init__(self, fields: MeridianFields, loads: Loads, region: Region | None = None) -> None:
         self.region = region
@@ -84,58 +101,68 @@ class Circumference:
         self.points = len(fields.points)
         self._first, self._second = by_phase[..., 0], by_phase[..., 1]  # (T, K)
         self._at = tuple(fields.loads.index(load) for load in units)
-        found = numbers(fields, self._at)
-        self.fields, self._five, self._each = fields, found.five, found.each
+        unit_numbers = numbers(fields, self._at)
+        self.fields, self._five, self._unit_reach = fields, unit_numbers.five, unit_numbers.reach
         self._n = np.array([load.n for load in units], dtype=np.int64)
         starts = np.flatnonzero(np.diff(self._n, prepend=-1))
-        self._kept: dict[int, tuple[Floats, Floats, Floats]] = {}
+        self._amount_products: dict[int, tuple[Floats, Floats, Floats]] = {}
         self._waves = [slice(*ends) for ends in itertools.pairwise([*starts, len(units)])]
 
     @property
     def twists(self) -> bool:
-        """Whether nothing acts but torsion."""
+        """Whether nothing but torsion acts."""
         return not self._n.any() and not self._first.any()
 
     @property
     def odd(self) -> bool:
-        """Whether only odd harmonics act, so that half a turn changes the signs of stresses."""
+        """Whether only odd harmonics act, so that stresses change sign over half a turn."""
         return bool((self._n % 2 == 1).all())
 
     def bound(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
-        """At least the largest von Mises stress over the circumference, (J, T) Pa, at points (J,)
-        and instants; exactly it where only one harmonic acts.
+        """An upper bound (J, T), Pa, of the von Mises stress over the circumference.
+
+        points: (J,) numbers.
+        instants: T of them, all by default. Exact where one harmonic acts alone.
         """
         return self._sum(points, self._waves, instants)
 
     def _sum(self, points: Ints, waves: Sequence[slice], instants: Instants) -> Floats:
+        """The sum (J, T), Pa, of the maxima of some harmonics, each taken by itself."""
         out = np.zeros((len(points), len(self._first[instants])))
         for wave in waves:
-            out += self._alone(points, wave, instants)
+            out += self._of_harmonic(points, wave, instants)
         return out
 
     def last(self, points: Ints) -> tuple[int, Floats]:
-        """The highest harmonic that acts, and its largest stress by itself, (J, T) Pa."""
+        """The highest harmonic that acts, and the largest stress (J, T), Pa, of it alone."""
         if not self._waves:
             return 0, np.zeros((len(points), self.count))
         wave = self._waves[-1]
-        return int(self._n[wave.start]), self._alone(points, wave)
+        return int(self._n[wave.start]), self._of_harmonic(points, wave)
 
-    def _alone(self, points: Ints, wave: slice, instants: Instants = ALL_INSTANTS) -> Floats:
+    def _of_harmonic(self, points: Ints, wave: slice, instants: Instants = ALL_INSTANTS) -> Floats:
+        """The largest von Mises stress (J, T), Pa, of one harmonic by itself.
+
+        wave: the columns of its unit loads.
+        """
         five = self._five[points, :, wave]
         if wave.stop - wave.start > MAX_QUADRATIC_FORM_LOADS:
-            return self._summed(five, wave, instants)
+            return self._of_summed_loads(five, wave, instants)
+        # The square is quadratic in the load amounts: its forms are built once per point and
+        # contracted with the products of amounts at each instant.
         first, second, mixed = (x[instants] for x in self._products(wave))
         even, odd = (x.swapaxes(1, 2) @ x for x in (five[:, COS], five[:, SIN]))
         if self._n[wave.start] == 0:
+            # n = 0: nothing varies over the circumference, so the square itself is the maximum.
             square = _forms(even, first) + _forms(odd, second)
         else:
             apart = even - odd
             total = _forms(even + odd, first + second)
-            square = closed(total, _forms(apart, first - second), _forms(apart, mixed))
+            square = form_maximum(total, _forms(apart, first - second), _forms(apart, mixed))
         return np.sqrt(np.maximum(square, 0.0, out=square), out=square)
 
-    def _summed(self, five: Floats, wave: slice, instants: Instants) -> Floats:
-        """The same, of stresses (J, 5, K) that are summed over the unit loads first."""
+    def _of_summed_loads(self, five: Floats, wave: slice, instants: Instants) -> Floats:
+        """The same for stresses (J, 5, K), which are summed over the loads first."""
         first, second = self._first[instants, wave].T, self._second[instants, wave].T
         flat = np.ascontiguousarray(five).reshape(-1, five.shape[2])
         shape = (len(five), 5, first.shape[1])
@@ -143,34 +170,40 @@ class Circumference:
         if self._n[wave.start] == 0:
             square = np.square(one[:, COS]).sum(axis=1) + np.square(other[:, SIN]).sum(axis=1)
         else:
+            # The sine parts lag by a quarter wave, so their phases swap places, one with its sign
+            # changed. Then `one` multiplies cos n theta and `other` sin n theta in all five
+            # numbers.
             one[:, SIN], other[:, SIN] = -other[:, SIN], one[:, SIN].copy()
             A, C = np.square(one).sum(axis=1), np.square(other).sum(axis=1)
-            square = closed(A + C, A - C, np.einsum("jit,jit->jt", one, other))
+            square = form_maximum(A + C, A - C, np.einsum("jit,jit->jt", one, other))
         return np.asarray(np.sqrt(np.maximum(square, 0.0)))
 
     def _products(self, wave: slice) -> tuple[Floats, Floats, Floats]:
-        """Of two loads' amounts at an instant: of the first phases, the second ones, one of each;
-        (T, K, K).
+        """Products (T, K, K) of the amounts of two unit loads of a harmonic at each instant.
+
+        They are those of both first phases, of both second phases, and of one of each.
         """
-        if wave.start not in self._kept:
+        if wave.start not in self._amount_products:
             a, b = self._first[:, wave], self._second[:, wave]
             aa, bb, ab = (x[:, :, None] * y[:, None, :] for x, y in ((a, a), (b, b), (a, b)))
-            self._kept[wave.start] = aa, bb, ab
-        return self._kept[wave.start]
+            self._amount_products[wave.start] = aa, bb, ab
+        return self._amount_products[wave.start]
 
     def maxima(self, among: Mask, least: float = 0.0) -> Floats:
-        """Over the points of a mask (S,), at every instant (T,), Pa; `least` where they do not
-        exceed that.
+        """The largest von Mises stress (T,), Pa, at every instant over the points of a mask (S,).
+
+        least: Pa; the result at instants at which no point exceeds it.
         """
         return self._search(among, together=False, least=least)[0]
 
     def exceeds(self, among: Mask, value: float) -> bool:
-        """Whether any of the points of a mask (S,) does so at any instant; value: Pa."""
+        """Whether any point of a mask (S,) exceeds a value, Pa, at any instant."""
         return bool(self._search(among, together=True, least=value, soon=True)[0].max() > value)
 
     def top(self, among: Mask, least: float = 0.0) -> Crest:
-        """Over the points of a mask (S,) and all instants; of the value `least`, Pa, where none
-        exceeds that.
+        """The largest von Mises stress over the points of a mask (S,) and over all instants.
+
+        least: Pa; the value of the result where no point exceeds it.
         """
         value, point = self._search(among, together=True, least=least)
         instant = int(value.argmax())
@@ -180,45 +213,57 @@ class Circumference:
     def _search(
         self, among: Mask, together: bool, least: float = 0.0, soon: bool = False
     ) -> tuple[Floats, Ints]:
-        """At every instant the maximum (T,) Pa, at least `least`, and its point (T,); `together`:
-        the largest of all is right, those of other instants need not be; soon: any beyond `least`
-        will do.
+        """The maximum (T,), Pa, at every instant and its point (T,), by branch and bound.
 
-        Points are looked at in the order of what they can reach at most.
+        among: (S,) the points that are searched.
+        together: only the largest of all instants is needed; those of other instants may be too
+        low.
+        least: Pa, the value to exceed.
+        soon: stop at the first value beyond `least`.
         """
-        rows, reach = self._in_order(np.flatnonzero(among))
+        rows, reach = self._by_reach(np.flatnonzero(among))
         best = np.full(self.count, least)
         point = np.full(self.count, rows[0] if len(rows) else 0)
+        # Step 1: evaluate the most promising pairs, since a high incumbent rules out most of the
+        # others.
         if len(self._waves) > 1 and len(rows):
-            i, t = self._likely(rows[:POINT_BATCH], together)
-            _raise(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
+            i, t = self._likely_pairs(rows[:POINT_BATCH], together)
+            _update_best(best, point, t, self.round(i, t, np.full(len(t), least))[0], i)
+        # Step 2: go through the points, batch by batch, in falling order of what they can reach.
         for k in range(0, len(rows), POINT_BATCH):
+            # No later point reaches more than this one, so the search is complete.
             if reach[k] <= (best.max() if together else best.min()):
                 break
             if soon and best.max() > least:
                 break
             here = rows[k : k + POINT_BATCH]
+            # Step 3: drop the instants at which no point of the batch can exceed the incumbent.
             hopeful = self.reach(here).max(axis=0) > (best.max() if together else best)
             if not hopeful.any():
                 continue
+            # Step 4: bound the remaining pairs more tightly; -1 marks pairs that are ruled out.
             bound = np.full((len(here), self.count), -1.0)
-            bound[:, hopeful] = self._closer(here, hopeful, best.max() if together else best)
+            bound[:, hopeful] = self._tightened(here, hopeful, best.max() if together else best)
             if len(self._waves) < 2 and self.region is None:  # the bound is the maximum
                 highest = bound.argmax(axis=0)
                 value = bound[highest, np.arange(self.count)]
                 more = value > best
                 best[more], point[more] = value[more], here[highest[more]]
                 continue
-            for i, t in self._worth(bound, best, together):
+            # Step 5: evaluate pairs in falling order of their bound; the incumbent rises meanwhile
+            # and rules out more of them.
+            for i, t in self._pairs_above(bound, best, together):
                 beat = np.full(len(t), best.max()) if together else best[t]
                 value = self.round(here[i], t, beat)[0]
                 bound[i, t] = -1.0
-                _raise(best, point, t, value, here[i])
+                _update_best(best, point, t, value, here[i])
         return best, point
 
-    def _likely(self, points: Ints, together: bool) -> tuple[Ints, Ints]:
-        """Points and instants (P,) that can reach most: what they do reach rules out many others
-        before these are looked at closely.
+    def _likely_pairs(self, points: Ints, together: bool) -> tuple[Ints, Ints]:
+        """Pairs of points and instants, (P,) each, with the greatest `reach`.
+
+        Their true values are the first incumbents of the search.
+        together: the FIRST_PAIRS best of all instants; otherwise the best point of each instant.
         """
         reach = self.reach(points)
         if not together:
@@ -227,50 +272,61 @@ class Circumference:
         i, t = np.unravel_index(most, reach.shape)
         return points[i], t
 
-    def _closer(self, points: Ints, instants: Mask, beat: Floats | float) -> Floats:
-        """A bound (J, T) Pa for instants of a mask, closer where it exceeds `beat` and many
-        harmonics act: of the lowest ones together, sampled, and of each of the others.
+    def _tightened(self, points: Ints, instants: Mask, beat: Floats | float) -> Floats:
+        """A bound (J, T), Pa, at the instants of a mask that is tighter where it exceeds `beat`.
+
+        The lowest harmonics are sampled together there, which keeps their mutual cancellation; the
+        maxima of the higher ones are added.
+        beat: Pa, one for all instants or (T,).
         """
         at = np.flatnonzero(instants)
         low, high = self._waves[:LOW_HARMONICS], self._waves[LOW_HARMONICS:]
         if not high:
             return self.bound(points, at)
-        rest = self._sum(points, high, at)
-        out = rest + self._sum(points, low, at)
-        i, t = np.nonzero(out > (beat[at] if isinstance(beat, np.ndarray) else beat))
+        higher = self._sum(points, high, at)
+        bound = higher + self._sum(points, low, at)
+        i, t = np.nonzero(bound > (beat[at] if isinstance(beat, np.ndarray) else beat))
         degree = 2 * int(self._n[low[-1].start])
         for k in range(0, len(i), PAIR_BATCH):
             here, now = i[k : k + PAIR_BATCH], t[k : k + PAIR_BATCH]
             samples = self._samples(points[here], at[now], low, degree)
-            together = np.sqrt(upper_bound(samples, degree)) + rest[here, now]
-            out[here, now] = np.minimum(out[here, now], together)
-        return out
+            tight = np.sqrt(upper_bound(samples, degree)) + higher[here, now]
+            bound[here, now] = np.minimum(bound[here, now], tight)
+        return bound
 
-    def _in_order(self, rows: Ints) -> tuple[Ints, Floats]:
-        """Points, those first that can reach most, and how much, Pa."""
+    def _by_reach(self, rows: Ints) -> tuple[Ints, Floats]:
+        """Points (J,) in falling order of their reach at any instant, and that reach (J,), Pa."""
         reach = self._reach[rows]
         order = np.argsort(-reach, kind="stable")
         return rows[order], reach[order]
 
     @cached_property
     def _reach(self) -> Floats:
-        """The largest of these at any instant, (S,) Pa."""
+        """The largest `reach` of each point over all instants, (S,) Pa."""
         rows = np.arange(self.points)
         parts = [rows[k : k + PAIR_BATCH] for k in range(0, self.points, PAIR_BATCH)]
         return np.concatenate([self.reach(part).max(axis=1, initial=0.0) for part in parts])
 
     def reach(self, points: Ints, instants: Instants = ALL_INSTANTS) -> Floats:
-        """A bound that is sooner found: the sum over unit loads of what each can do by itself."""
-        return np.asarray((self._each[points] @ self._most[:, instants]) * (1.0 + 1e-12))
+        """The loosest bound (J, T), Pa: the sum over unit loads of the most that each does."""
+        # The factor covers round-off, so that a bound is never below the value that it bounds.
+        return np.asarray(
+            (self._unit_reach[points] @ self._amplitudes[:, instants]) * (1.0 + 1e-12)
+        )
 
     @cached_property
-    def _most(self) -> Floats:
-        """Amounts of the unit loads whatever their phases, (K, T)."""
+    def _amplitudes(self) -> Floats:
+        """Amounts (K, T) of the unit loads irrespective of their phase."""
         return np.ascontiguousarray(np.hypot(self._first, self._second).T)
 
-    def _worth(self, bound: Floats, best: Floats, together: bool) -> Iterator[tuple[Ints, Ints]]:
-        """Pairs of points and instants whose bound (J, T) exceeds the best so far, both of which
-        change meanwhile: the highest ones first, then more and more.
+    def _pairs_above(
+        self, bound: Floats, best: Floats, together: bool
+    ) -> Iterator[tuple[Ints, Ints]]:
+        """Batches of pairs whose bound (J, T) exceeds the incumbent, those furthest above it first.
+
+        The caller changes `bound` and `best`, the incumbents (T,), between batches. Batches grow
+        fourfold: the first ones usually settle the maximum; if they do not, large batches are
+        quicker.
         """
         batch = FIRST_PAIRS if together else max(FIRST_PAIRS, self.count)
         while True:
@@ -287,9 +343,10 @@ class Circumference:
     def round(
         self, points: Ints, instants: Ints, beat: Floats | None = None
     ) -> tuple[Floats, Floats]:
-        """Largest von Mises stress (J,) Pa over the circumference at pairs of points and instants,
-        and the angle (rad) where it is. beat: (J,) Pa, of pairs that cannot exceed it any value
-        below it.
+        """The largest von Mises stress (J,), Pa, over the circumference, and its angle (J,), rad.
+
+        points, instants: (J,) each, pairs of them.
+        beat: (J,) Pa; where a pair cannot exceed it, any value below it may be returned.
         """
         beat = np.zeros(len(points)) if beat is None else beat
         value, angle = np.zeros(len(points)), np.zeros(len(points))
@@ -298,32 +355,44 @@ class Circumference:
             some = np.zeros(len(here), dtype=bool)
             if self.region is not None:
                 some = self.region.masked(points[here])
-            for find, rows in ((self._round, here[~some]), (self._round_partly, here[some])):
+            for find, rows in (
+                (self._crests_all_round, here[~some]),
+                (self._crests_where_read, here[some]),
+            ):
                 if len(rows):
                     value[rows], angle[rows] = find(points[rows], instants[rows], beat[rows])
         return value, angle
 
-    def _round_partly(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
-        """The same of points that are read on a part of the circumference."""
+    def _crests_where_read(
+        self, points: Ints, instants: Ints, beat: Floats
+    ) -> tuple[Floats, Floats]:
+        """The same as `round` at points that are read on a part of the circumference only."""
         assert self.region is not None
         n = self._n[[wave.start for wave in self._waves]]
         read = self.region.read(points, instants)
-        back, forth = self._parts(points, instants, self._waves)
+        back, forth = self._pair_waves(points, instants, self._waves)
         return crest_where_read(n, back, forth, read)
 
-    def _round(self, points: Ints, instants: Ints, beat: Floats) -> tuple[Floats, Floats]:
+    def _crests_all_round(
+        self, points: Ints, instants: Ints, beat: Floats
+    ) -> tuple[Floats, Floats]:
+        """The same as `round` at points that are read all round."""
         n = self._n[[wave.start for wave in self._waves]]
-        back, forth = self._parts(points, instants, self._waves)  # (J, 5, W)
+        back, forth = self._pair_waves(points, instants, self._waves)  # (J, 5, W)
         return crest_all_round(n, back, forth, beat)
 
     def _samples(self, points: Ints, instants: Ints, waves: Sequence[slice], degree: int) -> Floats:
-        """Von Mises squared (J, A), Pa^2, of some harmonics at even angles."""
+        """Von Mises squared (J, A), Pa^2, of some harmonics together at equally spaced angles."""
         n = self._n[[wave.start for wave in waves]]
-        return sampled(n, *self._parts(points, instants, waves), degree)
+        return sampled(n, *self._pair_waves(points, instants, waves), degree)
 
-    def _parts(self, points: Ints, instants: Ints, waves: Sequence[slice]) -> tuple[Floats, Floats]:
-        """Of pairs of points and instants what goes as cos n theta and as sin n theta, by wave,
-        (J, 5, W) each.
+    def _pair_waves(
+        self, points: Ints, instants: Ints, waves: Sequence[slice]
+    ) -> tuple[Floats, Floats]:
+        """The factors (J, 5, W) of cos n theta, and of sin n theta, in the five numbers.
+
+        points, instants: (J,) each.
+        waves: W harmonics.
         """
         back, forth = (np.empty((len(points), 5, len(waves))) for _ in range(2))
         one, i = np.unique(points, return_inverse=True)
@@ -331,6 +400,7 @@ class Circumference:
         for w, wave in enumerate(waves):
             five = np.ascontiguousarray(self._five[one, :, wave])
             a, b = ((five @ x[now, wave].T)[i, :, t] for x in (self._first, self._second))
+            # As in `_of_summed_loads`: the sine parts lag by a quarter wave.
             back[:, :EVEN_COUNT, w], back[:, EVEN_COUNT:, w] = a[:, :EVEN_COUNT], -b[:, EVEN_COUNT:]
             forth[:, :EVEN_COUNT, w], forth[:, EVEN_COUNT:, w] = (
                 b[:, :EVEN_COUNT],
@@ -339,21 +409,27 @@ class Circumference:
         return back, forth
 
     def envelope(self, points: Ints, angles: Floats, read: Mask | None = None) -> Floats:
-        """Largest von Mises stress (J, A) Pa over all instants at points (J,) and angles (rad);
-        read: (J, A, T) where it counts, all by default; -1 where it never does.
+        """The largest von Mises stress (J, A), Pa, over all instants.
+
+        points: (J,) numbers.
+        angles: (A,) rad.
+        read: (J, A, T) where it counts, everywhere by default. -1 where it never does.
         """
         parts = (
             slice(k, k + CACHED_POINT_BATCH) for k in range(0, len(points), CACHED_POINT_BATCH)
         )
         out = [
-            self._over_time(points[part], angles, None if read is None else read[part])
+            self._squares_over_time(points[part], angles, None if read is None else read[part])
             for part in parts
         ]
         square = np.concatenate([np.zeros((0, len(angles))), *out])
         return np.where(square < 0.0, -1.0, np.sqrt(np.maximum(square, 0.0)))
 
-    def _over_time(self, points: Ints, angles: Floats, read: Mask | None) -> Floats:
-        """Its square (J, A): the numbers of every harmonic first, then those at each angle."""
+    def _squares_over_time(self, points: Ints, angles: Floats, read: Mask | None) -> Floats:
+        """The largest square (J, A), Pa^2, over all instants.
+
+        The five numbers of each harmonic are found once; then they are combined at each angle.
+        """
         turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
         c, s = np.cos(turns), np.sin(turns)
         total = np.zeros((len(angles), len(points), self.count))
@@ -366,13 +442,19 @@ class Circumference:
             ]
             if amounts:
                 at = np.tensordot(np.concatenate(signed, axis=1), np.stack(amounts), axes=1)
+                # Each of the five numbers is combined from all harmonics at each angle, squared and
+                # summed.
                 total += np.square(at, out=at).sum(axis=2)
         if read is not None:
             total[~read.swapaxes(0, 1)] = -1.0
         return np.asarray(total.max(axis=2).T)
 
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
-        """Stress (J, A, 6) in Pa at points and angles (A,): rr, tt, zz, tz, rz, rt."""
+        """Stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.
+
+        points: (J,) numbers.
+        angles: (A,) rad.
+        """
         out = np.zeros((len(points), len(angles), 6))
         here = self.fields.stress[points]
         for wave in self._waves:
@@ -385,8 +467,12 @@ class Circumference:
         return out
 
 
-def _raise(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
-    """Put values (J,) at points into the best so far of their instants (T,), if they exceed it."""
+def _update_best(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
+    """Replace the best values of instants, in place, by values that exceed them.
+
+    best, point: (T,) the best values so far and their points.
+    t, value, at: (J,) instants, values and points.
+    """
     order = np.argsort(value, kind="stable")
     t, value, at = t[order], value[order], at[order]
     more = value > best[t]
@@ -394,6 +480,6 @@ def _raise(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:
 
 
 def _forms(form: Floats, products: Floats) -> Floats:
-    """Quadratic forms (J, K, K) of T pairs of vectors, whose products are (T, K, K); (J, T)."""
+    """The values (J, T) of forms (J, K, K) for T pairs of vectors with products (T, K, K)."""
     size = form.shape[1] * form.shape[2]  # there may be no points
     return np.asarray(form.reshape(-1, size) @ products.reshape(-1, size).T)

@@ -8,8 +8,8 @@ Along the outline (arc s, tangent t, in the order counter-clockwise) the strains
 and with the traction they give all of the stress. The first and the last are taken at two Gauss
 points of each edge, where those of quadratic elements are most exact, and interpolated by the cubic
 through the four nearest ones; where the outline has a corner, or the traction a jump, by the line
-through the edge's own. The strains and not the derivatives are interpolated: these turn with the
-outline, so that a mere rotation would leave stresses where its curvature jumps. `python -m
+through the edge's own two. The strains and not the derivatives are interpolated: derivatives turn
+with the outline, so that a mere rotation would leave stresses where its curvature jumps. `python -m
 benchmarks recovery` compares this with the average of extrapolated stresses: several times less
 error at a fillet.
 """
@@ -26,15 +26,19 @@ from fea.harmonic.boundary import Outline, shapes, slopes
 from fea.solid.boundary import MIN_SMOOTH_COSINE
 from pinbase.arrays import Floats, Ints
 
-EDGE_STATIONS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # where on an edge
+EDGE_STATIONS = np.array([-1.0, -0.5, 0.0, 0.5, 1.0])  # of an edge, where stress is read
 _GAUSS_POINT = 1.0 / np.sqrt(3.0)
 _TRACTION_JUMP = 1e-9
 
 
 @dataclass(frozen=True)
 class Skin:
-    """Points along the outline, five on each edge: (E, 5, 2) r, z in m; tangent (E, 5, 2);
-    displacement (E, 5, 3, K) m and stress (E, 5, 6, K) Pa, amplitudes.
+    """Stress and displacement, amplitudes, at five points on each edge of the outline.
+
+    points: (E, 5, 2) r, z in m.
+    tangent: (E, 5, 2).
+    displacement: (E, 5, 3, K) m.
+    stress: (E, 5, 6, K) Pa.
     """
 
     points: Floats
@@ -46,9 +50,12 @@ class Skin:
 def skin(
     space: Section, outline: Outline, material: Material, n: Ints | int, u: Floats, traction: Floats
 ) -> Skin:
-    """Of displacements u (N, 3, K), m, of harmonics n, one or (K,), under tractions (E, 3, 3, K),
-    Pa, at the ends and middle of the outline's edges. On an axis (r = 0) stresses are finite and
-    mean nothing.
+    """The stress on the outline of displacements under tractions.
+
+    n: harmonics, one or (K,).
+    u: (N, 3, K) m.
+    traction: (E, 3, 3, K) Pa, at the ends and middle of the edges. On an axis (r = 0) stresses are
+    finite and mean nothing.
     """
     x = space.nodes[outline.nodes]
     return on_edges(
@@ -64,8 +71,12 @@ def on_edges(
     traction: Floats,
     neighbours: tuple[Ints, Ints],
 ) -> Skin:
-    """The same of edges (E, 3, 2) whose nodes are `moved` (E, 3, 3, K), with those that go on
-    smoothly before and after each (`smooth_neighbours`).
+    """The stress on edges from the displacements of their nodes.
+
+    x: (E, 3, 2) m, nodes.
+    moved: (E, 3, 3, K) m.
+    traction: (E, 3, 3, K) Pa.
+    neighbours: edges that go on smoothly before and after each (`smooth_neighbours`).
     """
     at = np.einsum("qi,eia->eqa", shapes(EDGE_STATIONS), x)
     tangent = np.einsum("qi,eia->eqa", slopes(EDGE_STATIONS), x)
@@ -98,6 +109,7 @@ def _strains(
         [(1.0 - EDGE_STATIONS / _GAUSS_POINT) / 2.0, (1.0 + EDGE_STATIONS / _GAUSS_POINT) / 2.0],
         axis=1,
     )
+    # By default the line through an edge's own two Gauss points.
     out = np.einsum("pq,eqck->epck", weights, value)
     half = np.linalg.norm(np.einsum("qi,eia->eqa", slopes(np.zeros(1)), x), axis=2)[:, 0]
     before, after = neighbours
@@ -108,6 +120,8 @@ def _strains(
         w = _lagrange(half[rows] * EDGE_STATIONS[p], np.stack(places, axis=1))
         out[rows, p] = np.einsum("eq,eqck->eck", w, np.stack(samples, axis=1))
 
+    # Where the outline goes on smoothly, the cubic through the four nearest Gauss points instead:
+    # at the edge's end, at its start, and at the three points between.
     e, f = np.flatnonzero(right), after[right]
     places = [-a[e], a[e], half[e] + c[f], half[e] + c[f] + 2.0 * a[f]]
     cubic(e, 4, [value[e, 0], value[e, 1], value[f, 0], value[f, 1]], places)
@@ -123,19 +137,17 @@ def _strains(
 
 
 def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[Ints, Ints]:
-    """Edges before and after each (E,) across which the surface and its load go on smoothly; -1
-    where they do not.
-    """
+    """Edges (E,) before and after each across which surface and load are smooth, or -1."""
     after = outline.after.copy()
     ends = np.einsum("qi,eia->eqa", slopes(np.array([-1.0, 1.0])), x)
     ends /= np.linalg.norm(ends, axis=2, keepdims=True)
-    here = np.flatnonzero(after >= 0)
-    there = after[here]
-    jump = np.abs(traction[here, 1] - traction[there, 0]).max(axis=(1, 2))
-    broken = (np.sum(ends[here, 1] * ends[there, 0], axis=1) < MIN_SMOOTH_COSINE) | (
+    edge = np.flatnonzero(after >= 0)
+    following = after[edge]
+    jump = np.abs(traction[edge, 1] - traction[following, 0]).max(axis=(1, 2))
+    broken = (np.sum(ends[edge, 1] * ends[following, 0], axis=1) < MIN_SMOOTH_COSINE) | (
         jump > _TRACTION_JUMP * np.abs(traction).max(initial=0.0)
     )
-    after[here[broken]] = -1
+    after[edge[broken]] = -1
     before = np.full(len(after), -1)
     e = np.flatnonzero(after >= 0)
     before[after[e]] = e
@@ -143,7 +155,7 @@ def smooth_neighbours(outline: Outline, x: Floats, traction: Floats) -> tuple[In
 
 
 def _lagrange(at: Floats, places: Floats) -> Floats:
-    """Weights (E, 4) of samples at `places` (E, 4) in the cubic through them at `at` (E,)."""
+    """Weights (E, 4) of samples at `places` (E, 4) in the cubic through them, at `at` (E,)."""
     w = np.ones_like(places)
     for i in range(4):
         for j in range(4):
@@ -155,11 +167,12 @@ def _lagrange(at: Floats, places: Floats) -> Floats:
 def _stress(
     material: Material, tangent: Floats, e_ss: Floats, e_tt: Floats, shear: Floats, applied: Floats
 ) -> Floats:
-    """Stress (E, 5, 6, K) from strains in the surface and traction (E, 5, 3, K)."""
+    """Stress (E, 5, 6, K) from strains in the surface and tractions (E, 5, 3, K)."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     t_r, t_z = tangent[..., 0, None], tangent[..., 1, None]
     n_r, n_z = t_z, -t_r
     T_r, T_t, T_z = (applied[..., a, :] for a in range(3))
+    # Normal and shear tractions; the in-plane stresses follow from Hooke's law with s_nn known.
     s_nn, s_ns = n_r * T_r + n_z * T_z, t_r * T_r + t_z * T_z
     plane = E / (1.0 - nu**2)
     s_ss = plane * (e_ss + nu * e_tt) + nu / (1.0 - nu) * s_nn
@@ -171,8 +184,10 @@ def _stress(
 def in_axes(
     tangent: Floats, ss: Floats, tt: Floats, nn: Floats, ns: Floats, st: Floats, nt: Floats
 ) -> Floats:
-    """Stress (..., 6, K): rr, tt, zz, tz, rz, rt, of what it is along a surface's tangent (..., 2),
-    across it and along its outward normal, (..., K) each.
+    """Stress (..., 6, K): rr, tt, zz, tz, rz, rt, from its components in the axes of a surface.
+
+    tangent: (..., 2). Components: along the tangent (s), about the axis (t) and along the outward
+    normal (n), (..., K) each.
     """
     t_r, t_z = tangent[..., 0, None], tangent[..., 1, None]
     n_r, n_z = t_z, -t_r

@@ -1,12 +1,14 @@
-"""The highest crest of a trigonometric polynomial that is known at even angles.
+"""The highest crest of a trigonometric polynomial that is known at equally spaced angles.
 
-More samples than twice its degree determine it, so that it, its slope and its bend are exact at any
-angle. A crest lies where the slope changes sign between two angles, and Newton's method finds it
-there. Between angles h apart, a polynomial of degree D rises above both by at most (D h / 2)^2 / 2
-times its half range, which itself is at most that of the samples over cos(D h / 2) (Ehlich and
-Zeller 1964); so crests that cannot be the highest are not looked at. Two crests may lie between the
-same angles, of which one is found: as the slope has three zeros there, it is at most (D h)^4 / 72
-of half the range too low.
+More samples than twice its degree determine the polynomial, so its value, slope and curvature are
+exact at any angle. A crest lies where the slope changes sign between two angles; Newton's method
+finds it there. Between angles h apart, a polynomial of degree D rises above both by at most (D h /
+2)^2 / 2 times half its range, which itself is at most that of the samples over cos(D h / 2); so
+crests that cannot be the highest are skipped. Two crests may lie between the same two angles, and
+only one of them is found: as the slope has three zeros there, the result is at most (D h)^4 / 72 of
+half the range too low.
+
+Source: H. Ehlich, K. Zeller, Math. Z. 86 (1964) 41, for the bound by samples.
 """
 
 from __future__ import annotations
@@ -15,23 +17,26 @@ import numpy as np
 
 from pinbase.arrays import Floats, Ints
 
-ANGLES_PER_SAMPLE = (
-    4  # times as many angles as samples: D h = 0.3 where there are 5 samples for a degree
-)
-MAX_CREST_STEPS = 40  # of Newton's method at most, or of bisection where that leaves the interval
-CREST_STEP_TOLERANCE = (
-    1e-6  # the last step of Newton's method, of a wave; what is left is of its square
-)
+# Angles over samples: D h = 0.3 with 5 samples per degree, so a missed second crest costs 1e-4.
+ANGLES_PER_SAMPLE = 4
+MAX_CREST_STEPS = 40  # Newton steps, or bisections where Newton's method leaves the interval
+# Last Newton step, of a wavelength over 2 pi: the remaining error is of the order of its square.
+CREST_STEP_TOLERANCE = 1e-6
 
 
 def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) -> Floats:
-    """Angles (J,) in rad at which polynomials of a `degree` are largest, of samples (J, A) at the
-    angles 2 pi k / A, A > 2 `degree`. beat: (J,), of a polynomial that cannot exceed it the angle
-    of the largest sample will do.
+    """The angles (J,), rad, at which polynomials are largest.
+
+    samples: (J, A) values at the angles 2 pi k / A.
+    degree: of the polynomials; A > 2 `degree`.
+    beat: (J,), a value to exceed; where a polynomial cannot, the angle of its largest sample is
+    returned.
     """
     count = samples.shape[1]
     best = samples.argmax(axis=1) * (2.0 * np.pi / count)
     hopeful = np.flatnonzero(upper_bound(samples, degree) > beat)
+    # The polynomial and its slope on a grid ANGLES_PER_SAMPLE times finer, by zero-padded
+    # transforms.
     k = np.arange(degree + 1)
     c = np.fft.rfft(samples[hopeful], axis=1)[:, : degree + 1] / count
     count *= ANGLES_PER_SAMPLE
@@ -39,6 +44,8 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
     samples, slope = (np.fft.irfft(x, count, axis=1) * count for x in (c, 1j * k * c))
     c[:, 1:] *= 2.0
     top = samples.max(axis=1)
+    # Only intervals that may hold the highest crest: near the largest value, the slope changing
+    # from up to down.
     near = samples >= (2.0 * top - upper_bound(samples, degree))[:, None]
     near |= np.roll(near, -1, axis=1)
     row, at = np.nonzero(near & (slope > 0.0) & (np.roll(slope, -1, axis=1) <= 0.0))
@@ -52,16 +59,18 @@ def highest_crest(samples: Floats, degree: int, beat: Floats | float = -np.inf) 
 
 
 def upper_bound(samples: Floats, degree: int) -> Floats:
-    """What polynomials that have these samples (J, A) reach at most, (J,)."""
+    """The most (J,) that polynomials of a degree with the samples (J, A) can reach."""
     arch = degree * np.pi / samples.shape[1]
     top = samples.max(axis=1)
     return np.asarray(top + arch**2 / 4.0 * (top - samples.min(axis=1)) / np.cos(arch))
 
 
 def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
-    """The root of the largest of samples (J, A) at the angles 2 pi k / A, by a parabola through its
-    neighbours, and its angle, rad; a negative sample is none, and next to one there is no crest.
-    Zero where there are no samples.
+    """The square roots (J,) of the highest crests of samples (J, A), and their angles (J,), rad.
+
+    A parabola through the largest sample and its neighbours gives the crest. Negative samples count
+    as absent, and next to one there is no crest. Without any sample the value is zero.
+    square: (J, A) samples of a square at the angles 2 pi k / A.
     """
     count, row = square.shape[1], np.arange(len(square))
     top = square.argmax(axis=1)
@@ -77,32 +86,45 @@ def crest_of_samples(square: Floats) -> tuple[Floats, Floats]:
 
 
 def _crests(c: Floats, low: Floats, angle: Floats, high: Floats) -> Floats:
-    """Angles (C,) at which polynomials of coefficients (C, D + 1) have no slope, between two at
-    which it goes up and down, from a guess.
+    """The angles (C,), rad, of the crests of polynomials, by safeguarded Newton steps.
+
+    c: (C, D + 1) complex Fourier coefficients.
+    low, high: (C,) rad, where the slope is positive and negative.
+    angle: (C,) rad, a guess.
     """
     k = np.arange(c.shape[1])
     for _ in range(MAX_CREST_STEPS):
         wave = c * np.exp(1j * k * angle[:, None])
         first, second = -(wave.imag @ k), -(wave.real @ k**2)
         low, high = np.where(first > 0.0, angle, low), np.where(first > 0.0, high, angle)
-        there = angle - first / np.where(second < 0.0, second, -np.inf)
-        inside = (second < 0.0) & (there >= low) & (there <= high)
-        angle, last = np.where(inside, there, (low + high) / 2.0), angle
+        # A Newton step, or bisection where it leaves the interval or the curve bends upwards.
+        newton = angle - first / np.where(second < 0.0, second, -np.inf)
+        inside = (second < 0.0) & (newton >= low) & (newton <= high)
+        angle, last = np.where(inside, newton, (low + high) / 2.0), angle
         if np.all(np.abs(angle - last) * k[-1] <= CREST_STEP_TOLERANCE):
             break
     return angle
 
 
-def closed(total: Floats, apart: Floats, mixed: Floats) -> Floats:
-    """Largest of A cos^2 + 2 B cos sin + C sin^2: total A + C, apart A - C, mixed B."""
+def form_maximum(total: Floats, apart: Floats, mixed: Floats) -> Floats:
+    """The largest value of A cos^2 + 2 B cos sin + C sin^2, in closed form.
+
+    total: A + C.
+    apart: A - C.
+    mixed: B.
+    """
     return np.asarray(total / 2.0 + np.sqrt(apart * apart / 4.0 + mixed * mixed))
 
 
 def one_wave(n: Ints, back: Floats, forth: Floats) -> tuple[Floats, Floats]:
-    """Largest von Mises stress and its angle, (J,) each, of no wave or of one of harmonic n."""
+    """The largest von Mises stress (J,) and its angle (J,), rad, where one harmonic acts, or none.
+
+    n: (1,) or (0,) the harmonic.
+    back, forth: (J, 5, 1) the factors of cos n theta and sin n theta.
+    """
     A, B, C = ((x * y).sum(axis=(1, 2)) for x, y in ((back, back), (back, forth), (forth, forth)))
     if not n.any():
         return np.sqrt(A), np.zeros(len(A))
-    largest = np.maximum(closed(A + C, A - C, B), 0.0)
+    largest = np.maximum(form_maximum(A + C, A - C, B), 0.0)
     angle = 0.5 * np.arctan2(2.0 * B, A - C) / n[0]
     return np.sqrt(largest), np.asarray(angle)

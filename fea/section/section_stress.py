@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from fea.beam.error_model import between_clamps
 from fea.beam.line_load import acting, shares
 from fea.beam.plastic_interaction import plastic_use
-from fea.beam.round_section import Circle, weakest
+from fea.beam.round_section import Circle, thinnest_section
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
@@ -214,4 +214,4 @@ def sections_at(
     middle = 0.5 * (stations[cells] + stations[cells + 1])
     which = np.clip(np.searchsorted(starts, middle) - 1, 0, len(pin.segments) - 1)
     each = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
-    return [weakest(pin.segments[i], x, x) for i, x in each]
+    return [thinnest_section(pin.segments[i], x, x) for i, x in each]

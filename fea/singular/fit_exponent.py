@@ -12,20 +12,26 @@ from scipy.optimize import minimize_scalar
 
 from pinbase.arrays import Floats
 
+# Chosen by judgement; `python -m benchmarks corners` shows how exponents compare with theory.
 MIN_FIT_POINTS = 8  # points in the range
-MIN_DISTANCE_RATIO = 5.0  # the range must cover this ratio of distances
+MIN_DISTANCE_RATIO = 5.0  # largest over least distance in the range
 MAX_FIT_ERROR = 0.05  # rms of relative differences: more is no power
 EXPONENT_LIMITS = (0.01, 0.95)
 
 
 def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) -> float | None:
-    """s from stresses (J,) at distances (J,), q = `following`; None if they show no such growth."""
+    """The exponent s of stress A d^-s + B d^q fitted to samples; None if they show no such growth.
+
+    distance, stress: (J,) each.
+    following: q.
+    """
     if (
         len(distance) < MIN_FIT_POINTS
         or np.ptp(np.log(distance)) < np.log(MIN_DISTANCE_RATIO)
         or not np.all(stress > 0.0)
     ):
         return None
+    # Distances over their geometric mean keep both terms of comparable size.
     d = distance / np.exp(np.log(distance).mean())
 
     def fitted(s: float) -> tuple[float, float]:
@@ -33,14 +39,21 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
         parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
         return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])
 
+    # The amplitudes follow from s, so the search is over s alone.
     best = minimize_scalar(lambda s: fitted(s)[0], bounds=EXPONENT_LIMITS, method="bounded")
     square, amplitude = fitted(float(best.x))
     return float(best.x) if amplitude > 0.0 and square < MAX_FIT_ERROR**2 else None
 
 
-def strength(distance: Floats, stress: Floats, exponent: float, following: float = 0.0) -> float:
-    """A of stress A d^-s + B d^q from stresses (J,) Pa at distances (J,) m, with s known; in
-    Pa m^s. q: `following`.
+def singular_intensity(
+    distance: Floats, stress: Floats, exponent: float, following: float = 0.0
+) -> float:
+    """The factor A, Pa m^s, of stress A d^-s + B d^q for a known exponent s.
+
+    distance: (J,) m.
+    stress: (J,) Pa.
+    exponent: s.
+    following: q.
     """
     mean = float(np.exp(np.log(distance).mean()))
     d = distance / mean

@@ -36,10 +36,10 @@ MIN_EXPONENT = 1e-9  # exponents below are those of no singularity
 
 
 def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) -> float:
-    """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug, in plane strain; 0 where
-    they stay finite.
+    """Exponent s of pressure and stress ~ d^-s at the sharp edge of a lug; 0 where finite.
 
-    lug: the material that touches the pin, a bushing's if there is one. angle: of the edge, rad.
+    lug: the material that touches the pin, a bushing's if there is one.
+    angle: of the edge, rad.
 
     Raises: ArgumentError outside 0 < angle < pi. Source: as the module.
     """
@@ -47,7 +47,7 @@ def lug_edge_exponent(pin: Material, lug: Material, angle: float = RIGHT_ANGLE) 
 
 
 def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
-    """The same from (1 - nu^2) / E of both, in the same unit; 0 is rigid. Only their ratio counts.
+    """The same from the plane compliances (1 - nu^2) / E of both, whose ratio counts; 0 is rigid.
 
     Raises: ArgumentError if both are rigid or one is negative; as `lug_edge_exponent`.
     """
@@ -66,8 +66,9 @@ def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
 
 
 def next_power(pin: Material, lug: Material) -> float:
-    """The power of the distance with which the next term of pressure at the edge of a lug, of 90
-    degrees, grows: 0.5 of a rigid lug to 1 of a very soft one; what is regular there has no less.
+    """The power of distance of the next term of pressure at the edge of a lug of 90 degrees.
+
+    It is 0.5 for a rigid lug and up to 1 for a very soft one; regular terms have no lower power.
     """
     pin_part, lug_part = pin.plane_compliance, lug.plane_compliance
     share = lug_part / (pin_part + lug_part)

@@ -28,14 +28,12 @@ def rim(pin: Pin, singularity: Zone, distance: float) -> Floats:
     inner, outer = pin.radii_at(x[:, 1])
     little = min(1e-3 * singularity.radius, 1e-2 * distance)
     inside = (x[:, 0] > inner + little) & (x[:, 0] < outer - little)
-    found: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
-    return found
+    points: Floats = x[inside & (x[:, 1] > little) & (x[:, 1] < pin.length - little)]
+    return points
 
 
 def all_round(points: Floats) -> Floats:
-    """Points (P, 2) of a section turned about the axis: (CIRCUMFERENCE_POINTS P, 3), x, y, z in
-    m.
-    """
+    """Points (P, 2) of a section turned about the axis: (CIRCUMFERENCE_POINTS P, 3), x, y, z, m."""
     angle = 2.0 * np.pi * np.arange(CIRCUMFERENCE_POINTS)[:, None] / CIRCUMFERENCE_POINTS
     r, z = points.T
     x = np.stack([r * np.cos(angle), r * np.sin(angle), z + 0.0 * angle], axis=2)
@@ -43,8 +41,10 @@ def all_round(points: Floats) -> Floats:
 
 
 def interpolation(nodes: Floats, elements: Ints, points: Floats) -> sp.csr_matrix:
-    """Matrix (P, N) from values at nodes (N, d) to those at points (P, d) inside the body, by the
-    shape functions of the element (M, k) round each point, as if it had straight sides.
+    """Matrix (P, N) from values at nodes (N, d) to points (P, d) inside the body.
+
+    It uses the shape functions of the element (M, k) that contains each point, taken as
+    straight-sided.
     """
     if not len(points):
         return sp.csr_matrix((0, len(nodes)))  # a tree of all elements takes a while

@@ -1,4 +1,4 @@
-"""The stress singularities of a pin, and their remedies."""
+"""The stress singularities of a pin: their places, their exponents and their remedies."""
 
 from __future__ import annotations
 
@@ -17,13 +17,12 @@ from geometry import Arc, Pin, PinLike, Vertex, meridian, vertices
 from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
 from pinbase.arrays import Floats, Mask
 
+# Chosen by judgement:
 MIN_ADVISED_FILLET = 0.1  # of the smaller diameter: the radius to try
-LOGARITHM_DISTANCE_RATIO = (
-    0.1  # of the distance of a power: a logarithm is felt that much closer only
-)
-STRAIGHT_ARC_SHARE = (
-    0.25  # of the radius of an arc that begins at a singularity: so far it is nearly straight
-)
+# Excluded distance at a logarithm over that at a power: a logarithm is felt that much closer only.
+LOGARITHM_DISTANCE_RATIO = 0.1
+# Of the radius of an arc that begins at a singularity: up to there it is nearly straight.
+STRAIGHT_ARC_SHARE = 0.25
 
 
 @lru_cache(256)
@@ -34,40 +33,48 @@ def find_singularities(
     nu: float,
     distance: float = 0.1,
 ) -> tuple[Zone, ...]:
-    """Every such singularity, in the order of `vertices`. The zone of each ends where a fillet or a
-    groove begins: farther away, its term K d^-theory is not what governs stress. Those of other
-    singularities may overlap it, since neither has stress that counts.
+    """Every stress singularity of a pin, in the order of `vertices`.
 
-    clamps: surfaces (by the pin's names) that are clamped. loaded: those under a traction that does
-    not fade towards their edges; a bearing pressure's shear does. nu: Poisson's ratio. distance: of
-    the local diameter, that is not to be read; a tenth of it at the edge of a load.
+    The zone of each ends where a fillet or a groove begins: farther away its term K d^-theory does
+    not govern stress. Zones of other singularities may overlap it, since neither has stress that
+    counts.
+    clamps: surfaces (by the pin's names) that are clamped.
+    loaded: those under a traction that does not fade towards their edges; a bearing pressure's
+    shear does.
+    nu: Poisson's ratio.
+    distance: of the local diameter, within which stress is not read; a tenth of it at the edge of a
+    load.
 
-    Raises: GeometryError for a surface that the pin has not; ValueError outside -1 < nu < 0.5.
+    Raises: GeometryError for a surface that the pin does not have; ValueError outside -1 < nu <
+    0.5.
     """
     constrained = {pin.surface(name) for name in clamps}
     pushed = {pin.surface(name) for name in loaded}
     every = vertices(pin)
-    arcs, found = _inner_arcs(pin), []
+    arcs, zones = _inner_arcs(pin), []
     for k, v in enumerate(every):
         singularity = _singularity(pin, v, constrained, pushed, nu, distance)
         if singularity is not None:
             feature = _feature(every, k, constrained)
             here = replace(singularity, feature=feature, scale=MESH_SCALE_RATIO * feature)
-            found.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
-    return tuple(found)
+            zones.append(here.up_to(*(_free_of(arc, (v.r, v.z)) for arc in arcs)))
+    return tuple(zones)
 
 
 def free_of_arcs(pin: Pin, r: Floats, z: Floats) -> Floats:
-    """How far (m) from points at r, z (S,), m, the first of the pin's fillets and grooves is."""
+    """Distances (S,), m, from points at r, z (S,), m, to the nearest fillet or groove."""
     arcs = _inner_arcs(pin)
     at = zip(r.tolist(), z.tolist(), strict=True)
     return np.array([min((_free_of(arc, x) for arc in arcs), default=math.inf) for x in at])
 
 
 def begins(gap: float, radius: float) -> float:
-    """How far (m) from a singularity stress is still its own beside a fillet, a groove or a hole of
-    some radius (m): up to it, or, where it begins there or nearly so, STRAIGHT_ARC_SHARE of its
-    radius.
+    """Distance (m) from a singularity up to which stress is its own beside a feature.
+
+    The feature is a fillet, a groove or a hole.
+    gap: m, to the feature.
+    radius: m, of the feature. Where the feature begins at the singularity or nearly so, it is
+    STRAIGHT_ARC_SHARE of the radius.
     """
     return max(gap, STRAIGHT_ARC_SHARE * radius)
 
@@ -78,7 +85,7 @@ def _inner_arcs(pin: Pin) -> tuple[Arc, ...]:
 
 
 def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
-    """Which of the points at r, z (S,), m, are in none of the singularities."""
+    """Mask (S,) of the points at r, z (S,), m, that lie in none of the singularities."""
     out = np.ones(len(r), dtype=bool)
     for p in singularities:
         out &= np.hypot(r - p.r, z - p.z) >= p.radius * (1.0 - 1e-9)
@@ -88,10 +95,14 @@ def outside(singularities: Iterable[Zone], r: Floats, z: Floats) -> Mask:
 def smooth_edges(
     pin: Pin, surfaces: Collection[str], clamps: Collection[str], cells: Collection[str] = ()
 ) -> tuple[tuple[float, float], ...]:
-    """Rims (r, z), m, of surfaces (by the pin's names) that go on smoothly, neither side clamped;
-    not between two cells of one pressure.
+    """Rims (r, z), m, of surfaces across which the outline goes on smoothly, neither side clamped.
+
+    surfaces, clamps: by the pin's names.
+    cells: surfaces of one pressure, between which there is no rim.
     """
-    names, constrained = ({pin.surface(name) for name in found} for found in (surfaces, clamps))
+    names, constrained = (
+        {pin.surface(name) for name in surface_names} for surface_names in (surfaces, clamps)
+    )
     return tuple(
         (v.r, v.z)
         for v in vertices(pin)
@@ -111,6 +122,11 @@ def clamp_rims(pin: Pin, clamps: tuple[str, ...]) -> tuple[tuple[float, float], 
 def _singularity(
     pin: Pin, v: Vertex, constrained: set[str], pushed: set[str], nu: float, distance: float
 ) -> Zone | None:
+    """The singularity at a vertex, or None where stress stays finite.
+
+    constrained, pushed: surfaces that are clamped, or loaded up to their edges.
+    distance: as in `find_singularities`.
+    """
     first, second = (_side(name, constrained) for name in v.between)
     smooth = abs(v.angle - math.pi) <= SMOOTH_ANGLE_TOLERANCE
     omega = math.pi if smooth else v.angle
@@ -118,10 +134,12 @@ def _singularity(
     torsion = antiplane_exponent(omega, first, second)
     reach = distance * 2.0 * v.r
     kind: Kind
+    # A corner or a clamp with an exponent; else the edge of a shear load on a smooth free surface,
+    # whose traction jumps there.
     if max(plane, torsion) > 0.0:
         clamped = "clamped" in (first, second)
         kind = "edge of a clamp" if clamped else "sharp corner"
-        advice = CLAMP_ADVICE if clamped else _fillet(pin, v)
+        advice = CLAMP_ADVICE if clamped else _fillet_advice(pin, v)
     elif smooth and "clamped" not in (first, second) and pushed & set(v.between):
         kind, advice, reach = "edge of a load", _TRACTION_ADVICE, reach * LOGARITHM_DISTANCE_RATIO
     else:
@@ -130,7 +148,7 @@ def _singularity(
 
 
 def _free_of(arc: Arc, at: tuple[float, float]) -> float:
-    """How far (m) from (r, z) an arc begins."""
+    """Distance (m) from (r, z) to where an arc begins."""
     r, z = at[0] - arc.centre[0], at[1] - arc.centre[1]
     a, b = arc.start[0] - arc.centre[0], arc.start[1] - arc.centre[1]
     part = math.atan2(a * z - b * r, a * r + b * z) / arc.turn
@@ -140,8 +158,9 @@ def _free_of(arc: Arc, at: tuple[float, float]) -> float:
 
 
 def _feature(every: tuple[Vertex, ...], k: int, constrained: set[str]) -> float:
-    """The shorter of the two surfaces that meet at vertex k, m: on each side as far as the outline
-    goes on smoothly, all of it clamped or all of it free.
+    """The shorter of the two surfaces that meet at vertex k, m.
+
+    Each is measured as far as the outline goes on smoothly, all of it clamped or all of it free.
     """
 
     def length(step: int) -> float:
@@ -168,15 +187,15 @@ _TRACTION_ADVICE = (
 _BORE_ADVICE = "a radius here would make it finite: the bore_radius of the wider segment"
 
 
-def _fillet(pin: Pin, v: Vertex) -> str:
-    """What fillet to try at an inner corner, and why not a larger one."""
+def _fillet_advice(pin: Pin, v: Vertex) -> str:
+    """The fillet to try at an inner corner, and why not a larger one, for people."""
     i = min(range(len(pin.segments) - 1), key=lambda i: abs(pin.stations[i + 1] - v.z))
     left, right = pin.segments[i], pin.segments[i + 1]
-    here, there = left.diameters[1], right.diameter
-    thin, d = (i, here) if here < there else (i + 1, there)
+    before, after = left.diameters[1], right.diameter
+    thin, d = (i, before) if before < after else (i + 1, after)
     if abs(2.0 * v.r - d) > abs(2.0 * v.r - max(left.bores[1], right.bore)):
         return _BORE_ADVICE
-    step = abs(here - there) / 2.0 or math.inf
+    step = abs(before - after) / 2.0 or math.inf
     band = pin.bands[thin]
     limit, what = min(
         (step, "the height of the step"), (band.length / 2.0, f"half the length of {band.name}")

@@ -46,7 +46,9 @@ EXPONENT_ROUND_OFF = 1e-12  # exponents below are those of no singularity
 def plane_exponent(omega: float, nu: float, first: Side, second: Side) -> float:
     """Exponent s of stress ~ d^-s in plane strain at a corner; 0 where stress stays finite.
 
-    omega: angle (rad) of the material, 0 to 2 pi. nu: Poisson's ratio. first, second: its sides.
+    omega: angle (rad) of the material, 0 to 2 pi.
+    nu: Poisson's ratio.
+    first, second: its sides.
 
     Raises: ValueError outside 0 < omega <= 2 pi or -1 < nu < 0.5.
     Source: as the module.
@@ -55,10 +57,10 @@ def plane_exponent(omega: float, nu: float, first: Side, second: Side) -> float:
 
 
 def plane_eigenvalue(omega: float, nu: float, first: Side, second: Side) -> complex:
-    """The least L of displacement ~ r^L, of a pair the one above the real axis; 1 where stress
-    stays finite. A complex one makes the stress change sign ever faster towards the corner.
+    """The least L of displacement ~ r^L, of a pair the upper one; 1 where stress is finite.
 
-    Arguments and Raises: as `plane_exponent`. Source: as the module.
+    A complex one makes the stress change sign ever faster towards the corner. Arguments and Raises:
+    as `plane_exponent`. Source: as the module.
     """
     _require(omega)
     if not -1.0 < nu < 0.5:
@@ -77,7 +79,8 @@ def plane_eigenvalue(omega: float, nu: float, first: Side, second: Side) -> comp
 def antiplane_exponent(omega: float, first: Side, second: Side) -> float:
     """Exponent s of stress ~ d^-s in torsion at a corner; 0 where stress stays finite.
 
-    omega: angle (rad) of the material, 0 to 2 pi. first, second: its sides.
+    omega: angle (rad) of the material, 0 to 2 pi.
+    first, second: its sides.
 
     Raises: ValueError outside 0 < omega <= 2 pi.
     Source: the displacement is harmonic: r^L cos L theta, L = pi / omega, or half that if the sides
@@ -88,10 +91,11 @@ def antiplane_exponent(omega: float, first: Side, second: Side) -> float:
 
 
 def notch_factor(omega: float, nu: float, torsion: bool = False) -> float:
-    """Notch stress intensity factor over the strength C of von Mises stress C d^-s along a free
-    side, where plane strain (opening; K1) or torsion (K3) governs; sides free, omega > pi.
+    """Notch stress intensity factor over the factor C of von Mises stress C d^-s along a free side.
 
-    K1 = sqrt(2 pi) lim d^s sigma_theta on the bisector, K3 the same of the shear stress.
+    Plane strain (opening; K1) or torsion (K3) governs; both sides are free, omega > pi. K1 = sqrt(2
+    pi) lim d^s sigma_theta on the bisector, K3 the same of the shear stress.
+
     Source: P. Lazzarin, R. Tovo, Int. J. Fract. 78 (1996) 3, for the ratio of the stress along the
     side to that on the bisector.
     """
@@ -107,13 +111,13 @@ def notch_factor(omega: float, nu: float, torsion: bool = False) -> float:
 
 
 def _equal_sides(omega: float, kappa: float) -> float:
-    """x = L omega, for omega > pi; kappa is 1 for free sides."""
+    """The root x = L omega for equal sides, omega > pi; kappa is 1 for free sides."""
     q = abs(math.sin(omega)) / (kappa * omega)
     return _root(lambda x: math.sin(x) - q * x, math.pi / 2.0, math.pi + 1e-9)
 
 
 def _different_sides(omega: float, kappa: float) -> complex:
-    """z = 2 L omega; infinite when its real part would be above 2 omega anyway."""
+    """The root z = 2 L omega for different sides; infinite if Re z would exceed 2 omega."""
     A = (kappa + 1.0 / kappa) / 2.0
     B = (math.sin(omega) / omega) ** 2 / (2.0 * kappa)
 
@@ -126,6 +130,8 @@ def _different_sides(omega: float, kappa: float) -> complex:
         slope = 2.0 * B * (b / math.sinh(b) if b else 1.0)
         return _root(lambda a: math.sin(a) + slope * a, math.pi, STEEPEST_ANGLE)
 
+    # The cases of the module's docstring in turn: real root up to pi, none that matters, real root
+    # up to a0, and the complex root on the curve.
     if F(math.pi) <= 0.0:
         return complex(_root(F, 0.0, math.pi))
     if omega <= math.pi / 2.0:

@@ -20,10 +20,10 @@ from pinbase.arrays import Floats, Ints
 
 
 class Discretisation:
-    """Tetrahedra on a mesh (m) with K nodes and Q quadrature points each: 10 and 4 of quadratic
-    ones, 4 and 1 of linear ones (MeshTet1).
+    """Tetrahedra on a mesh (m) with K nodes and Q quadrature points each.
 
-    Unknown 3 n + c is component c of the displacement of node n; node numbers are the mesh's.
+    K and Q are 10 and 4 for quadratic tetrahedra, 4 and 1 for linear ones (MeshTet1). Unknown 3 n +
+    c is component c of the displacement of node n; node numbers are the mesh's.
     """
 
     def __init__(self, mesh: MeshTet1) -> None:
@@ -59,8 +59,10 @@ class Discretisation:
         return np.asarray(self.basis.dx)
 
     def stiffness(self, material: Material) -> sp.csr_matrix:
-        """Stiffness matrix, N/m: lambda S + mu S^T + mu tr S for a pair of nodes i, j, where S_ab
-        is the integral of dN_i/dx_a dN_j/dx_b.
+        """The stiffness matrix, N/m.
+
+        It is lambda S + mu S^T + mu tr S for a pair of nodes i, j, where S_ab is the integral of
+        dN_i/dx_a dN_j/dx_b.
         """
         lam, mu = material.lame
         pattern = Pattern(self.elements, int(self.basis.N))
@@ -74,8 +76,9 @@ class Discretisation:
         return pattern.matrix(blocks)
 
     def strain(self, displacement: Floats) -> Floats:
-        """Strains (M, Q, 6) at the quadrature points for a displacement (N, 3) in m:
-        xx, yy, zz, yz, xz, xy, shears as tensor components.
+        """Strains (M, Q, 6) at the quadrature points: xx, yy, zz, yz, xz, xy, tensor shears.
+
+        displacement: (N, 3) m.
         """
         u = displacement[self.elements]
         h = np.einsum("mqia,mib->mqab", self.gradients, u, optimize=True)

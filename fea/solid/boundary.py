@@ -13,19 +13,18 @@ from fea.solid.assembly import Discretisation
 from pinbase.arrays import Floats, Ints, Mask
 
 _PLANE_TOLERANCE = 1e-6  # difference of unit normals on a plane facet, by round-off and gmsh's
-MIN_SMOOTH_COSINE = (
-    0.97  # cosine between a node's normals below which it sits on an edge of the body
-)
+# Cosine between a node's normals below which it sits on an edge of the body; chosen by judgement.
+MIN_SMOOTH_COSINE = 0.97
 
-QUARTER_TRIANGLES = np.array(
-    [[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]]
-)  # of a quadratic triangle
+# The quarters of a quadratic triangle by its nodes.
+QUARTER_TRIANGLES = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 _TRIANGLE_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
 
 
 def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
-    """The six quadratic functions on the triangle (corners, edges 01, 12, 02), or the three linear
-    ones, (Q, K).
+    """Shape functions (Q, K) on the triangle, quadratic (corners, edges 01, 12, 02) or linear.
+
+    nodes: 3 for the linear ones.
     """
     w = 1.0 - x - y
     if nodes == 3:
@@ -36,7 +35,7 @@ def _shapes(x: Floats, y: Floats, nodes: int) -> Floats:
 
 
 def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
-    """Their derivatives by x and y, (Q, K, 2)."""
+    """The derivatives of the shape functions by x and y, (Q, K, 2)."""
     w, zero = 1.0 - x - y, 0.0 * x
     if nodes == 3:
         one = zero + 1.0
@@ -47,9 +46,7 @@ def _slopes(x: Floats, y: Floats, nodes: int) -> Floats:
 
 
 def slopes_at(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """The six quadratic functions at points (Q,) of a facet, (Q, 6), and their derivatives, (Q, 6,
-    2).
-    """
+    """The six quadratic shape functions at points (Q,), (Q, 6), and derivatives (Q, 6, 2)."""
     return _shapes(x, y, 6), _slopes(x, y, 6)
 
 
@@ -61,8 +58,12 @@ def quadrature() -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class SurfaceMesh:
-    """nodes: (S,) node numbers on the boundary. facets: (F,) facet numbers. corners: (F, K) node
-    numbers, K = 6, or 3 on linear elements. normals: (F, K, 3) outward unit vectors at those nodes.
+    """The boundary of a solid mesh.
+
+    nodes: (S,) node numbers.
+    facets: (F,) facet numbers.
+    corners: (F, K) node numbers, K = 6, or 3 on linear elements.
+    normals: (F, K, 3) outward unit vectors at those nodes.
     """
 
     nodes: Ints
@@ -72,11 +73,11 @@ class SurfaceMesh:
 
     @property
     def curved(self) -> bool:
-        """Whether any facet is."""
+        """Whether any facet is curved."""
         return not np.allclose(self.normals, self.normals[:, :1], atol=_PLANE_TOLERANCE)
 
     def on(self, space: Discretisation, surfaces: Iterable[str]) -> Mask:
-        """Which facets are on one of the named surfaces, (F,)."""
+        """Mask (F,) of the facets on any of the named surfaces."""
         named = [space.mesh.boundaries[name] for name in surfaces]
         return np.isin(self.facets, np.concatenate([*named, np.zeros(0, dtype=np.int64)]))
 
@@ -100,16 +101,17 @@ def surface(space: Discretisation) -> SurfaceMesh:
 
 
 def clamped_nodes(space: Discretisation, surfaces: tuple[str, ...]) -> Ints:
-    """Nodes on the named surfaces."""
-    found = [space.basis.get_dofs(space.mesh.boundaries[s]).flatten() for s in surfaces]
-    return np.unique(np.concatenate(found)).astype(np.int64)
+    """Numbers of the nodes on the named surfaces."""
+    nodes = [space.basis.get_dofs(space.mesh.boundaries[s]).flatten() for s in surfaces]
+    return np.unique(np.concatenate(nodes)).astype(np.int64)
 
 
 class Patch:
     """One named surface and the tractions that load it.
 
-    rows: (P,) its facets among the boundary's. area: m^2. Tractions (P, K, 3, L) are values at the
-    nodes of its facets, in Pa for each unit of load, and quadratic between them.
+    rows: (P,) its facets among the boundary's.
+    area: m^2. Tractions (P, K, 3, L), Pa per unit of each load, are values at the nodes of its
+    facets, and quadratic between them.
     """
 
     def __init__(self, space: Discretisation, boundary: SurfaceMesh, name: str) -> None:
@@ -130,16 +132,16 @@ class Patch:
 
     @property
     def points(self) -> Floats:
-        """Nodes of its facets, (P, K, 3), m."""
+        """The nodes of its facets, (P, K, 3), m."""
         return np.asarray(self._nodes[self._corners])
 
     def exactly(self, traction: Floats, target: Floats, middle: float) -> Floats:
-        """The traction (P, K, 3, L) with the resultants `target` (6, L): force and moment about
-        (0, 0, middle), N and N m.
+        """The traction (P, K, 3, L) corrected to have exactly the resultants `target`.
 
-        The mesh's surface is not quite round, and holes may be cut into it, so a traction has
-        resultants slightly different from those intended; small parts of uniform tractions, of
-        such that grow along z and of one tangential about z make up for that.
+        target: (6, L) force (N) and moment (N m) about (0, 0, middle). The mesh's surface is not
+        quite round, and holes may be cut into it, so a traction has resultants slightly different
+        from those intended; small parts of uniform tractions, of such that grow along z and of one
+        tangential about z make up for that.
         """
         x = self.points - [0.0, 0.0, middle]
         trial = np.zeros((*x.shape, 6))
@@ -159,6 +161,6 @@ def resultants(nodes: Floats, forces: Floats, z: float = 0.0) -> Floats:
 
 
 def area_vectors(x: Floats, at_x: Floats, at_y: Floats) -> Floats:
-    """Cross products of the tangents of facets with nodes x (F, K, 3) at Q points, (F, Q, 3)."""
+    """Cross products (F, Q, 3) of the tangents of facets with nodes x (F, K, 3) at Q points."""
     tangents = np.einsum("qfc,tfa->tqca", _slopes(at_x, at_y, x.shape[1]), x)
     return np.cross(tangents[:, :, 0], tangents[:, :, 1])

@@ -21,7 +21,7 @@ from fea.core.strain_energy import StrainEnergy
 from fea.singular.probes import interpolation
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh, clamped_nodes, resultants, surface
-from fea.solid.nodal_loads import Unit, closed, nodal_loads, part
+from fea.solid.nodal_loads import Unit, nodal_loads, relative_resultant, with_closing_tractions
 from fea.solid.stress_recovery import nodal_stress, with_known_traction
 from geometry import PinLike
 from geometry.mesh.solid_mesh import SolidMesh
@@ -32,13 +32,16 @@ _NO_POINTS = np.zeros((0, 3))
 
 @dataclass(frozen=True)
 class UnitFields:
-    """Fields of L unit loads, each in one phase: displacement (N, 3, L) in m, stress (N, 6, L) in
-    Pa, both per unit of load, and the nodal forces (N, 3, L) in N that they came from.
+    """Fields of L unit loads, each in one phase, per unit of load.
 
-    extra: further points (P, 3) inside the body where stress is read, m. fixed: displacement
-    components that were constrained, 3 n + c for component c of node n. support:
-    (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system; minus
-    those of the load when all is well. revolved: whether the pin is the same all round.
+    displacement: (N, 3, L) m.
+    stress: (N, 6, L) Pa.
+    forces: (N, 3, L) N, on the nodes.
+    extra: (P, 3) m, further points inside the body where stress is read.
+    fixed: numbers of constrained displacement components, 3 n + c for component c of node n.
+    support: (6, L) force and moment of the clamps about (0, 0, 0), from the residual of the system;
+    minus those of the load if the solution is right.
+    revolved: whether the pin is a body of revolution.
     """
 
     space: Discretisation
@@ -54,25 +57,25 @@ class UnitFields:
 
     @property
     def points(self) -> Floats:
-        """Where stress is read, (S + P, 3) m: at nodes of the surface, then at the extra points."""
+        """The points (S + P, 3), m, where stress is read: on the surface, then extra ones."""
         return np.concatenate([self.space.nodes[self.surface.nodes], self.extra])
 
     @cached_property
     def read(self) -> Floats:
-        """The stress there, (S + P, 6, L) Pa."""
-        there = interpolation(self.space.nodes, self.space.elements, self.extra)
-        inside = there @ self.stress.reshape(len(self.stress), -1)
+        """The stress (S + P, 6, L), Pa, at these points."""
+        to_extra = interpolation(self.space.nodes, self.space.elements, self.extra)
+        inside = to_extra @ self.stress.reshape(len(self.stress), -1)
         shape = len(self.extra), *self.stress.shape[1:]
         return np.concatenate([self.stress[self.surface.nodes], inside.reshape(shape)])
 
     @cached_property
     def energy(self) -> StrainEnergy:
-        """Of the pin under these loads."""
+        """The strain energy of the pin under these loads."""
         forces, moved = (x.reshape(-1, len(self.loads)) for x in (self.forces, self.displacement))
         return StrainEnergy(self.loads, forces.T @ moved)
 
     def coefficients(self, loads: Loads) -> Floats:
-        """How much of each unit load acts at each instant, (T, L).
+        """The amount of each unit load at each instant, (T, L).
 
         Raises: ValueError when there is no field for a part of the loads.
         """
@@ -86,7 +89,7 @@ class UnitFields:
 
 
 def acting(cases: Iterable[PinLoads]) -> tuple[Unit, ...]:
-    """Unit loads of which the cases are made, whichever way they are turned about the axis."""
+    """The unit loads of which the cases are made, in all phases, so that loads can be turned."""
     loads = dict.fromkeys(load for case in cases for load in case.coefficients())
     return tuple((load, phase) for load in loads for phase in load.phases)
 
@@ -94,9 +97,9 @@ def acting(cases: Iterable[PinLoads]) -> tuple[Unit, ...]:
 class SolidModel:
     """A pin on one mesh, clamped at surfaces (by name).
 
-    Without any, the resultants of every load are taken up by closing tractions on the bands of all
-    connections, which cancel where loads are in balance, and six unknowns are constrained against
-    rigid motions.
+    Without clamps the resultants of every load are taken up by closing tractions on the bands of
+    all connections, which cancel where loads are in balance, and six unknowns are constrained
+    against rigid motions.
 
     Leaves out: plasticity, contact and clearance (loads are tractions).
     """
@@ -109,25 +112,27 @@ class SolidModel:
 
     @property
     def unknowns(self) -> int:
-        """Displacement components, constrained ones included."""
+        """Number of displacement components, constrained ones included."""
         return self.space.unknowns
 
     @cached_property
     def stiffness(self) -> sp.csr_matrix:
-        """N/m."""
+        """The stiffness matrix, N/m."""
         return self.space.stiffness(self.material)
 
     @cached_property
     def fixed(self) -> Ints:
-        """Held unknowns."""
+        """Numbers of the constrained unknowns."""
         if self.clamps:
             nodes = clamped_nodes(self.space, self.clamps)
             return (3 * nodes[:, None] + np.arange(3)).ravel()
         return _isostatic(self.space.nodes)
 
     def solve(self, units: tuple[Unit, ...], extra: Floats = _NO_POINTS) -> UnitFields:
-        """Unit fields of loads in their phases, at `extra` points (P, 3) inside the body too; on
-        surfaces that are no bands, forces only.
+        """The unit fields of loads in their phases.
+
+        extra: (P, 3) m, further points inside the body. On surfaces that are no bands, only forces
+        may act.
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
@@ -135,7 +140,7 @@ class SolidModel:
         loads = nodal_loads(self.pin, self.material, self.space, boundary, units)
         if not self.clamps:
             pressing = np.array([not load.shears for load, _ in units])
-            loads = closed(self.pin, self.space, boundary, loads, pressing)
+            loads = with_closing_tractions(self.pin, self.space, boundary, loads, pressing)
         displacement, support = self._displace(loads.forces)
         clamped = boundary.on(self.space, self.clamps)
         stress = nodal_stress(self.space, self.material, displacement)
@@ -154,19 +159,18 @@ class SolidModel:
         )
 
     def _displace(self, F: Floats) -> tuple[Floats, Floats]:
-        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and the clamps' force and moment
-        (6, L).
-        """
+        """Displacements (N, 3, L) under nodal forces F (N, 3, L), and resultants of clamps."""
         shape, F = F.shape, F.reshape(self.unknowns, -1)
         free = np.setdiff1d(np.arange(self.unknowns), self.fixed)
         K = self.stiffness
         u = np.zeros_like(F)
         u[free] = factorize(K[free][:, free], free // 3)(F[free])
+        # Reactions from the residual; they must balance the loads.
         reaction = np.zeros_like(F)
         reaction[self.fixed] = K[self.fixed] @ u - F[self.fixed]
         F = F.reshape(shape)
         support = resultants(self.space.nodes, reaction.reshape(shape))
-        lost = part(self.pin, support + resultants(self.space.nodes, F), F).max()
+        lost = relative_resultant(self.pin, support + resultants(self.space.nodes, F), F).max()
         if not lost < 1e-6:
             raise SolveError(
                 f"pin {self.pin.name}: reactions and loads differ by {lost:.1e} of the load, so "
@@ -189,6 +193,6 @@ def rigid_modes(nodes: Floats) -> Floats:
 
 
 def _isostatic(nodes: Floats) -> Ints:
-    """Six unknowns that prevent the rigid motions, chosen well apart by a pivoted QR."""
+    """Six unknowns whose constraint prevents rigid motions, chosen well apart by a pivoted QR."""
     _, _, pivot = scipy.linalg.qr(rigid_modes(nodes).T, mode="economic", pivoting=True)
     return np.sort(pivot[:6]).astype(np.int64)

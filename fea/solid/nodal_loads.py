@@ -17,17 +17,18 @@ from pinbase.arrays import Floats, Mask
 
 Unit = tuple[UnitLoad, int]  # a unit load and its phase
 
-RESULTANT_TOLERANCE = 1e-10
-MAX_CURVED_AREA_LOSS, MAX_STRAIGHT_AREA_LOSS = (
-    0.01,
-    0.1,
-)  # of a band that a mesh's sides may cut off
+RESULTANT_TOLERANCE = 1e-10  # of the nodal forces: error of their resultant, by round-off
+# Parts of a band's area by which a mesh may differ from it; chosen by judgement.
+MAX_CURVED_AREA_LOSS = 0.01  # with curved facets
+MAX_STRAIGHT_AREA_LOSS = 0.1  # with plane ones
 
 
 @dataclass(frozen=True)
 class NodalLoads:
-    """L loads: traction (F, K, 3, L) at the nodes of the boundary's facets, Pa, and the nodal
-    forces (N, 3, L), N, per unit of each.
+    """L unit loads on a mesh.
+
+    traction: (F, K, 3, L) Pa, at the nodes of the boundary's facets.
+    forces: (N, 3, L) N, on the nodes. Both per unit of load.
     """
 
     traction: Floats
@@ -54,6 +55,8 @@ def nodal_loads(
         if loads[0][0].kind == "body":
             F[..., here] = _body_forces(material, space, loads)
             continue
+        # Surface by surface: a uniform traction where there is no band, otherwise that of the unit
+        # load, corrected to the exact resultants on this mesh.
         patch, band = Patch(space, boundary, name), _band(pin, name)
         if band is not None and pin.revolved and abs(patch.area / band.area - 1.0) > lost:
             raise SolveError(
@@ -76,14 +79,14 @@ def nodal_loads(
     return NodalLoads(t, F)
 
 
-def closed(
+def with_closing_tractions(
     pin: PinLike,
     space: Discretisation,
     boundary: SurfaceMesh,
     loads: NodalLoads,
     pressing: Mask | None = None,
 ) -> NodalLoads:
-    """The loads with closing tractions on all bands that make each free of resultants.
+    """The loads plus closing tractions on all bands that make each free of resultants.
 
     pressing: (L,) which loads are closed by pressures; none by default.
 
@@ -136,7 +139,7 @@ def _closing(
 
 
 def components(t: Traction, x: Floats, n: int, phase: int) -> Floats:
-    """A traction of harmonic n and phase at points x (..., 3), along x, y and z, Pa."""
+    """A traction of harmonic n and a phase at points x (..., 3): along x, y and z, Pa."""
     angle = np.arctan2(x[..., 1], x[..., 0])
     psi = n * angle - phase * np.pi / 2.0
     c, s = np.cos(angle), np.sin(angle)
@@ -153,7 +156,7 @@ def _band(pin: PinLike, name: str) -> Band | None:
 
 
 def _resultant(load: UnitLoad, phase: int) -> Floats:
-    """Force and moment about the band's middle, (6,)."""
+    """Force and moment (6,) of a unit load about the band's middle."""
     out = np.zeros(6)
     if load.kind == "force":
         out[phase if load.n else 2] = 1.0
@@ -182,16 +185,21 @@ def _body_forces(material: Material, space: Discretisation, units: list[Unit]) -
     return np.asarray(mass[:, None, None] * directions)
 
 
-def part(pin: PinLike, resultant: Floats, F: Floats) -> Floats:
-    """Forces and moments (6, L) as parts of the size of the nodal forces F (N, 3, L), the moments
-    also of the pin's length.
+def relative_resultant(pin: PinLike, resultant: Floats, F: Floats) -> Floats:
+    """Forces and moments (6, L) relative to the sum of the sizes of nodal forces.
+
+    F: (N, 3, L) N. Moments are also divided by the pin's length.
     """
     arm = np.repeat([1.0, pin.length], 3)
     return np.asarray(np.abs(resultant) / arm[:, None] / np.abs(F).sum(axis=(0, 1)))
 
 
 def _check(pin: PinLike, name: str, wrong: Floats, F: Floats, rows: int) -> None:
-    if not part(pin, wrong, F)[:rows].max() < RESULTANT_TOLERANCE:
+    """Check that nodal forces have the resultants of their load up to round-off.
+
+    Raises: SolveError.
+    """
+    if not relative_resultant(pin, wrong, F)[:rows].max() < RESULTANT_TOLERANCE:
         raise SolveError(
             f"pin {pin.name}: the nodal loads on {name} do not sum to its resultant",
             "resultant-mismatch",

@@ -14,16 +14,17 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import SurfaceMesh
 from pinbase.arrays import Floats, Ints, Mask
 
-MIN_EDGE_TURN = np.radians(
-    40.0
-)  # of an inner corner: less is a facet of a curved wall, or hardly sharp
+# Least turn of an inner corner: less is a facet of a curved wall, or hardly sharp; by judgement.
+MIN_EDGE_TURN = np.radians(40.0)
 FACET_SIDES = ((0, 1, 2), (1, 2, 0), (0, 2, 1))  # of a facet: ends and the corner across
 
 
 @dataclass(frozen=True)
 class SharpEdges:
-    """Points (K, 3), m, along inner corners and along edges of clamps, and the body's outer radius
-    (K,), m, at their z. limit: (K,) how far, m, from each its zone reaches at most.
+    """Points (K, 3), m, along inner corners and along edges of clamps.
+
+    radius: (K,) m, of the body at their z.
+    limit: (K,) m, to which their zones reach at most.
     """
 
     corner: Floats
@@ -32,9 +33,11 @@ class SharpEdges:
     limit: Floats
 
     def singularities(self, x: Floats, part: float) -> list[tuple[Zone, Mask]]:
-        """Of points x (S, 3), m: those within `part` of the diameter of any inner corner, and of
-        any clamp's edge, as a singularity each; none where there is nothing of the kind. Of several
-        corners, the nearest is what counts.
+        """The zones near inner corners and near edges of clamps, with the points in each.
+
+        x: (S, 3) m.
+        part: of the diameter, radius of the zones. All inner corners make one zone, all edges of
+        clamps another; of several corners the nearest counts.
         """
         first = len(self.corner)
         every = np.minimum(part * 2.0 * self.radius, self.limit)
@@ -42,9 +45,11 @@ class SharpEdges:
             ("sharp corner", self.corner, every[:first], _RADIUS_ADVICE),
             ("edge of a clamp", self.rim, every[first:], CLAMP_ADVICE),
         )
-        found = []
+        zones = []
         for kind, points, reach, advice in kinds:
             if len(points):
+                # A point lies in the zone if it is within the reach of the nearest point of an
+                # edge.
                 distance, nearest = cKDTree(points).query(x)
                 at = points[0]
                 singularity = Zone(
@@ -57,8 +62,8 @@ class SharpEdges:
                     radius=float(reach.max()),
                     advice=advice,
                 )
-                found.append((singularity, distance <= reach[nearest]))
-        return found
+                zones.append((singularity, distance <= reach[nearest]))
+        return zones
 
 
 _RADIUS_ADVICE = "a radius there would make it finite"
@@ -66,8 +71,12 @@ _RADIUS_ADVICE = "a radius there would make it finite"
 
 @dataclass(frozen=True)
 class TurnedEdges:
-    """Of the E edges between facets: rows of the two (2, E) among the boundary's, their nodes (E, 2
-    or 3), and by how much the surface turns inwards there, rad: above zero at an inner corner.
+    """The E edges between facets.
+
+    facets: (2, E) rows of the two facets among the boundary's.
+    nodes: (E, 2 or 3).
+    turn: (E,) rad,
+    by which the surface turns inwards: above zero at an inner corner.
     """
 
     facets: Ints
@@ -78,7 +87,10 @@ class TurnedEdges:
 def turned_edges(
     space: Discretisation, surface: SurfaceMesh, plane: Floats | None = None
 ) -> TurnedEdges:
-    """All of them, by the normals amid the edges; plane: normals (F, 3) that stand for them."""
+    """All edges between facets, with their turn by the normals amid the edges.
+
+    plane: (F, 3) normals that replace these.
+    """
     side_of = space.mesh.f2e[:, surface.facets]  # each is shared by two facets
     order = np.argsort(side_of.ravel(), kind="stable").reshape(-1, 2)
     facet, side = (order % len(surface.facets)).T, (order // len(surface.facets)).T
@@ -107,7 +119,8 @@ def sharp_edges(
     limit: Callable[[Floats, Floats], Floats] | None = None,
 ) -> SharpEdges:
     """Inner corners that turn by more than MIN_EDGE_TURN, and the rims of the clamped surfaces.
-    limit: of their zones (S,), m, at r, z (S,), m; none by default.
+
+    limit: radii (S,), m, to which zones reach at most, from r, z (S,), m; none by default.
     """
     clamped = surface.on(space, clamps)
     # of facets made plane: sides that were straightened for the elements' sake kink curved ones
@@ -126,7 +139,7 @@ def sharp_edges(
 
 
 def _plane_normals(nodes: Floats, surface: SurfaceMesh) -> Floats:
-    """Outward unit normals (F, 3) of the triangles between the facets' corners."""
+    """Outward unit normals (F, 3) of the plane triangles between the facets' corners."""
     x = nodes[surface.corners[:, :3]]
     normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
     mean = surface.normals[:, -3:].sum(axis=1)  # amid the sides, where there are nodes

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.local_fit import extension
+from fea.core.local_fit import nodal_extrapolation
 from fea.core.material import Material
 from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.solid.assembly import Discretisation
@@ -17,8 +17,8 @@ from pinbase.arrays import Floats, Mask
 
 
 def nodal_stress(space: Discretisation, material: Material, displacement: Floats) -> Floats:
-    """Stress (N, 6, L) in Pa of L displacement fields (N, 3, L) in m."""
-    to_nodes = extension(space.elements, space.basis.X, space.basis.elem.doflocs.T)
+    """Stress (N, 6, L), Pa, at the nodes, of L displacement fields (N, 3, L), m."""
+    to_nodes = nodal_extrapolation(space.elements, space.basis.X, space.basis.elem.doflocs.T)
     fields = []
     for k in range(displacement.shape[2]):
         stress = material.stress(space.strain(displacement[:, :, k]))
@@ -29,9 +29,9 @@ def nodal_stress(space: Discretisation, material: Material, displacement: Floats
 def with_known_traction(
     stress: Floats, surface: SurfaceMesh, traction: Floats, clamped: Mask
 ) -> Floats:
-    """Stress (N, 6, L) corrected on the surface to carry the traction (F, .., 3, L) at the nodes of
-    its facets, Pa.
+    """Stress (N, 6, L) corrected on the surface to carry the given traction.
 
+    traction: (F, .., 3, L) Pa, at the nodes of the facets.
     clamped: (F,) facets whose traction is unknown. Nodes there and on edges of the body are not
     changed; where two tractions meet on a smooth surface their mean is taken.
     """
@@ -58,6 +58,7 @@ def with_known_traction(
             axis=1,
         )[known]
         s = stress[known, :, k][:, TENSOR_TO_VOIGT]
+        # Add the symmetric tensor that changes the traction by r and nothing along the surface.
         r = t - np.einsum("nab,nb->na", s, n)
         normal_part = np.sum(r * n, axis=1)[:, None, None]
         rn = r[:, :, None] * n[:, None, :]

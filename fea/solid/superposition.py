@@ -23,20 +23,24 @@ from fea.core.voigt import VON_MISES
 from fea.solid.model import UnitFields
 from pinbase.arrays import Floats, Mask
 
-MAX_PAIRED_LOADS = 12  # unit loads up to which their products in pairs are fewer than the stresses
-PRODUCT_BATCH = 16  # instants at once
+# They limit time and memory alone.
+MAX_PAIRED_LOADS = 12  # unit loads up to which products in pairs take less time than stresses
+PRODUCT_BATCH = 16  # instants of stresses at once
 KEPT_INSTANTS = 256  # instants whose squares at all points are kept at once
-DIRECTION_COUNT = 9  # an odd number: opposite loads give the same von Mises stress
+# Directions to which loads are turned, chosen by judgement; odd, as opposite ones are equivalent.
+DIRECTION_COUNT = 9
 
 
 @dataclass(frozen=True)
 class Envelope:
-    """maximum: largest von Mises stress (Pa) at the governing `instant`, mean over directions;
-    maxima: (T,) the same at every instant.
+    """The largest von Mises stress of a case.
 
-    scatter: half its range over the directions, Pa. location: where it is (m) with the loads as
-    they are. field: (S,) each surface node's largest over all instants, Pa. inside: of regions that
-    the maximum leaves out, the largest stress (Pa) and where it is (m).
+    maximum: Pa, at the governing `instant`, the mean over directions.
+    maxima: (T,) the same at every instant.
+    scatter: half its range over the directions, Pa.
+    location: m, with the loads as they are.
+    field: (S,) each surface node's largest over all instants, Pa.
+    inside: the largest stress (Pa) and its location (m) in each excluded region.
     """
 
     maximum: float
@@ -55,16 +59,17 @@ def envelope(
     within: Sequence[Mask] = (),
     directions: int = DIRECTION_COUNT,
 ) -> Envelope:
-    """Largest von Mises stress over the points of the fields and all instants of a case.
+    """The largest von Mises stress over the points of the fields and all instants of a case.
 
-    fields: with all the unit loads of which `loads` are made. outside: points (S + P,) among which
-    the maximum is looked for, all by default; within: regions of which the largest stress is
-    wanted, too.
+    fields: with all the unit loads of which `loads` are made.
+    outside: (S + P,) points among which the maximum is looked for, all by default.
+    within: regions of which the largest stress is wanted as well.
+    directions: number of turned loads for a body of revolution.
     """
     points, surface = fields.points, len(fields.surface.nodes)
     among = np.ones(len(points), dtype=bool) if outside is None else outside
     directions = directions if fields.revolved else 1
-    found_by = squares(fields.read)
+    square_of = squares(fields.read)
     turned = [
         fields.coefficients(loads.turned(2.0 * np.pi * k / directions)) for k in range(directions)
     ]
@@ -73,14 +78,14 @@ def envelope(
     for first in range(0, len(loads), KEPT_INSTANTS):
         here = slice(first, first + KEPT_INSTANTS)
         for k, c in enumerate(turned):
-            found = found_by(c[here])
-            peaks[k, here] = found[among].max(axis=0)
+            square = square_of(c[here])
+            peaks[k, here] = square[among].max(axis=0)
             if not k:
-                np.maximum(largest, found.max(axis=1), out=largest)
+                np.maximum(largest, square.max(axis=1), out=largest)
     peaks = np.sqrt(np.maximum(peaks, 0.0))
     maxima = peaks.mean(axis=0)
     instant = int(maxima.argmax())
-    governing = found_by(turned[0][instant : instant + 1])[:, 0]
+    governing = square_of(turned[0][instant : instant + 1])[:, 0]
 
     def place(here: Mask, values: Floats) -> Point:
         x, y, z = points[here][values[here].argmax()].tolist()
@@ -98,7 +103,10 @@ def envelope(
 
 
 def squares(stress: Floats) -> Callable[[Floats], Floats]:
-    """Von Mises squared (S, T) from loads (T, L), of unit stresses (S, 6, L)."""
+    """A function that gives von Mises squared (S, T) from amounts of loads (T, L).
+
+    stress: (S, 6, L) unit stresses.
+    """
     if stress.shape[2] > MAX_PAIRED_LOADS:
 
         def direct(c: Floats) -> Floats:

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import chdir, contextmanager
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 
 PROCESSES_FOLDER = os.path.dirname(os.path.abspath(__file__))
 IMPORT_FOLDER = os.path.dirname(os.path.dirname(PROCESSES_FOLDER))  # that we are imported from
@@ -31,14 +31,6 @@ def leave_out_current_folder() -> None:
     sys.path[:] = trusted_path()
     entries = os.environ.get("PATH", os.defpath).split(os.pathsep)
     os.environ["PATH"] = os.pathsep.join(p for p in entries if os.path.isabs(p))
-
-
-def trusting_python(code: str, *arguments: str) -> tuple[list[str], dict[str, str]]:
-    """Command line and environment of a Python that runs `code`, importing from where this process
-    does, without the current folder.
-    """
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(trusted_path())}
-    return [sys.executable, "-P", "-c", code, *arguments], environment
 
 
 @contextmanager

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 
 Release = Callable[[], None]
 

@@ -1,4 +1,4 @@
-"""Limits of what a process may take: kept by the kernel on Linux, by a thread elsewhere."""
+"""Limits of a piece of work: kept by the kernel on Linux, by a thread elsewhere."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ import os
 import signal
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 
 MB = 2**20
 TIME_CHECK_INTERVAL = 0.1  # s between two looks at the time
@@ -22,51 +25,76 @@ EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = (
 @dataclass(frozen=True)
 class Limits:
     """seconds: of processor time. clock: in all, s, since other programs run too, but nothing may
-    wait without end. memory: above what the process has when it begins, bytes; kept on Linux only.
+    wait without end. memory: above what the process has when the work begins, bytes; kept on Linux
+    only.
     """
 
-    seconds: int
-    clock: int
-    memory: int = 4096 * MB
+    seconds: float
+    clock: float = inf
+    memory: float = inf
 
 
-def keep_within(limits: Limits) -> None:
-    """End this process when it passes a limit; where there is no more memory, MemoryError."""
-    if portable():
-        threading.Thread(target=_watch, args=(limits,), daemon=True).start()
+@contextmanager
+def limited(limits: Limits | None) -> Iterator[None]:
+    """End this process, which does nothing else meanwhile, when its work passes a limit; where
+    there is no more memory, MemoryError.
+    """
+    if limits is None:
+        yield
         return
+    with _by_thread(limits) if portable() else _by_kernel(limits):
+        yield
+
+
+@contextmanager
+def _by_kernel(limits: Limits) -> Iterator[None]:
     import resource
 
-    _limit(resource.RLIMIT_CPU, limits.seconds)
-    pages = int(Path("/proc/self/statm").read_text().split()[0])
-    _limit(resource.RLIMIT_AS, pages * resource.getpagesize() + limits.memory)
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.alarm(limits.clock)
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    if limits.memory < inf:
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+        asked = pages * resource.getpagesize() + int(limits.memory)
+        most = min(n for n in (asked, soft, hard) if n != resource.RLIM_INFINITY)
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
+    timers = {signal.ITIMER_PROF: limits.seconds, signal.ITIMER_REAL: limits.clock}
+    for number in signal.SIGPROF, signal.SIGALRM:
+        signal.signal(number, signal.SIG_DFL)  # which ends the process
+    for timer, seconds in timers.items():
+        signal.setitimer(timer, seconds if seconds < inf else 0.0)
+    try:
+        yield
+    finally:
+        for timer in timers:
+            signal.setitimer(timer, 0.0)
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
-def passed(status: int, limits: Limits) -> str:
-    """Which limit a process passed that ended with this status; empty if none."""
-    seconds, clock = {EXIT_SECONDS_PASSED}, {EXIT_CLOCK_PASSED}
-    if not portable():
-        seconds, clock = {-signal.SIGXCPU}, {-signal.SIGALRM}
-    if status in seconds:
-        return f"it exceeded the limit of {limits.seconds} s of processor time"
-    return f"it exceeded the limit of {limits.clock} s" if status in clock else ""
+@contextmanager
+def _by_thread(limits: Limits) -> Iterator[None]:
+    done = threading.Event()
+    thread = threading.Thread(target=_watch, args=(limits, done), daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
 
 
-def _limit(what: int, most: int) -> None:
-    import resource
-
-    soft, hard = resource.getrlimit(what)
-    allowed = min(n for n in (most, soft, hard) if n != resource.RLIM_INFINITY)
-    resource.setrlimit(what, (allowed, hard))
-
-
-def _watch(limits: Limits) -> None:
+def _watch(limits: Limits, done: threading.Event) -> None:
     spent, began = time.process_time(), time.monotonic()
-    while True:
+    while not done.wait(TIME_CHECK_INTERVAL):
         if time.process_time() - spent > limits.seconds:
             os._exit(EXIT_SECONDS_PASSED)
         if time.monotonic() - began > limits.clock:
             os._exit(EXIT_CLOCK_PASSED)
-        time.sleep(TIME_CHECK_INTERVAL)
+
+
+def passed(status: int, limits: Limits) -> str:
+    """Which limit a process passed that ended with this status; empty if none."""
+    seconds, clock = EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED
+    if not portable():
+        seconds, clock = -signal.SIGPROF, -signal.SIGALRM
+    if status == seconds:
+        return f"it exceeded the limit of {limits.seconds:g} s of processor time"
+    return f"it exceeded the limit of {limits.clock:g} s" if status == clock else ""

@@ -3,46 +3,42 @@
 Forked on Linux, because a child then has every library imported (two seconds otherwise) and all
 that it needs without anything being sent. A fork is safe while no other thread runs, so
 `hold_threads` comes before the numeric libraries, and whoever shows progress must not do so from a
-thread. On other systems processes are started anew (pinbase.processes.anew) and sent the jobs,
-which must pickle. One thread costs nothing that was measured: of a solid with 185,000 unknowns
-neither time nor any bit of the answer changed. A crash inside a mesher ends its process and costs
-the job that was being done; another process goes on with the rest. Not a process for every job: the
-memory that each touches anew took a sixth of all the time of many small pins. No socket is opened
-that another process could find: whoever is neither this process nor its child cannot send a job.
+thread. On other systems processes are started anew (pinbase.processes.worker) and sent the
+jobs, which must pickle. One thread costs nothing that was measured: of a solid with 185,000
+unknowns neither time nor any bit of the answer changed. A crash inside a mesher ends its process
+and costs the job that was being done; another process goes on with the rest. Not a process for
+every job: the memory that each touches anew took a sixth of all the time of many small pins. No
+socket is opened that another process could find: whoever is neither this process nor its child
+cannot send a job.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import pickle
 import signal
-import sys
-import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
+from pinbase.platform import portable
 from pinbase.processes import interrupts
-from pinbase.processes.anew import spawned
-from pinbase.processes.current_folder import elsewhere
-from pinbase.processes.parent import end_with_parent
-from pinbase.processes.system import portable
-from pinbase.processes.threads import hold_threads
+from pinbase.processes.limits import Limits, limited, passed
+from pinbase.processes.worker import Serve, load, start_worker
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 Tell = Callable[[str], None]
 Progress = Callable[[str, float], None]
+Watch = Callable[[int, str], str]
 Item = TypeVar("Item")
-Serve = Callable[[Item, Tell], T]
 
 PROGRESS_INTERVAL = 0.2  # s between two calls of progress at most, for its clock
+WATCH_INTERVAL = 0.02  # s between two looks at processes that are watched
 GRACE_SECONDS = 0.5  # s for a process to clean up once asked to end
 
 KILL_SIGNAL = 9  # SIGKILL, which Windows has not
@@ -53,21 +49,23 @@ _preloaded: list[str] = []
 @dataclass(frozen=True)
 class Job(Generic[T_co]):
     """Work under a name; it gets a function to report its progress. What it returns must be small:
-    it is sent from process to process.
+    it is sent from process to process. limits: which end its process, where that is not this one.
     """
 
     name: str
     work: Callable[[Tell], T_co]
+    limits: Limits | None = None
 
 
 @dataclass(frozen=True)
 class ProcessDied:
     """What comes of a job during which its process ended by itself, and why. status: as
-    subprocess has it, negative for a signal.
+    subprocess has it, negative for a signal. limited: whether it passed a limit.
     """
 
     reason: str
     status: int = 0
+    limited: bool = False
 
 
 def cores() -> int:
@@ -94,14 +92,9 @@ def can_fork() -> bool:
 def preload(*modules: str) -> None:
     """Import what jobs will need once for all of them; what is missing they miss themselves.
     Processes that are started anew import it when they begin.
-
-    Interrupts wait until then: one in the middle of VTK's import crashes it.
     """
     _preloaded.extend(modules)
-    with interrupts.deferred(), elsewhere():
-        for name in modules:
-            with suppress(ImportError):
-                import_module(name)
+    load(modules)
 
 
 def in_parallel(
@@ -109,11 +102,13 @@ def in_parallel(
     most: int,
     progress: Progress = lambda _, __: None,
     anew: bool = False,
+    watch: Watch | None = None,
 ) -> list[T | ProcessDied]:
     """What the jobs return, in their order; they start in that order, at most so many at a time.
 
     With `most` 1 they are done in this process. progress: called with what is being done and the
-    part of the jobs that is behind. anew: whether processes are started anew on Linux too.
+    part of the jobs that is behind. anew: whether processes are started anew on Linux too. watch:
+    as `served` has it.
 
     Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
     """
@@ -130,14 +125,18 @@ def in_parallel(
         return jobs[number].name, (number, jobs[number]) if sends else number
 
     def give(item: int | tuple[int, Job[T]], value: T | ProcessDied) -> None:
-        found[item if isinstance(item, int) else item[0]] = value
+        number = item if isinstance(item, int) else item[0]
+        limits = jobs[number].limits
+        if isinstance(value, ProcessDied) and limits and (limit := passed(value.status, limits)):
+            value = ProcessDied(limit, value.status, limited=True)
+        found[number] = value
 
     serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
 
     def show(doing: str) -> None:
         progress(doing, len(found) / len(jobs))
 
-    served(serve, take, give, most, show, lambda: not sends)
+    served(serve, take, give, most, show, lambda: not sends, watch)
     return [found[i] for i in range(len(jobs))]
 
 
@@ -148,11 +147,13 @@ def served(
     most: int,
     progress: Callable[[str], None] = lambda _: None,
     forks: Callable[[], bool] = can_fork,
+    watch: Watch | None = None,
 ) -> None:
     """Have processes serve items, at most so many at a time, until none is left. take: the name of
     the next item and the item, None while there is none. give: called with each and what came of
     it; there may be further items then. progress: called with what is being done. forks: whether
-    the next process is forked, by default where that is safe.
+    the next process is forked, by default where that is safe. watch: called often with the number
+    of each process and what it has reported last; ends a process for the reason that it returns.
 
     A process that is not forked is started anew and sent `serve`; items are always sent.
 
@@ -162,12 +163,12 @@ def served(
     try:
         while True:
             while len(running) < most and (item := take()) is not None:
-                child = _start(serve, forks())
+                child = _Child(*start_worker(serve, forks(), tuple(_preloaded)))
                 running[child.pipe] = child
                 child.take(*item)
             if not running:
                 return
-            for pipe in wait(list(running), PROGRESS_INTERVAL):
+            for pipe in wait(list(running), PROGRESS_INTERVAL if watch is None else WATCH_INTERVAL):
                 assert isinstance(pipe, Connection)
                 child = running[pipe]
                 kind, value = child.next()
@@ -181,6 +182,11 @@ def served(
                     child.take(*item)
                 else:
                     running.pop(pipe).close()
+            if watch is not None:
+                for child in list(running.values()):
+                    if reason := watch(child.process.pid or 0, child.doing):
+                        _end([running.pop(child.pipe)])
+                        give(child.item, ProcessDied(reason, -KILL_SIGNAL, limited=True))
             interrupts.require_none()
             progress("; ".join(child.doing for child in running.values()))
     finally:
@@ -188,11 +194,13 @@ def served(
 
 
 def _numbered_job(jobs: Sequence[Job[T]], number: int, tell: Tell) -> T:
-    return jobs[number].work(tell)
+    return _sent_job((number, jobs[number]), tell)
 
 
 def _sent_job(item: tuple[int, Job[T]], tell: Tell) -> T:
-    return item[1].work(tell)
+    _, job = item
+    with limited(job.limits):
+        return job.work(tell)
 
 
 def _teller(progress: Progress, part: float) -> Tell:
@@ -226,6 +234,14 @@ class _Child:
             status = self.process.exitcode or 0
             return "dies", ProcessDied(ended(status), status)
 
+    def send(self, number: int) -> None:
+        """Send a signal, also to the programs that it runs, where it leads a group of its own."""
+        pid = self.process.pid
+        with suppress(OSError):
+            if pid and not portable() and os.getpgid(pid) == pid:
+                os.killpg(pid, number)
+        self.process.kill() if number == KILL_SIGNAL else self.process.terminate()
+
     def close(self) -> None:
         """Have it end, and wait for that."""
         with suppress(OSError):
@@ -243,68 +259,11 @@ def ended(status: int) -> str:
     return text + "; it may have run out of memory" * (status == -KILL_SIGNAL)
 
 
-def _start(serve: Serve[Item, T], forks: bool) -> _Child:
-    ours, theirs = multiprocessing.Pipe()
-    process: BaseProcess
-    if not forks:
-        process = spawned(_serve, serve, theirs, os.getpid(), tuple(_preloaded))
-    else:
-        process = multiprocessing.get_context("fork").Process(
-            target=_serve, args=(serve, theirs, os.getpid()), daemon=False
-        )
-        with interrupts.blocked():  # a child that ours reach would go on with what we are doing
-            process.start()
-    theirs.close()  # so that its end is the pipe's
-    return _Child(process, ours)
-
-
-def _serve(
-    serve: Serve[Item, T], pipe: Connection, parent: int, libraries: tuple[str, ...] = ()
-) -> None:
-    """What a process does: the items that it is sent, until there is none. libraries: to be
-    imported first.
-    """
-    hold_threads()  # of a user of Python, whose environment does not say so
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
-    signal.signal(signal.SIGTERM, _leave)
-    interrupts.unblock()
-    try:
-        end_with_parent(parent)
-        preload(*libraries)
-        _do_items(serve, pipe)
-    finally:  # nothing is left to be cleaned up
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-def _do_items(serve: Serve[Item, T], pipe: Connection) -> None:
-    def say(kind: str, value: object) -> None:
-        pipe.send((kind, pickle.dumps(value)))
-
-    while (sent := pipe.recv()) is not None:
-        name, item = sent
-        try:
-            say("returns", serve(item, lambda message: say("tells", message)))
-        except Exception as error:
-            text = "".join(traceback.format_exception(error))
-            error.add_note(f"{name}, in its own process:\n{text}")
-            try:
-                say("raises", error)
-            except (pickle.PicklingError, TypeError, AttributeError):
-                say("raises", RuntimeError(f"{name}, in its own process:\n{text}"))
-
-
-def _leave(*_: object) -> None:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # leaving is not begun once more
-    # In a finalizer Python prints what is raised and goes on; the parent kills us then.
-    sys.unraisablehook = lambda _: None
-    sys.exit(128 + signal.SIGTERM)
-
-
 def _end(children: list[_Child]) -> None:
     """End processes: those inside a library's own code do not hear that they should."""
     for child in children:
-        child.process.terminate()
+        child.send(signal.SIGTERM)
     for child in children:
         child.process.join(GRACE_SECONDS / len(children))
-        child.process.kill()
+        child.send(KILL_SIGNAL)
         child.close()

@@ -21,7 +21,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TypeVar
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 from pinstress.analysis.serialise import pack, unpack
 
 T = TypeVar("T")

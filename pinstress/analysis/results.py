@@ -13,6 +13,7 @@ from pinbase.processes.threads import one_thread
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import keep_none, solve_tasks
+from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study
 from reports.data.results import Field, Results
 from reports.format.words import headline
@@ -178,7 +179,11 @@ def run(
 
 
 def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResults:
-    """Solve what `prepare` returned; fields, jobs: as in `run`."""
+    """Solve what `prepare` returned; fields, jobs: as in `run`.
+
+    Raises: InputError where the study has [fatigue] and its extra is not installed.
+    """
+    require_fatigue(plan.study)
     kept: dict[tuple[str, str], Field] = {}
 
     def keep(field: Field) -> None:

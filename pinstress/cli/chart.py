@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.run import console, progress_bar
 from pinstress.cli.streams import unneeded

@@ -5,14 +5,15 @@ Numeric libraries are imported inside the commands that need them, so that `chec
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from pinbase.processes import interrupts
-from pinbase.processes.environment import settle_surroundings
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
+from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from fea.core.requirement import Model
 
 PLOTS_HELP = "Also draw plots and pictures as SVG and PNG, as `pinstress plots` does (slower)."
+MAX_TIMESTAMP = 253_402_300_799  # the end of the year 9999, the last that Python supports
+EPOCH_VARIABLE = "SOURCE_DATE_EPOCH"
 EXIT_REACHED, EXIT_NOT_REACHED, EXIT_BAD_INPUT, EXIT_NUMERICS_FAILED = 0, 1, 2, 3
 
 
@@ -93,7 +96,22 @@ def _status(error: BaseException) -> int | None:
 @click.version_option(package_name="pinstress")
 def commands() -> None:
     """Stresses and safety factors of the pins of a linkage."""
-    settle_surroundings()
+    _settle_environment()
+
+
+def _settle_environment() -> None:
+    """Set environment variables that libraries read so that they do not affect a run: one thread
+    per numeric library; plots without windows; no pydantic plugins, for which it searches all
+    installed packages. An invalid SOURCE_DATE_EPOCH is removed, because libraries fail on it at
+    import (our files contain no time).
+    """
+    hold_threads()
+    os.environ["MPLBACKEND"] = "agg"
+    os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
+    stated = os.environ.get(EPOCH_VARIABLE)
+    if stated is not None and not (stated.isdecimal() and int(stated[:20]) <= MAX_TIMESTAMP):
+        del os.environ[EPOCH_VARIABLE]
+        click.echo(f"Warning: {EPOCH_VARIABLE} is not a time in seconds and is ignored.", err=True)
 
 
 @commands.command(

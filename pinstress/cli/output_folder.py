@@ -15,12 +15,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from pinbase.processes.exchange import exchange
+from pinbase.platform import portable
 from pinbase.processes.folder_lock import Release, lock
 from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError
 
 RESULTS_JSON = "results.json"  # what a run and the loads alone write
+RENAME_EXCHANGE, AT_FDCWD = 2, -100  # of Linux's renameat2
+NO_EXCHANGE_ERRORS = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)  # some network file systems
 
 
 def require_replaceable(
@@ -188,12 +190,30 @@ def _recover(earlier: Path, directory: Path) -> None:
         raise _in_the_way(earlier)
 
 
+def _exchange(one: Path, other: Path) -> bool:
+    """Exchange two folders that are there in one step; whether that was possible.
+
+    Raises: OSError.
+    """
+    if portable():
+        return False
+    import ctypes
+
+    libc = ctypes.CDLL(None, use_errno=True)
+    paths = AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other)
+    if libc.renameat2(*paths, RENAME_EXCHANGE) == 0:
+        return True
+    if ctypes.get_errno() not in NO_EXCHANGE_ERRORS:
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()), str(other))
+    return False
+
+
 def _replace(partial: Path, directory: Path, earlier: Path) -> None:
     """Swap `partial` and `directory`; afterwards the old content is at `partial` or removed."""
     if not directory.exists():
         partial.rename(directory)
         return
-    if exchange(partial, directory):
+    if _exchange(partial, directory):
         return
     directory.rename(earlier)
     try:

@@ -21,6 +21,7 @@ from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload
 from pinstress.cli import manifest
 from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file_names import field_name
 from reports.folder.inside import NotPlain, is_inside, read_inside, write_inside
 from reports.folder.results_json import MAX_RESULTS_SIZE
@@ -68,6 +69,7 @@ def pdf(directory: Path) -> int:
 
     Raises: InputError.
     """
+    require_package("typst", "pdf")
     known = require_results(directory)
     if PDF_FILE in _entries(directory) - known:
         raise _strange(directory, PDF_FILE)

@@ -13,8 +13,8 @@ from typing import Any, Unpack
 import click
 from rich.console import Console
 
+from pinbase.platform import portable
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
-from pinbase.processes.system import portable
 from pinstress.analysis.cache import user_cache
 from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare
@@ -35,6 +35,7 @@ from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.reading.choices import Selection
+from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.file_names import field_name
 from reports.data.results import Field, Results, Units
@@ -80,6 +81,9 @@ def run_and_write(
 
     chosen: what pinstress.analysis.plan.prepare takes. Raises: InputError.
     """
+    require_fatigue(study)
+    if wanted.pdf:
+        require_package("typst", "--pdf")
     require_replaceable(directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)

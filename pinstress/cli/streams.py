@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO, TypeGuard
 
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 
 ASCII_REPLACEMENTS = {
     "–": "-",

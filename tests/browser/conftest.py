@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 
 from tests.support.pins.clevis import CLEVIS
+from tests.support.programs.once import once
 
 ROOT = Path(__file__).parents[2]
 STUDIES = ROOT / "studies"
@@ -22,7 +23,7 @@ WITHOUT_NETWORK = ("--host-resolver-rules=MAP * ~NOTFOUND", "--disable-backgroun
 WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def browser() -> Iterator[Any]:
     """Chromium, headless, with WebGL in software and nothing to reach but files."""
     from selenium import webdriver
@@ -51,7 +52,8 @@ def _program(name: str) -> str:
 @pytest.fixture(scope="session")
 def gear_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the landing gear's run, as the command writes it."""
-    return run(STUDIES / "grenier2008.toml", tmp_path_factory.mktemp("gear") / "out")
+    study = STUDIES / "grenier2008.toml"
+    return once(tmp_path_factory, "gear", lambda folder: run(study, folder / "out")) / "out"
 
 
 @pytest.fixture(scope="session")
@@ -79,7 +81,10 @@ def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def clevis_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a pin in its lugs under loads at three instants; the second governs."""
-    directory = tmp_path_factory.mktemp("clevis")
+    return once(tmp_path_factory, "clevis", _run_clevis) / "out"
+
+
+def _run_clevis(directory: Path) -> None:
     stated = next(line for line in CLEVIS.splitlines() if line.startswith("forces"))
     study = directory / "clevis.toml"
     study.write_text(CLEVIS.replace(stated, 'table = "loads.csv"'), encoding="utf-8")
@@ -90,7 +95,7 @@ def clevis_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ]
     table = "\n".join(["connection,fx,fy,time", *rows])
     (directory / "loads.csv").write_text(table + "\n", encoding="utf-8")
-    return run(study, directory / "out", "--no-pictures")
+    run(study, directory / "out", "--no-pictures")
 
 
 def _quoted(text: str) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.each import sampled
 from tests.support.results.browser_page import errors, opened, unfold, wait
 
 pytestmark = pytest.mark.browser
@@ -56,12 +57,13 @@ def test_nothing_is_drawn_before_it_is_seen(page: Any) -> None:
     assert 0 < drawn < len(page.find_elements("css selector", ".drawn")) // 2
 
 
-def test_every_plot_can_be_drawn_without_eval(page: Any) -> None:
+@pytest.mark.parametrize("step", sampled([8, 1], every=2))
+def test_every_plot_can_be_drawn_without_eval(page: Any, step: int) -> None:
     """The names of its curves are in it, and the console has nothing to say."""
     unfold(page)
     figures = page.find_elements("css selector", "figure.plot")
     assert len(figures) > 40
-    for found in figures:
+    for found in figures[::step]:
         page.execute_script(BACK, found)
         wait(page, partial(found.find_elements, "css selector", ".drawn svg"))
         assert len(page.execute_script(TEXTS, found)) > 3
@@ -115,9 +117,15 @@ def test_the_summary_on_paper_is_short_and_has_a_title_block(page: Any) -> None:
     page.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
 
 
-def test_all_that_is_open_is_drawn_on_paper(page: Any) -> None:
+@pytest.mark.parametrize(
+    ("run", "pages"), sampled([("clevis_run", 5), ("gear_run", PAGES)], every=2)
+)
+def test_all_that_is_open_is_drawn_on_paper(
+    browser: Any, run: str, pages: int, request: pytest.FixtureRequest
+) -> None:
+    opened(page := browser, request.getfixturevalue(run))
     page.find_element("id", "unfold").click()
-    assert len(re.findall(rb"/Type\s*/Page\b", paper(page))) > PAGES
+    assert len(re.findall(rb"/Type\s*/Page\b", paper(page))) > pages
     drawn = page.find_elements("css selector", ".drawn svg")
     assert len(drawn) == len(page.find_elements("css selector", ".drawn"))
     assert errors(page) == []

@@ -24,14 +24,22 @@ def test_the_page_is_what_the_packages_say() -> None:
     assert PAGE.read_text(encoding="utf-8") == page()
 
 
-def test_what_runs_is_told_from_what_develops() -> None:
+def test_what_runs_is_told_from_what_develops_and_from_extras() -> None:
     run = {name for name, (_, _, need) in recorded().items() if need == RUN}
     assert {"numpy", "gmsh", "tomlkit", "xlsxwriter", "kiwisolver"} <= run
-    assert not run & {"pytest", "sphinx", "ruff", "ngsolve"}
+    assert not run & {"pytest", "sphinx", "ruff", "ngsolve", "dask", "pandas", "typst"}
+    needs = {name: need for name, (_, _, need) in recorded().items()}
+    assert needs["tornado"] == "extra `cluster`"
+    assert needs["pandas"] == "extra `fatigue`"
+    assert needs["typst"] == "extra `pdf`"
 
 
 def test_the_licences_that_decide_ours_are_named() -> None:
     """README.md: GPL because gmsh and cvxopt are."""
-    licences = {name: licence for name, (_, licence, need) in recorded().items() if need == RUN}
+    licences = {
+        name: licence
+        for name, (_, licence, need) in recorded().items()
+        if need == RUN or need.startswith("extra")
+    }
     ours = {name for name, text in licences.items() if "GPL" in text or "General Public" in text}
     assert ours == {"gmsh", "cvxopt"}

@@ -8,6 +8,7 @@ import pytest
 
 from docs.sessions import differences, play, renewed
 from tests.conftest import ROOT
+from tests.support.each import each
 
 MADE_UP = """
 ```toml
@@ -64,7 +65,7 @@ def test_files_and_commands_are_taken_from_a_page(tmp_path: Path) -> None:
     assert "$ echo 1,002.0 words\n1,002.0 words\n$ ls nowhere\n...\n" in renewed(MADE_UP, played)
 
 
-@pytest.mark.parametrize(
+@each(
     ("shown", "printed", "same"),
     [
         ("FoS 3.02\n", "FoS 3.021\n", True),

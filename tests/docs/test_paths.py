@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import pytest
-
 from tests.conftest import ROOT
+from tests.support.each import each
 
 ROOMS = "loads|geometry|fea|reports|pinstress|studies|examples|tests|benchmarks|docs|scripts"
 NAMES = re.findall(
@@ -16,14 +15,14 @@ NAMES = re.findall(
 PAGES = [*(ROOT / "docs").glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@each("page", PAGES)
 def test_named_files_exist(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for path in re.findall(rf"`((?:{ROOMS})/[\w./-]+)", text):
         assert (ROOT / path).exists(), path
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@each("page", PAGES)
 def test_named_benchmarks_and_targets_exist(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     for name in re.findall(r"python -m benchmarks ([a-z][\w-]*)", text):

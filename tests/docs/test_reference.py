@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import pytest
-
 from docs.study_reference import reference, sections, takes
 from pinstress.study.schema.cases import ImpulseTable, MotionCase
 from pinstress.study.schema.pins import PinTable, SegmentTable
 from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.types import StrictTable, described
+from tests.support.each import each
 
 SCHEMA = StudyTable.model_json_schema()
 
@@ -22,7 +21,7 @@ def tables(table: type[StrictTable] = StrictTable) -> Iterator[type[StrictTable]
         yield from tables(one)
 
 
-@pytest.mark.parametrize("table", list(tables()), ids=lambda t: t.__name__)
+@each("table", list(tables()))
 def test_every_key_says_what_it_is(table: type[StrictTable]) -> None:
     told = described(table)
     assert set(told) == set(table.model_fields)
@@ -49,7 +48,7 @@ def test_the_reference_has_type_unit_domain_default_and_description() -> None:
     assert "[table](#key-pin-NAME-profile)" in text
 
 
-@pytest.mark.parametrize(
+@each(
     ("table", "key", "words"),
     [
         (SegmentTable, "bore", "length ≥ 0 or [length ≥ 0, length ≥ 0]"),

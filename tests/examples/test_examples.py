@@ -14,9 +14,11 @@ import pytest
 from scipy.optimize import brentq
 
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.mechanism import pump_jack
 
 SCRIPTS = sorted((ROOT / "examples").glob("*.py"))
+QUICK = "one_pin", "own_mechanism"
 MOST_LINES = 40
 HANGS = 300  # seconds; they take a few
 
@@ -220,7 +222,14 @@ def test_every_example_has_a_check() -> None:
     assert {script.stem for script in SCRIPTS} == set(CHECKS)
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+@pytest.mark.parametrize(
+    "script",
+    [
+        script if script.stem in QUICK else pytest.param(script, marks=pytest.mark.slow)
+        for script in SCRIPTS
+    ],
+    ids=lambda script: script.stem,
+)
 def test_an_example_prints_what_is_true(script: Path, tmp_path: Path) -> None:
     assert len(script.read_text(encoding="utf-8").splitlines()) <= MOST_LINES
     done = subprocess.run(
@@ -237,7 +246,7 @@ def test_an_example_prints_what_is_true(script: Path, tmp_path: Path) -> None:
     CHECKS[script.stem](Printed(done.stdout), tmp_path)
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+@each("script", SCRIPTS)
 def test_the_documentation_shows_every_example(script: Path) -> None:
     page = (ROOT / "docs" / "examples.md").read_text(encoding="utf-8")
     assert f"{{literalinclude}} ../examples/{script.name}\n" in page

@@ -15,6 +15,7 @@ from benchmarks.failures.broken_meshes import FOLDED, INSIDE_OUT, TURNED
 from benchmarks.failures.fields import finest
 from benchmarks.failures.page import PAGE, PICTURES
 from pinstress.cli.commands import run_command_line
+from tests.support.each import each
 
 
 @pytest.mark.slow
@@ -193,7 +194,7 @@ def test_a_guide_that_jams() -> None:
     assert "friction jams slider guide" in mechanisms.refusal("jamming")
 
 
-@pytest.mark.parametrize("name", ["toggle", "change_point", "redundant", "jamming"])
+@each("name", ["toggle", "change_point", "redundant", "jamming"])
 def test_refused_linkages_end_with_status_2(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["loads", str(STUDIES / f"{name}.toml")]) == 2
     assert mechanisms.refusal(name).partition(": ")[2] in capsys.readouterr().err

@@ -15,6 +15,7 @@ from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from geometry.shape.polyline import Bend, Stripe, pin_of_polyline, with_stripes
 from tests.geometry.test_meridian_mesh import volume
 from tests.geometry.test_pin import integrated_volume
+from tests.support.each import each
 from tests.support.errors import raises
 
 CONE = Pin(
@@ -135,7 +136,7 @@ def test_stripes_name_parts_of_cylinders() -> None:
     assert found.volume == pytest.approx(pin.volume, rel=1e-14)
 
 
-@pytest.mark.parametrize(
+@each(
     ("stripe", "code"),
     [
         (Stripe("B", 2.2, 2.8), "band-on-cone"),
@@ -150,7 +151,7 @@ def test_stripes_elsewhere_are_refused(stripe: Stripe, code: str) -> None:
     assert error.value.at == ("band", "B")
 
 
-@pytest.mark.parametrize(
+@each(
     ("outside", "bore", "code"),
     [
         ([Bend(0, 1)], [], "too-few-corners"),
@@ -167,7 +168,7 @@ def test_outlines_that_cannot_be(outside: list[Bend], bore: list[Bend], code: st
         pin_of_polyline("P", outside, bore)
 
 
-@pytest.mark.parametrize(
+@each(
     ("segments", "code"),
     [
         ((Segment(1, 2, end_diameter=1, connection="B"),), "band-on-cone"),

@@ -11,6 +11,7 @@ from geometry import Bottom, Cut, CutPin, Flat, GeometryError, Hole, Passage, Pi
 from geometry.mesh.solid_mesh import MeshError, MeshSize, solid_mesh
 from geometry.shape.cut_edges import DrawnCut, drawn
 from pinbase.arrays import Floats
+from tests.support.each import each
 from tests.support.errors import raises
 
 R, L = 0.01, 0.1
@@ -71,7 +72,7 @@ def test_a_passage_is_hidden_and_ends_with_its_tip() -> None:
     assert ends(found, True) == pytest.approx(np.array([[0.0, 0.003], [0.062, 0.007]]))
 
 
-@pytest.mark.parametrize(
+@each(
     ("cut", "area"),
     [
         (Hole(0.05, 0.002), 2.0 * math.pi * 1e-6),
@@ -90,7 +91,7 @@ def test_what_cuts_take_of_the_surface(cut: Cut, area: float) -> None:
     assert found == pytest.approx(area, rel=0.02, abs=1e-12)
 
 
-@pytest.mark.parametrize(
+@each(
     ("holes", "code"),
     [
         ((Hole(0.05, 0.004), Hole(0.054, 0.004)), "thin-wall"),

@@ -14,6 +14,7 @@ import pytest
 from geometry import Bottom, Cut, CutPin, Flat, GeometryError, Hole, Passage, Pin, Segment, Slot
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinbase.arrays import Floats
+from tests.support.each import each
 from tests.support.errors import raises
 
 R, L = 0.01, 0.06
@@ -118,7 +119,7 @@ CUTS: dict[str, tuple[Cut, float]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", CUTS)
+@each("name", CUTS)
 def test_the_volume_of_a_cut(name: str) -> None:
     cut, expected = CUTS[name]
     assert BAR.volume - made(cut).volume == pytest.approx(expected, rel=2e-5)
@@ -139,7 +140,7 @@ def test_a_rounded_mouth_takes_what_lies_outside_of_its_circles() -> None:
     assert floor[1] - floor[0] == pytest.approx(straight + ring(RHO, 0.0025), rel=1e-4)
 
 
-@pytest.mark.parametrize("name", ["tip", "flat", "keyway", "blind passage"])
+@each("name", ["tip", "flat", "keyway", "blind passage"])
 def test_surfaces_of_a_cut_are_one_boundary(name: str) -> None:
     """Only the ends of flats have a name of their own; everything has one, also in another unit."""
     cut, _ = CUTS[name]
@@ -172,7 +173,7 @@ def test_images_of_cuts() -> None:
 BORED = Pin("bored", (Segment(L, 2 * R, 0.008, connection="B"),))
 
 
-@pytest.mark.parametrize(
+@each(
     ("cut", "code"),
     [
         (Hole(0.03, 2 * a, 0.0, -1.0), "not-positive"),

@@ -13,6 +13,7 @@ from fea.solid.sharp_edges import sharp_edges
 from geometry import CutPin, Flat, GeometryError, Hole, Pin, Segment
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.solid_mesh import MeshSize
+from tests.support.each import each
 from tests.support.errors import raises
 
 BAR = Pin("bar", (Segment(0.06, 0.02, connection="B"),))
@@ -105,7 +106,7 @@ def test_holes_may_cross_and_a_profile_keeps_its_surfaces() -> None:
         pin.surface("hole 4")
 
 
-@pytest.mark.parametrize(
+@each(
     ("holes", "flats", "code"),
     [
         ((Hole(0.03, 0.02),), (), "hole-too-large"),

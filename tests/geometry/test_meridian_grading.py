@@ -8,6 +8,7 @@ import pytest
 from geometry import Pin, Segment, vertices
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
 from geometry.mesh.sizing import size_at
+from tests.support.each import each
 from tests.support.pins.section_pins import PINS, Floats, nodes
 
 
@@ -27,14 +28,14 @@ def test_size_away_from_all() -> None:
         assert size.max() < 1.5 * 0.02 / across
 
 
-@pytest.mark.parametrize("arc", [4.0, 8.0, 16.0])
+@each("arc", [4.0, 8.0, 16.0])
 def test_elements_along_a_fillet(arc: float) -> None:
     found = meridian_mesh(PINS["shoulders"], SectionSize(arc=arc))
     for i in (1, 2):
         assert arc <= len(found.edges[f"fillet {i}"]) <= 1.5 * arc + 1
 
 
-@pytest.mark.parametrize("size", [1e-4, 1e-5, 1e-6])
+@each("size", [1e-4, 1e-5, 1e-6])
 def test_elements_at_a_spot(size: float) -> None:
     """As small as asked beside it, and growing from there no faster than 0.7 per distance (1.5
     times that, as gmsh keeps to it by and large).

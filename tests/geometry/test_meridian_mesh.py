@@ -20,6 +20,7 @@ from geometry.mesh.section_mesh import (
     meridian_mesh,
 )
 from geometry.mesh.solid_mesh import MeshError
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.section_pins import PINS, Floats, nodes
 
@@ -94,7 +95,7 @@ def test_axis(name: str) -> None:
 
 
 @ALL
-@pytest.mark.parametrize("factor", [1.0, 2.0])
+@each("factor", [1.0, 2.0])
 def test_jacobians(name: str, factor: float) -> None:
     """Positive everywhere, and no element too bent."""
     detail = jacobians(meridian_mesh(PINS[name], SectionSize().finer(factor)))
@@ -146,7 +147,7 @@ def test_what_cannot_be_meshed_within_reason() -> None:
         meridian_mesh(pin, SectionSize())
 
 
-@pytest.mark.parametrize("fillet", [1e-9, 1e-13, 1e-40])
+@each("fillet", [1e-9, 1e-13, 1e-40])
 def test_a_fillet_too_small_to_mesh(fillet: float) -> None:
     """Refused at once: gmsh hung at 1e-13."""
     pin = Pin("P", (Segment(1.0, 2.0), Segment(1.0, 3.0)), fillet=fillet)

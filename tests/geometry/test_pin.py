@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry import Arc, GeometryError, Pin, Segment, meridian, sharp_corners
+from tests.support.each import each
 from tests.support.errors import raises
 
 
@@ -100,7 +101,7 @@ def test_surfaces_go_by_connection_name_or_number() -> None:
         pin.surface("tail")
 
 
-@pytest.mark.parametrize(
+@each(
     ("segments", "fillet", "code", "at"),
     [
         ((), 0.0, "no-segments", ()),

@@ -12,6 +12,7 @@ from geometry.imported.meshing import solid_mesh
 from geometry.mesh.gmsh_session import MeshError, gmsh_model
 from geometry.mesh.section_mesh import SectionSize, Spot, meridian_mesh
 from geometry.mesh.solid_mesh import MeshSize
+from tests.support.each import each
 from tests.support.errors import raises
 
 PIN = Pin(
@@ -24,7 +25,7 @@ CUT = CutPin(PIN, (Hole(2.0, 0.25, 0.3),), (Flat(2.5, 3.0, 0.4, 1.0),))
 MICROMETRE, KILOMETRE = 2.0**-20, 2.0**10
 
 
-@pytest.mark.parametrize("unit", [MICROMETRE, 2.0**-6, KILOMETRE])
+@each("unit", [MICROMETRE, 2.0**-6, KILOMETRE])
 def test_a_section_is_the_same_to_the_last_bit(unit: float) -> None:
     spot = Spot(0.75, 0.0, 0.01, 0.1)
     one = meridian_mesh(PIN, SectionSize(), [spot])

@@ -21,6 +21,7 @@ from geometry.mesh.elements import with_element
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.solid_mesh import MeshError, MeshSize, SolidMesh, solid_mesh
 from geometry.mesh.tet10 import refined
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.pin_files import MM, write_mesh, write_step
 
@@ -253,7 +254,7 @@ CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dty
 TETRAHEDRON = ("tetra", [[0, 1, 2, 4]])
 
 
-@pytest.mark.parametrize(
+@each(
     ("cells", "error", "code"),
     [
         ([TETRAHEDRON, ("hexahedron", [[0, 1, 3, 2, 4, 5, 7, 6]])], GeometryError,

@@ -14,6 +14,7 @@ from geometry.mesh import gmsh_tetrahedra as tetrahedra
 from geometry.mesh.elements import with_element
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.solid_mesh import MeshError, MeshSize, solid_mesh
+from tests.support.each import each
 from tests.support.errors import raises
 
 PINS = {
@@ -33,7 +34,7 @@ PINS = {
 }
 
 
-@pytest.mark.parametrize("name", PINS)
+@each("name", PINS)
 def test_volume_area_names_and_elements(name: str) -> None:
     pin = PINS[name]
     solid = solid_mesh(pin, MeshSize(), (pin.band("B").z0, pin.band("B").z1))
@@ -84,7 +85,7 @@ def test_bad_elements_are_repaired(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Discretisation(solid.mesh).weights.min() > 0.0
     assert Discretisation(solid.mesh).weights.sum() == pytest.approx(pin.volume, rel=1e-3)
     monkeypatch.setattr(tetrahedra, "MAX_REPAIRS", 0)
-    monkeypatch.setattr("geometry.mesh.solid_mesh.SMALLEST_JACOBIAN", 1.5)  # more than any has
+    monkeypatch.setattr("geometry.mesh.solid_mesh.MIN_JACOBIAN_RATIO", 1.5)  # more than any has
     with raises(MeshError, "bad-elements"):
         solid_mesh(pin, MeshSize(across=2.5).finer(2.0**0.5), edges)
 

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from geometry import Arc, Pin, Segment, Vertex, meridian, sharp_corners, vertices
+from tests.support.each import each
 
 RIM, SMOOTH, INNER = math.pi / 2.0, math.pi, 1.5 * math.pi
 
@@ -36,8 +37,8 @@ def test_a_sharp_shoulder(rises: bool) -> None:
     assert set(rim.between) == {"shoulder 1", "thick"}
 
 
-@pytest.mark.parametrize("rises", [True, False])
-@pytest.mark.parametrize("rho", [0.2, 1e-6, 3e-9])
+@each("rises", [True, False])
+@each("rho", [0.2, 1e-6, 3e-9])
 def test_a_fillet_runs_smoothly_into_shaft_and_face(rises: bool, rho: float) -> None:
     thin, thick = Segment(2.0, 2.0), Segment(2.0, 3.0)
     pin = Pin("P", (thin, thick) if rises else (thick, thin), fillet=rho)

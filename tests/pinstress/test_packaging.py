@@ -1,18 +1,21 @@
-"""What a user installs: wheel and source distribution, each in an empty environment.
+"""What a user installs: wheel, source distribution and checkout, each in an empty environment.
 
 The environment is real, and so is the install. Dependencies alone, which are not what is tested,
 are those of the interpreter that runs the tests, named in PYTHONPATH: an editable install's .pth is
-not read there, so that the checkout cannot be imported. Nothing is fetched.
+not read there, so that the checkout cannot be imported. Those of the extras are hidden. Nothing is
+fetched.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import sysconfig
 import tarfile
+import tomllib
 import venv
 import zipfile
 from pathlib import Path
@@ -21,22 +24,29 @@ import pytest
 
 from tests.conftest import ROOT
 
-PACKAGES = ("pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+PACKAGES = PROJECT["tool"]["importlinter"]["root_packages"]
 LIBRARIES = os.pathsep.join(dict.fromkeys(sysconfig.get_paths()[k] for k in ("purelib", "platlib")))
+EXTRAS = ("distributed", "dask", "tornado", "psutil", "pylife", "pandas", "h5py", "typst")
+SHIPPED = "import pinstress; print(*pinstress.shipped_studies())"
+HIDDEN = f"import sys; sys.modules |= dict.fromkeys({EXTRAS})"
 OFFLINE = ("--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed", "--quiet")
 
 
 def done(folder: Path, *command: str | Path, status: int = 0) -> str:
-    """What a command prints, run in a folder without anything of the checkout in its path."""
+    """What a command prints, run in a folder without anything of the checkout in its path. status:
+    its exit status; what it prints of an error instead, if that is 2.
+    """
+    path = os.pathsep.join([str(folder / "hidden"), LIBRARIES])
     found = subprocess.run(
         [str(word) for word in command],
         cwd=folder,
-        env=os.environ | {"PYTHONPATH": LIBRARIES, "PINSTRESS_CACHE": str(folder / "cache")},
+        env=os.environ | {"PYTHONPATH": path, "PINSTRESS_CACHE": str(folder / "cache")},
         capture_output=True,
         text=True,
     )
     assert found.returncode == status, found.stdout + found.stderr
-    return found.stdout
+    return found.stderr if status == 2 else found.stdout
 
 
 def files(*folders: str) -> set[str]:
@@ -85,13 +95,28 @@ def test_the_source_has_what_the_wheel_is_made_of_and_the_tests(dist: Path) -> N
     assert not any(name.startswith((".venv", ".git/", "out/")) for name in names)
 
 
+def test_a_citation_says_what_the_project_says() -> None:
+    """CITATION.cff has one key a line, lists below it."""
+    text, project = (ROOT / "CITATION.cff").read_text(encoding="utf-8"), PROJECT["project"]
+    stated = dict(re.findall(r"^([\w-]+): (.+)$", text, re.MULTILINE))
+    assert stated["version"] == project["version"]
+    assert stated["license"] == project["license"]
+    authors, keywords = re.split(r"^keywords:$", text, flags=re.MULTILINE)
+    assert re.findall(r"^  - name: (.+)$", authors, re.MULTILINE) == [
+        author["name"] for author in project["authors"]
+    ]
+    assert re.findall(r"^  - (.+)$", keywords, re.MULTILINE) == project["keywords"]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("ending", [".whl", ".tar.gz"])
+@pytest.mark.parametrize("ending", [".whl", ".tar.gz", "pip install ."])
 def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_path: Path) -> None:
     venv.create(tmp_path / "env", symlinks=True)
     bin_ = tmp_path / "env" / "bin"
     installer = (sys.executable, "-m", "pip", "--python", bin_ / "python", "install")
-    done(tmp_path, *installer, *OFFLINE, only(dist, ending))
+    done(tmp_path, *installer, *OFFLINE, only(dist, ending) if ending.startswith(".") else ROOT)
+    (tmp_path / "hidden").mkdir()
+    (tmp_path / "hidden" / "sitecustomize.py").write_text(HIDDEN, encoding="utf-8")
 
     here = done(
         tmp_path,
@@ -111,6 +136,9 @@ def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_pat
     done(tmp_path, program, "init", "trial")
     assert "B" in done(tmp_path, program, "check", "trial/one_pin.toml")
     done(tmp_path, program, "check", here[-1])
+    studies = {Path(name).stem for name in files("studies") if name.count("/") == 1}
+    listed = done(tmp_path, bin_ / "python", "-c", SHIPPED)
+    assert set(listed.split()) == studies
     printed = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
     assert "safe" in printed
     out = tmp_path / "out" / "one_pin"
@@ -121,3 +149,11 @@ def test_an_install_initialises_checks_and_runs(ending: str, dist: Path, tmp_pat
     again = done(tmp_path, program, "run", "trial/one_pin.toml", "--no-pictures")
     assert again == printed
     assert any((tmp_path / "cache").iterdir())
+
+    fatigue = Path(here[-1]).with_name("fatigue.toml")
+    for command in (
+        ("run", fatigue, "--out", "refused"),
+        ("run", "trial/one_pin.toml", "--pdf"),
+        ("sweep", fatigue.with_name("lifting_arm.toml"), "--scheduler", "tcp://127.0.0.1:1"),
+    ):
+        assert "pip install 'pinstress[" in done(tmp_path, program, *command, status=2)

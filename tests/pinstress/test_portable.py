@@ -13,9 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from pinbase.platform import offered
+from pinbase.platform import offered, portable
 from pinbase.platform import portable as portable_numerics
-from pinbase.processes.system import portable
 from tests.conftest import ROOT
 from tests.pinstress.cli.test_output import ROOM, SLOW, names
 from tests.support.programs.process_group import alive, started
@@ -128,6 +127,7 @@ def test_where_nothing_else_is_there_every_command_works(tmp_path: Path) -> None
         assert "2 of 2 pins are safe" in told
 
 
+@pytest.mark.slow
 def test_a_script_without_a_guard_is_not_run_by_its_processes(tmp_path: Path) -> None:
     (tmp_path / "script.py").write_text(SCRIPT)
     done = python(tmp_path, "script.py", str(STUDIES / "excavator.toml"), **TWIN)
@@ -148,6 +148,7 @@ def test_processes_import_nothing_from_the_current_folder(tmp_path: Path) -> Non
     assert "matplotlibrc" not in done.stderr
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_a_run_with_nothing_written(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(SLOW)
     command = "run", "study.toml", "--out", "out", "--no-pictures", "--jobs", "2", *ROOM
@@ -174,6 +175,7 @@ def test_an_interrupt_ends_a_run_with_nothing_written(tmp_path: Path) -> None:
     assert names(tmp_path) == ["study.toml"]
 
 
+@pytest.mark.slow
 def test_a_chart_is_refused_where_memory_is_not_known(tmp_path: Path) -> None:
     one = str(STUDIES / "one_pin.toml")
     done = python(

@@ -108,6 +108,7 @@ def test_relieved_of_an_even_pressure_nothing_is_left() -> None:
     assert relieved(stress + tension, out, 0.3) == pytest.approx(tension, abs=1.0)
 
 
+@pytest.mark.slow
 def test_the_wall_of_a_hole_under_a_lug_is_read() -> None:
     """In the pressed fibre under its lug: the walls of the hole are free however pressure surrounds
     its mouth, and there is the largest stress.

@@ -39,6 +39,7 @@ from geometry import Pin, Segment
 from geometry.mesh.outline_motion import DIFFERENCE_STEPS
 from geometry.shape.dimensions import dimensions
 from pinbase.arrays import Floats
+from tests.support.each import sampled
 
 STEEL = Material("steel", 210e9, 0.3, 7850.0, yield_strength=700e6)
 ALUMINIUM = Material("aluminium", 70e9, 0.33)
@@ -120,6 +121,7 @@ def check(name: str, keys: tuple[str, ...] | None = None) -> None:
         assert ours == pytest.approx(whole.derivative(one), rel=1e-5, abs=little), one.key
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "kind", "near"),
     [("fillet", OnSkin, 0.0340), ("tension fibre", Relieved, 0.0)],
@@ -132,6 +134,7 @@ def test_where_they_are(name: str, kind: type, near: float) -> None:
         assert point.read_at.points[point.top.point, 1] == pytest.approx(near, abs=3e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "keys"),
     [
@@ -147,10 +150,13 @@ def test_as_by_differences(name: str, keys: tuple[str, ...]) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["fillet", "tension fibre", "section", "seated section"])
-def test_all_as_by_differences(name: str) -> None:
-    check(name)
+@pytest.mark.parametrize("step", sampled([5, 1], every=2))
+def test_all_as_by_differences(name: str, step: int) -> None:
+    """By one in so many parameters."""
+    check(name, tuple(parameter.key for parameter in joint(name)[1][::step]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["section", "seated section"])
 def test_sections_by_sums(name: str) -> None:
     """Without clearances stress would be in proportion to the loads; with them loads, moduli and
@@ -178,6 +184,7 @@ def test_sections_by_sums(name: str) -> None:
     assert scaled == pytest.approx(0.0, abs=1e-8 * found.maximum)
 
 
+@pytest.mark.slow
 def test_at_the_edge_of_a_lug() -> None:
     """Where stress is continued to it from beside it: by shape, by Poisson's ratio, and by the
     exponent of pressure there, under pressures that stay.
@@ -260,7 +267,7 @@ def _moving(times: Floats) -> PinLoads:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("place", ["surface", "section"])
+@pytest.mark.parametrize("place", sampled(["surface", "section"], every=2))
 def test_of_whole_solutions(place: Place) -> None:
     """The places of a pin, the surface along a motion, and what they become with another diameter,
     solved anew on other meshes and cells.

@@ -18,6 +18,7 @@ from fea.solve.solve import solve
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
+from tests.support.each import sampled
 
 D, F = 0.02, 50e3
 STEEL = Material("steel", 210e9, 0.3, yield_strength=1e9)
@@ -93,14 +94,16 @@ def test_no_bounds_for_a_fillet_beside_the_edge_of_a_lug(apart: float, known: bo
 
 @pytest.mark.slow
 @pytest.mark.parametrize("play", [0.0, 10.0])
-def test_contact_and_what_lies_beneath_it_are_within_the_bounds(play: float) -> None:
+@pytest.mark.parametrize("count", sampled([4, 9], every=2))
+def test_contact_and_what_lies_beneath_it_are_within_the_bounds(play: float, count: int) -> None:
     """Of joints that had no part in any constant: 2 to 3 lugs, tubes, sharp edges; with fillets
     0.15 to 0.3 d from edges, which may be rounded by 0.05 d. None is above its bound by more than
     5 %; 9 in 10 are within both.
     """
-    trials = [played(x, play) for x in joint_trials(9, 41)] + filleted_trials(9, 42)
+    trials = [played(x, play) for x in joint_trials(count, 41)]
+    trials += filleted_trials(count, 42)
     known = [(t, b.bounds) for t in trials if (b := bounds_of(t)).bounds]
-    assert len(known) > 13
+    assert len(known) > 0.75 * len(trials)
     inside = 0
     for trial, (low, high) in known:
         try:
@@ -114,12 +117,13 @@ def test_contact_and_what_lies_beneath_it_are_within_the_bounds(play: float) -> 
 
 
 @pytest.mark.slow
-def test_auto_is_never_safe_where_contact_is_not() -> None:
+@pytest.mark.parametrize("count", sampled([2, 6], every=2))
+def test_auto_is_never_safe_where_contact_is_not(count: int) -> None:
     """At factors around that of contact, of pins whose lugs have rounded edges: wherever a
     foundation answers, row and what lies beneath contact have the factor that it says.
     """
     answered = 0
-    for trial in filleted_trials(6, 43):
+    for trial in filleted_trials(count, 43):
         truth = contact_places(trial)
         for share in (0.5, 0.8, 0.95, 1.05):
             strength = 1e9

@@ -29,12 +29,14 @@ from fea.core.voigt import von_mises
 from fea.support.contact.held import profile_of
 from fea.support.support import PinProblem
 from geometry import Segment
+from tests.support.each import sampled
 
 # Of the nearer end: lugs with shanks of their own differ from rings by 4 % (docs/benchmarks.md).
 WITHIN = 0.04
 
 
-@pytest.mark.parametrize("named", NAMED, ids=lambda n: n.name)
+@pytest.mark.slow
+@pytest.mark.parametrize("named", sampled(NAMED, every=2), ids=lambda n: n.name)
 def test_surface_and_section_are_those_of_other_programs(named: NamedPin) -> None:
     found = named.solve().places
     assert found is not None

@@ -15,6 +15,7 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import BENEATH_DISTANCE
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, PressedArcs, Rings
 from fea.harmonic.beneath import ARC_STRIDE, Away, _distance, arcs_apart
+from tests.support.each import each
 
 STEEL = Material("steel", 210e9, 0.3)
 D, RADIUS = 0.02, 0.01
@@ -39,8 +40,8 @@ def apart(a: float, b: float) -> float:
     return abs((a - b + 180.0) % 360.0 - 180.0)
 
 
-@pytest.mark.parametrize("sectors", [24, 36, 48, 64])
-@pytest.mark.parametrize("angle", [0.0, 0.1, -2.7, 4.0])
+@each("sectors", [24, 36, 48, 64])
+@each("angle", [0.0, 0.1, -2.7, 4.0])
 def test_arcs_are_those_of_the_cells_that_turn(sectors: int, angle: float) -> None:
     """Each of 360 arcs is pressed if the cell in which its middle is has pressure; one of which a
     cell's end is the middle belongs to either.
@@ -68,7 +69,7 @@ def test_a_pressed_cell_presses_as_many_arcs_as_it_is_wide() -> None:
         assert max(apart(float(a), middle) for a in np.degrees(ARC_ANGLES[found.on[0, 3]])) <= 5.0
 
 
-@pytest.mark.parametrize("sector", [5, 8, 10, 15])
+@each("sector", [5, 8, 10, 15])
 def test_widened_is_a_sector_more_on_both_sides(sector: int) -> None:
     rng = np.random.default_rng(sector)
     arcs = rng.random((6, ARC_COUNT)) < np.array([0.0, 0.002, 0.01, 0.1, 0.9, 1.1])[:, None]
@@ -164,7 +165,7 @@ def some_arcs(seed: int, share: float) -> PressedArcs:
     return PressedArcs(of, on, 10)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@each("seed", range(4))
 def test_distances_are_those_in_space(seed: int) -> None:
     of = some_arcs(seed, 0.7)
     rng = np.random.default_rng(100 + seed)
@@ -182,7 +183,7 @@ def test_distances_are_those_in_space(seed: int) -> None:
                     assert found[k, arc] == pytest.approx(expected, abs=1e-3 * RADIUS)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@each("seed", range(4))
 def test_away_is_farther_than_a_tenth_of_the_diameter(seed: int) -> None:
     """From all that is pressed at the instant; by half an arc or less it may be either."""
     of = some_arcs(seed, 0.7)

@@ -14,6 +14,7 @@ from fea.section.place import FoundSection, found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
 from geometry import Pin, Segment
+from tests.support.each import each
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)
 D = 0.02
@@ -91,7 +92,7 @@ def test_a_row_is_as_uncertain_as_the_larger_may_be() -> None:
     assert row.verdict == "converged"  # the surface is surely below
 
 
-@pytest.mark.parametrize(
+@each(
     ("surfaces", "expected"),
     [
         ((0.9, (0.8, 1.2)), (1.0, 1.2)),  # the section governs, and the surface may have more

@@ -14,6 +14,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.section.place import FLEXIBILITY_ERROR, found_section
 from fea.section.section_stress import AtSection, SectionField
 from geometry import Pin, Segment
+from tests.support.each import each
 
 STEEL = Material("steel", 205e9, 0.3, yield_strength=400e6)
 NU, D = 0.3, 0.02
@@ -78,7 +79,7 @@ def brute(pin: Pin, case: PinLoads, sections: Floats) -> float:
     return best
 
 
-@pytest.mark.parametrize("seed", range(8))
+@each("seed", range(8))
 def test_it_is_the_largest_of_all_points_of_all_sections(seed: int) -> None:
     """Random stepped pins, solid and hollow, clamped at a face, with random forces along all axes
     and torques: to 0.3 %, of the sampling of both.
@@ -111,7 +112,7 @@ def test_it_is_the_largest_of_all_points_of_all_sections(seed: int) -> None:
     assert abs(at.torque) == pytest.approx(abs(moment[2]), abs=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@each("seed", range(6))
 def test_a_moment_may_be_largest_within_a_band(seed: int) -> None:
     """Three bands side by side in balance, of unlike lengths, whose largest moment is somewhere in
     the middle one, to 0.02 %.

@@ -22,6 +22,7 @@ from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
+from tests.support.each import each
 
 D, F = 0.02, 30e3
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=9e8)
@@ -116,7 +117,7 @@ def test_the_solid_shows_what_its_surface_does(found: Solution, answer: Harmonic
     assert not np.delete(body.pressed, mine).any()  # inside
 
 
-@pytest.mark.parametrize(("cells", "sectors"), [(24, 72), (36, 72), (48, 90), (64, 120)])
+@each(("cells", "sectors"), [(24, 72), (36, 72), (48, 90), (64, 120)])
 def test_every_cell_has_two_points(found: Solution, cells: int, sectors: int) -> None:
     pressed = found.loads.pressed
     assert isinstance(pressed, PressedArcs)

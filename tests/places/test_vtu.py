@@ -21,6 +21,7 @@ from pinstress.study.reading.file import load_study
 from reports.data.results import Field, PinResult, Results
 from reports.vtk.fields import write_pin
 from tests.conftest import ROOT
+from tests.support.each import sampled
 from tests.support.pins.clevis import CLEVIS
 
 Rows = list[tuple[PinResult, Any, Any]]  # the others: pyvista.DataSet
@@ -93,12 +94,13 @@ def test_the_free_surface_of_a_clevis_pin_has_no_steps_of_its_lugs(tmp_path: Pat
 
 
 @pytest.mark.slow
-def test_the_free_surface_of_the_gear_has_no_steps_of_its_lugs(tmp_path: Path) -> None:
+@pytest.mark.parametrize("pins", sampled(["EJ", "DG"], every=2))
+def test_the_free_surface_of_the_gear_has_no_steps_of_its_lugs(pins: str, tmp_path: Path) -> None:
     """D, G, E: a fillet beside a lug governs; J: the section, beside the edges of touching lugs."""
     gear = load_study(ROOT / "studies" / "landing_gear.toml")
-    plan = prepare(gear, pins=["D", "G", "E", "J"], cases=["landing"], also="solid")
+    plan = prepare(gear, pins=list(pins), cases=["landing"], also="solid")
     rows = written(plan, tmp_path)
-    assert [row.pin for row, *_ in rows] == ["D", "E", "G", "J"]
+    assert [row.pin for row, *_ in rows] == list(pins)
     require_rows(rows, "psi")
 
 

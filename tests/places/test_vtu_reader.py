@@ -18,6 +18,7 @@ import pyvista
 from benchmarks.joints.random_pins import PinTrial, pin_trials
 from benchmarks.joints.trial_study import tapered, write_study
 from benchmarks.joints.vtu_reader import SurfaceRead, read_folder, shut, von_mises
+from tests.support.each import sampled
 
 TRIALS = pin_trials(20, 7)
 NAMED = {"tapered": tapered(0.0), "tapered tube": tapered(0.3)}
@@ -42,14 +43,14 @@ def require(found: list[SurfaceRead], files: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("k", SOME)
+@pytest.mark.parametrize("k", sampled(SOME, every=3))
 def test_nothing_on_the_surface_exceeds_the_row(k: int, tmp_path: Path) -> None:
     """On the surface's own file and on the outside of the solid's."""
     require(run(TRIALS[k], tmp_path, "--vtk", "solid"), 2)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", NAMED)
+@pytest.mark.parametrize("name", sampled(NAMED, every=2))
 def test_nothing_on_cones_exceeds_the_row(name: str, tmp_path: Path) -> None:
     require(run(NAMED[name], tmp_path, "--vtk", "solid"), 2)
 

@@ -140,6 +140,7 @@ def test_an_edge_of_a_load_beside_a_groove(steel: Material) -> None:
     assert math.dist((peak.location or (0.0,))[2:], (2.0 * D + 2.0 * deep,)) < deep
 
 
+@pytest.mark.slow
 def test_a_clamps_edge_beside_a_hole(steel: Material) -> None:
     """0.05 d apart: the edge of the hole is the maximum whether a tenth or a fifth of the diameter
     is left out, of which the fifth would leave out the hole's worst point.

@@ -20,6 +20,7 @@ from pinstress.explore.sweep.page import (
     write_designs_page,
 )
 from reports.format.packed import packed
+from tests.support.each import each
 from tests.support.programs.packed import unpacked
 from tests.support.results.html_page import EVIL, parse
 from tests.support.results.made_up_designs import FAILING, made_up_designs, table_of
@@ -126,7 +127,7 @@ def test_reasons_are_counted_by_code() -> None:
     assert found.body == [["2", "gmsh failed at 3"], ["1", FAILING[0]], ["1", "no code"]]
 
 
-@pytest.mark.parametrize(
+@each(
     "table",
     [
         some(SOLVED),
@@ -136,7 +137,6 @@ def test_reasons_are_counted_by_code() -> None:
         some(SOLVED, SOLVED, values=("steel", "titanium")),
         made_up_designs(30, 20, TWO, failing=1.0),
     ],
-    ids=["one", "none succeeded", "constant", "no factor", "texts", "20 parameters, all failed"],
 )
 def test_any_table_makes_a_page(table: pa.Table, tmp_path: Path) -> None:
     page = parse(write(table, tmp_path))

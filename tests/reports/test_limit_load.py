@@ -16,6 +16,7 @@ from reports.plots.strength.limit_load import limit_plot
 from reports.tables.json_results import to_json
 from reports.tables.strength.limit_load import limit_grid, limit_load_table, limit_word
 from reports.vtk.fields import write_flow
+from tests.support.each import each
 
 CURVE = LoadCurve(
     np.array([0.0, 0.5, 0.9]), np.array([0.0, 1e-3, 4e-3]), np.array([0.0, 0.0, 2.5e-3])
@@ -49,7 +50,7 @@ def test_a_file_of_flow_has_the_pin(results: Results, tmp_path: Path) -> None:
     assert read.field_data["load factor"][0] == pytest.approx(1.2)
 
 
-@pytest.mark.parametrize(
+@each(
     ("limit", "word"),
     [
         (FOUND, "collapses"),

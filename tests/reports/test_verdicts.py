@@ -22,6 +22,7 @@ from reports.tables.strength.safety_factors import safety_factors_table, write_s
 from reports.text.fitted_table import Column, fitted_table, fitting
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
+from tests.support.each import each
 from tests.support.results.judged_results import judged, row
 from tests.support.results.made_up_run import ranged
 
@@ -31,7 +32,7 @@ def found() -> Results:
     return judged()
 
 
-@pytest.mark.parametrize(
+@each(
     ("verdict", "factor", "meets", "expected"),
     [
         ("converged", 3.0, True, "safe"),
@@ -49,7 +50,7 @@ def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str)
     assert outcome(found) == expected
 
 
-@pytest.mark.parametrize(("decided", "expected"), [
+@each(("decided", "expected"), [
     (True, "below yield"), (None, "not decided"), (False, "yields"),
 ])  # fmt: skip
 def test_without_a_required_factor_yield_is_the_limit(decided: bool | None, expected: str) -> None:
@@ -120,7 +121,7 @@ def test_tables_say_the_verdict_and_yield(found: Results, tmp_path: Path) -> Non
     assert "- A, sharp: known to 0.5%; harmonic: a beam is never known to 2.0%" in lines
 
 
-@pytest.mark.parametrize("width", [80, 120, 200])
+@each("width", [80, 120, 200])
 def test_the_terminal_fits_and_says_what_each_factor_is_worth(found: Results, width: int) -> None:
     out = StringIO()
     print_safety_factors(found, Console(file=out, width=width, no_color=True))

@@ -95,6 +95,7 @@ def test_factor_of_safety_at_every_point(solid: Field, tmp_path: Path) -> None:
     assert "factor of safety" not in pyvista.read(tmp_path / "c.vtu").point_data
 
 
+@pytest.mark.slow
 def test_picture_of_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(renderer.WINDOW_VARIABLE, os.environ.get(renderer.WINDOW_VARIABLE, ""))
     assert renderer_problem() is None
@@ -103,6 +104,7 @@ def test_picture_of_a_surface(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert len(np.unique(picture, axis=0)) > 500  # colours of a field, not of one face
 
 
+@pytest.mark.slow
 def test_pictures_that_share_a_scale_do_not_both_end_in_its_last_colour(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

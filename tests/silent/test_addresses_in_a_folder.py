@@ -22,6 +22,7 @@ import reports.plots.draw as drawing
 from pinbase.errors import Damaged
 from reports.plots.draw import svg
 from reports.plots.self_contained import require_no_address, require_self_contained
+from tests.support.each import each
 from tests.support.programs.command_line import run_here
 from tests.support.results.mutants import repacked
 from tests.support.results.small_folder import small_folder
@@ -104,7 +105,7 @@ HEAD = (
 )
 
 
-@pytest.mark.parametrize("way", DRAWINGS)
+@each("way", DRAWINGS)
 def test_a_drawing_with_an_address_is_refused(way: str) -> None:
     drawn = HEAD.format("") + DRAWINGS[way].format("http://127.0.0.1:9/x") + "</svg>"
     with pytest.raises(Damaged):

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 import pinstress
-from fea.core.equilibrium import closing, out_of_balance
+from fea.core.equilibrium import balancing_forces, out_of_balance
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
@@ -30,6 +30,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.pins import pin as pin_of
 from tests.conftest import ROOT
+from tests.support.each import each
 
 CLEVIS = Pin(
     "P",
@@ -76,7 +77,7 @@ FORCES = [50.0 * y for y in (0.009, 0.011, 0.09, 0.11, 0.3)]
 OUTCOMES = ["silent", "warned", "warned", "refused", "refused"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("left", "right", "outcome"),
     [
         *((25.0 + x, 25.0 - x, o) for x, o in zip(COUPLES, OUTCOMES, strict=True)),
@@ -107,7 +108,7 @@ def test_the_forces_that_close_it_are_in_equilibrium() -> None:
         forces = rng.normal(size=(1, 3, 3)) * [1e4, 1e4, 0.0]
         moments = rng.normal(size=(1, 3, 3)) * [30.0, 30.0, 0.0]
         loads = PinLoads("case", ("L", "M", "R"), forces, moments)
-        change = closing(CLEVIS, loads, 0)
+        change = balancing_forces(CLEVIS, loads, 0)
         assert change is not None
         for name, by in change.items():
             forces[0, "LMR".index(name), :2] += by
@@ -129,10 +130,10 @@ def test_a_couple_is_not_solved_either(steel: Material) -> None:
     assert "couple across the axis is 0.5 of the largest force" in loose.peak.note
     assert held.peak.max_von_mises is not None
     assert held.peak.imbalance is None
-    assert closing(pin, cases[0], 0) is None  # only no load at all would
+    assert balancing_forces(pin, cases[0], 0) is None  # only no load at all would
 
 
-@pytest.mark.parametrize(
+@each(
     ("held", "outcome"),
     [
         ({"lug": {"M": {"tilt": "guided"}}}, ""),  # one that cannot tilt carries the couple

@@ -27,6 +27,7 @@ from fea.solve.solve import solve_pin
 from fea.solve.surface_fields import amounts, unit_surface
 from geometry import Cut, CutPin, Flat, Hole, Pin, PinLike, Segment
 from pinbase.arrays import Floats
+from tests.support.each import sampled
 
 E, NU = 2.1e11, 0.3
 G = E / 2.0 / (1.0 + NU)
@@ -219,7 +220,7 @@ WHOLE: dict[str, tuple[Pin, list[Cut], tuple[str, ...], PinLoads]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", WHOLE)
+@pytest.mark.parametrize("name", sampled(WHOLE, every=2))
 def test_all_of_the_surface_moves_as_that_of_the_whole_solid(name: str) -> None:
     """To 2 % of its largest displacement; of a pin that nothing clamps but for a rigid motion, and
     both ends of its axis stay where they are (to the change of its section's shape).

@@ -28,6 +28,7 @@ from assess.fatigue.sn_curve import SnCurve
 from fea.core.voigt import TENSOR_TO_VOIGT
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
+from tests.support.each import each
 
 CURVE = SnCurve((200e6, 1e6), 5.0, scatter=3.0, rule="fkm", parameter=0.25)
 STEEL = FatigueMaterial(CURVE, 0.25, FkmMaterial("Steel", 1000e6, 6.3e-6, 1.7))
@@ -156,7 +157,7 @@ def _on(stress: Floats, normals: Floats, ways: Floats) -> tuple[Floats, Floats]:
     return np.einsum("tma,ma->mt", across, ways), np.einsum("tma,ma->mt", across, normals)
 
 
-@pytest.mark.parametrize("seed", range(3))
+@each("seed", range(3))
 def test_the_worst_of_all_planes_is_found_without_mean_stress(seed: int) -> None:
     """Two static cases: shear stresses of opposite sign make one cycle, others two."""
     rng = np.random.default_rng(seed)

@@ -17,18 +17,19 @@ import pytest
 from pinstress.cli.commands import run_command_line
 from pinstress.study.schema.shown import nearest
 from reports.plots.draw import svg
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK
 
 PINS = ["material", "clamp", "profile", "fillet", "lug", "distance"]
 
 
-@pytest.mark.parametrize("unlike", ["diameter", "radius", "force", "stress"])
+@each("unlike", ["diameter", "radius", "force", "stress"])
 def test_a_name_with_some_letters_in_common_is_no_hint(unlike: str) -> None:
     """`diameter` and `material` share i, a, e, t and r; six of eight letters are wrong."""
     assert nearest(unlike, PINS, 0.5) is None
 
 
-@pytest.mark.parametrize(
+@each(
     ("written", "meant"),
     [
         ("matreial", "material"),  # two letters swapped
@@ -112,7 +113,7 @@ def test_the_remedy_is_that_of_the_singularity(
 FAILS = QUICK.replace("required_safety_factor = 10", "required_safety_factor = 1000")
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "options", "status", "told"),
     [
         (FAILS, (), 0, True),
@@ -120,7 +121,6 @@ FAILS = QUICK.replace("required_safety_factor = 10", "required_safety_factor = 1
         (FAILS, ("--quiet",), 0, False),
         (QUICK, (), 0, False),
     ],
-    ids=["fails", "strict", "quiet", "safe"],
 )
 def test_why_the_status_is_zero_where_a_pin_fails(
     text: str,

@@ -7,6 +7,8 @@ side of a load that grows, not of a cycle; so does every result of a pin in lugs
 
 from __future__ import annotations
 
+import pytest
+
 import pinstress
 from tests.conftest import ROOT
 
@@ -24,6 +26,7 @@ def test_the_pages_state_how_much_and_on_which_side() -> None:
     assert "no contact stiffness to choose, no penalty and no search" in page("lugs.md")
 
 
+@pytest.mark.slow
 def test_results_of_pins_in_lugs_say_so() -> None:
     study = pinstress.load_study(ROOT / "studies" / "clevis.toml")
     results = pinstress.run(study, tolerance=0.2)

@@ -106,6 +106,7 @@ def test_a_pin_that_fails_is_not_made_singular_either() -> None:
     assert outcomes(found.study) == [SAFE]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_bore_whose_step_would_govern() -> None:
     """85 % of the volume that scaling gives."""

@@ -22,10 +22,11 @@ from assess.plastic.limit_load import bracket
 from assess.plastic.solve import MESH_SIZES, limit_load
 from assess.strength.collapse import collapse_margin
 from assess.strength.situation import LoadFactors
-from fea.beam.plastic_interaction import bent_and_pulled
+from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
+from tests.support.each import each
 from tests.support.exact.plastic import STEEL, YIELD, D, bar, limit
 
 R, SHEAR_YIELD = D / 2.0, YIELD / math.sqrt(3.0)
@@ -84,10 +85,8 @@ def _plastic(bore: float) -> tuple[float, float, float]:
     )
 
 
-@pytest.mark.parametrize("bore", [0.0, 0.5, 0.7, 0.95])
-@pytest.mark.parametrize(
-    ("m", "n"), [(1.0, 0.0), (0.0, 1.0), (1.0, 0.2), (1.0, 1.0), (0.3, 1.0), (0.02, 1.0)]
-)
+@each("bore", [0.0, 0.5, 0.7, 0.95])
+@each(("m", "n"), [(1.0, 0.0), (0.0, 1.0), (1.0, 0.2), (1.0, 1.0), (0.3, 1.0), (0.02, 1.0)])
 def test_bending_with_tension_is_what_strips_carry(bore: float, m: float, n: float) -> None:
     Mp, Np, _ = _plastic(bore)
     exact = _strips(bore, m * Mp, n * Np)
@@ -95,14 +94,14 @@ def test_bending_with_tension_is_what_strips_carry(bore: float, m: float, n: flo
     assert found.lower[0] <= exact * (1.0 + 1e-5) <= found.upper[0] * (1.0 + 3e-5)  # of strips
     assert found.lower[0] >= 0.93 * exact  # couples on bands leave shear in these
     assert found.upper[0] == pytest.approx(exact, rel=2e-4)
-    most, least = bent_and_pulled(Circle(R, bore * R), np.array(m), np.array(n))
+    most, least = bending_and_axial_use(Circle(R, bore * R), np.array(m), np.array(n))
     assert 1.0 / most == pytest.approx(exact, rel=1e-4)
     assert 1.0 / most <= 1.0 / least * (1.0 + 1e-12)
     circle = 1.0 / math.hypot(m, n)
     assert m * n == 0.0 or exact < 0.999 * circle  # so the circle was on the unsafe side
 
 
-@pytest.mark.parametrize("bore", [0.0, 0.5, 0.7, 0.95])
+@each("bore", [0.0, 0.5, 0.7, 0.95])
 def test_torsion_is_the_plastic_torque(bore: float) -> None:
     """4/3 of the torque at first yield if solid: with q = b/a, 4/3 (1 - q^3) / (1 - q^4)."""
     first = SHEAR_YIELD * math.pi / 2.0 * R**3 * (1.0 - bore**4)
@@ -112,8 +111,8 @@ def test_torsion_is_the_plastic_torque(bore: float) -> None:
     assert found.upper[0] == pytest.approx(exact, rel=1e-9)
 
 
-@pytest.mark.parametrize("bore", [0.0, 0.5, 0.99])
-@pytest.mark.parametrize("ratio", [0.3, 1.0, 3.0])
+@each("bore", [0.0, 0.5, 0.99])
+@each("ratio", [0.3, 1.0, 3.0])
 def test_tension_with_torsion_is_between_the_bounds(bore: float, ratio: float) -> None:
     _, Np, Tp = _plastic(bore)
     exact = _stretched_and_twisted(bore, Np, ratio * Tp)
@@ -158,7 +157,7 @@ def test_a_tube_of_20_by_14_with_an_axial_force_is_not_said_to_carry_its_loads()
     assert 0.99 * exact < found.lower[0] <= exact * (1.0 + 1e-5) <= found.upper[0]
 
 
-@pytest.mark.parametrize("length", [0.1, 0.6, 4.0])
+@each("length", [0.1, 0.6, 4.0])
 def test_a_neck_is_not_said_to_break_where_shoulders_hold_it(length: float) -> None:
     """A short one carries more than its section times yield, as it cannot contract: by slip along
     a plane within it, at most. Only a long one has that as a bound, which was that of all.
@@ -172,8 +171,8 @@ def test_a_neck_is_not_said_to_break_where_shoulders_hold_it(length: float) -> N
     assert upper == pytest.approx(1.0 if length > 2.0 * 0.75 else slip, rel=0.02)
 
 
-@pytest.mark.parametrize("bore", [0.0, 0.5, 0.9])
-@pytest.mark.parametrize("length", [0.8, 3.0])
+@each("bore", [0.0, 0.5, 0.9])
+@each("length", [0.8, 3.0])
 def test_a_stress_field_has_the_forces_of_the_lower_bound_and_yields_nowhere(
     bore: float, length: float
 ) -> None:
@@ -210,11 +209,11 @@ def test_a_stress_field_has_the_forces_of_the_lower_bound_and_yields_nowhere(
     ("bore", "m", "n"),
     [
         (0.0, 1.0, 0.0),
-        pytest.param(0.5, 1.0, 0.0, marks=pytest.mark.slow),
-        pytest.param(0.7, 1.0, 0.0, marks=pytest.mark.slow),
+        pytest.param(0.5, 1.0, 0.0, marks=[pytest.mark.slow, pytest.mark.long]),
+        pytest.param(0.7, 1.0, 0.0, marks=[pytest.mark.slow, pytest.mark.long]),
         pytest.param(0.0, 0.0, 1.0, marks=pytest.mark.slow),
-        pytest.param(0.0, 0.3, 1.0, marks=pytest.mark.slow),
-        pytest.param(0.0, 1.0, 1.0, marks=pytest.mark.slow),
+        pytest.param(0.0, 0.3, 1.0, marks=[pytest.mark.slow, pytest.mark.long]),
+        pytest.param(0.0, 1.0, 1.0, marks=[pytest.mark.slow, pytest.mark.long]),
         pytest.param(0.7, 1.0, 1.0, marks=pytest.mark.slow),
     ],
 )
@@ -251,6 +250,7 @@ def test_a_mesh_that_exceeds_a_strict_upper_bound_gives_no_lower_bound_there() -
     assert found.lower < towards < slip
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_solids_bracket_of_torsion_has_the_exact_factor() -> None:
     exact = _plastic(0.0)[2]

@@ -26,6 +26,7 @@ from pinstress import load_study, prepare
 from pinstress.analysis.assessed import limits
 from pinstress.analysis.assessed.limits import UNASKED_LIMIT_LOAD_SECONDS, limit_seconds, rung_of
 from pinstress.cli.commands import run_command_line
+from tests.support.each import each
 from tests.support.exact.plastic import STEEL, D
 
 STUDY = """
@@ -130,7 +131,7 @@ def test_a_budget_counts_from_its_beginning(monkeypatch: pytest.MonkeyPatch) -> 
     Budget().require(1e9)
 
 
-@pytest.mark.parametrize(
+@each(
     ("asked", "flag", "rung", "seconds"),
     [
         ('"auto"', False, "auto", UNASKED_LIMIT_LOAD_SECONDS),

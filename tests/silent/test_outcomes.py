@@ -263,6 +263,7 @@ def test_a_joint_that_is_not_solved_names_the_contact() -> None:
     assert (found.what, found.value) == ("joint", "contact with assumed lugs")
 
 
+@pytest.mark.slow
 def test_a_sweep_says_what_a_run_says(clevis: Results) -> None:
     """In contact a design's outcome is that of its run; with prescribed loads, whose range a sweep
     leaves to a run, it is never plainly safe.

@@ -20,6 +20,7 @@ from assess.strength.situation import Situation
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 DIAMETER, YIELD = 0.016, 235e6
@@ -47,8 +48,8 @@ def test_no_check_of_this_program_is_named_after_a_clause_on_shear_alone() -> No
     assert not any("1993-1-1" in clause for clause in clauses)
 
 
-@pytest.mark.parametrize("v", [0.2, 0.6, 0.9])
-@pytest.mark.parametrize("bore", [0.0, 0.6, 0.98])
+@each("v", [0.2, 0.6, 0.9])
+@each("bore", [0.0, 0.6, 0.98])
 def test_a_section_carries_what_the_circle_says(bore: float, v: float) -> None:
     """Where shear takes v of its yield stress, strips carry sqrt(1 - v^2) M_pl."""
     tau = v / math.sqrt(3.0)

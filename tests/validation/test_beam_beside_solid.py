@@ -32,6 +32,7 @@ from fea.solid.model import SolidModel
 from fea.solid.model import acting as acting_on_solid
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from tests.support.each import each, sampled
 
 STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
 SAME_MESH = 0.03
@@ -103,7 +104,7 @@ KINDS = {  # largest deviation from the solid, and largest median of the error, 
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@each("kind", KINDS)
 def test_how_good_beams_are(kind: str) -> None:
     """What docs/method.md says."""
     deviation, error = KINDS[kind]
@@ -114,7 +115,7 @@ def test_how_good_beams_are(kind: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("i", [3, 21, 46, 60])
+@pytest.mark.parametrize("i", sampled([3, 21, 46, 60], every=2))
 def test_the_solid_gives_what_the_file_says(i: int) -> None:
     """The same mesh again, but gmsh's differ a little between versions: 3 %."""
     row = rows()[i]

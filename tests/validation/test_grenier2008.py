@@ -36,6 +36,7 @@ from pinstress.study.model.pins import weight as weight_of
 from pinstress.study.reading.file import Study
 from reports.data.results import BeamCheck
 from tests.conftest import INCH, LBF
+from tests.support.each import each
 
 TIMES = np.linspace(0.0, 4.0, 201)
 
@@ -87,9 +88,7 @@ def test_landing_directions_are_those_of_table_3(landing: Dynamics) -> None:
         assert ours / size == pytest.approx(printed[a] @ printed[b] / size, abs=5e-4)
 
 
-@pytest.mark.parametrize(
-    ("connection", "peak"), [("A", 140.68), ("B", 101.06), ("F2", 83.82), ("H", 624.24)]
-)
+@each(("connection", "peak"), [("A", 140.68), ("B", 101.06), ("F2", 83.82), ("H", 624.24)])
 def test_retract_peaks_that_the_stresses_imply(
     retract: Dynamics, connection: str, peak: float
 ) -> None:
@@ -143,7 +142,7 @@ def test_work_is_the_change_of_energy(gear_linkage: Linkage, retract: Dynamics) 
     assert np.abs(work - (total - total[0])).max() < 1e-6 * np.abs(work).max()
 
 
-@pytest.mark.parametrize(
+@each(
     ("time", "speed", "acceleration"),
     [(1.4, 4.2827, 2.7672), (2.1, 5.6243, 2.6588), (3.1, 5.5502, 3.1508)],
 )
@@ -156,7 +155,7 @@ def test_pin_f_moves_as_printed(
     assert round(float(np.linalg.norm(a[k])) / INCH, 4) == acceleration
 
 
-@pytest.mark.parametrize(
+@each(
     ("pin", "weight"), [("C", 4.557258), ("F", 4.557109), ("E", 14.16), ("G", 14.96), ("J", 7.58)]
 )
 def test_pins_weigh_what_table_3_says(gear: Study, pin: str, weight: float) -> None:

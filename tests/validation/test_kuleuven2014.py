@@ -17,6 +17,7 @@ import pytest
 
 from loads import leg_dynamics
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.mechanism.leg_of_particles import Floats
 from tests.validation.kuleuven2014_formulas import HOLD, PRINTED, RIGHT
 from tests.validation.kuleuven2014_truth import (
@@ -48,8 +49,8 @@ def test_the_list_is_complete() -> None:
     assert all(row["why"] for row in errors())
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("row", errors(), ids=lambda row: f"{row['equation']}: {row['quantity']}")
+@each("seed", SEEDS)
+@each("row", errors())
 def test_the_printed_formula_is_off_by_the_named_term(row: dict[str, str], seed: int) -> None:
     name = row["quantity"]
     whole = value(PRINTED[row["equation"], name], seed, name)
@@ -60,7 +61,7 @@ def test_the_printed_formula_is_off_by_the_named_term(row: dict[str, str], seed:
     np.testing.assert_allclose(whole - true, wrong - right, rtol=0.0, atol=1e-9 * size)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@each("seed", SEEDS)
 def test_ours_are_the_true_ones(seed: int) -> None:
     """At the publication's own instant: world axes, heading 0, A's path straight."""
     ours, found = dynamics(seed), truth(seed)
@@ -92,22 +93,22 @@ def test_ours_are_the_true_ones(seed: int) -> None:
         )
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("key", HOLD, ids=": ".join)
+@each("seed", SEEDS)
+@each("key", HOLD)
 def test_the_rest_of_the_printed_formulas_holds(key: tuple[str, str], seed: int) -> None:
     true = quantity(seed, key[1])
     assert value(HOLD[key], seed, key[1]) == pytest.approx(true, rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("name", RIGHT)
+@each("seed", SEEDS)
+@each("name", RIGHT)
 def test_closed_forms(name: str, seed: int) -> None:
     """Those of the publication that hold, put right; primed axes."""
     ours = getattr(dynamics(seed), name)[0]
     np.testing.assert_allclose(ours, value(RIGHT[name], seed, "'"), rtol=1e-12)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@each("seed", SEEDS)
 def test_following_the_yaw_changes_what_the_publication_has(seed: int) -> None:
     """Not counted as an error, since its A may move straight: an aircraft that rolls where it
     points has -omega_g v_v along x' in every acceleration as well.

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from math import inf
 
 from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
@@ -51,13 +50,9 @@ def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, lis
         return None, []
     points: list[PointFatigue] = []
     opens: dict[str, _Open] = {}
-    installed = find_spec("pylife") is not None
     without = _without_data(plan, table)
     for pin in dict.fromkeys(task.pin.name for task in plan.tasks):
         if pin in without:
-            continue
-        if not installed:
-            opens[pin] = _Open("pylife is not installed", "pylife (pip install pylife)")
             continue
         own, failed = _points(plan, [h for m in found for h in m.histories if h.pin == pin], table)
         points += own

@@ -17,6 +17,7 @@ from pinstress.explore.sweep.sample import designs_of
 from pinstress.explore.sweep.table import assembled, table_of
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
 from pinstress.study.reading.choices import require_count
+from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file import Study
 
 if TYPE_CHECKING:
@@ -106,6 +107,8 @@ def solved(
     Raises: InputError.
     """
     require_count("jobs", jobs)
+    if scheduler is not None:
+        require_package("distributed", "--scheduler")
     done = set[int]()
     if store.count:
         schema = table_of(sweep.study, sweep.parameters, []).schema

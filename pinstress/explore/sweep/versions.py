@@ -21,7 +21,7 @@ SOURCE_HASH_DIGITS = 8  # digits of the hash of a source
 def versions(packages: Sequence[str]) -> dict[str, str]:
     """The versions of Python, of this program with the start of the hash of its source, and of
     packages, MISSING_VERSION for what cannot be imported; and which code a system makes the
-    program take (pinbase.processes.system), whose numbers differ in their last digits.
+    program take (pinbase.platform), whose numbers differ in their last digits.
     """
     portable = sys.platform != "linux" or os.environ.get("PINSTRESS_PORTABLE") == "1"
     own = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from fea.core.equilibrium import Balance, closing, out_of_balance
+from fea.core.equilibrium import Balance, balancing_forces, out_of_balance
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import carried
 from geometry import ArgumentError, GeometryError, PinLike
@@ -133,7 +133,7 @@ def _closed_by(study: Study, pin: PinLike, case: PinLoads, balance: Balance) -> 
     force, couple, _ = balance.shares
     if not isinstance(study.table.case[case.case], GivenCase) or max(force, couple) == 0.0:
         return ""
-    change = closing(pin, case, balance.instant)
+    change = balancing_forces(pin, case, balance.instant)
     if change is None:
         return ""
     size, unit = study.system.factor("force"), study.system.force

@@ -6,15 +6,10 @@ more memory than there is.
 
 from __future__ import annotations
 
-import os
-import pickle
 import signal
-import subprocess
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from geometry import CutPin, GeometryError, Pin, PinLike
@@ -23,22 +18,20 @@ from geometry.imported.imported_pin import MEASURING_MESH_SIZE, SolidBody
 from geometry.imported.recognise import NotTurnedError, RecognisedProfile, recognised_profile
 from geometry.mesh.solid_mesh import MeshError
 from geometry.shape.polyline import Stripe, with_stripes
-from loads import MB, FileError, require_regular
-from pinbase.processes.current_folder import trusting_python
-from pinbase.processes.limits import Limits, keep_within, passed
-from pinbase.processes.parent import end_with_parent
-from pinbase.processes.pool import Job, ProcessDied, Tell, ended, in_parallel, processes
-from pinbase.processes.system import portable
+from loads import FileError, require_regular
+from pinbase.platform import portable
+from pinbase.processes.limits import MB, Limits
+from pinbase.processes.pool import Job, ProcessDied, Tell, can_fork, in_parallel
 
 CUT_KINDS = "hole", "flat", "slot", "passage"
 MAX_BODY_SIZE = 1024 * MB
-CHILD_CODE = "import sys; from pinstress.study.model.imported_pin import serve; serve(sys.argv[1])"
+MAX_READER_MEMORY = 4096 * MB
 
 Work = Callable[..., Any]
 
-
-CAD_LIMITS = Limits(30, 300)  # to measure it; a sound pin takes about a second
-LONG_LIMITS = Limits(600, 6000)  # for a mesh file, and to mesh a CAD_LIMITS file more finely
+CAD_LIMITS = Limits(30, 300, MAX_READER_MEMORY)  # to measure it; a sound pin takes about a second
+# For a mesh file, and to mesh a CAD file more finely.
+LONG_LIMITS = Limits(600, 6000, MAX_READER_MEMORY)
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
@@ -119,14 +112,16 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
     """
     quick = work is recognised_profile or arguments in ((), (MEASURING_MESH_SIZE,))
     limits = CAD_LIMITS if quick and not file.meshed else LONG_LIMITS
-    job = partial(_limited, limits, work, file, *arguments)
-    if processes(2) == 1:  # with other threads running no process can be forked
-        made = _started(job)
-    else:
-        (made,) = in_parallel([Job(f"pin {file.name}", partial(_silent, job))], 2)
+    job: Job[Any] = Job(
+        f"pin {file.name}", partial(_read, work, file, arguments, limits.memory), limits
+    )
+    (made,) = in_parallel([job], 2, anew=not can_fork())
     if isinstance(made, ProcessDied):
+        why = made.reason
+        if made.status == -signal.SIGABRT and not portable():
+            why += f"; its memory limit is {limits.memory / 2**30:g} GB"
         raise GeometryError(
-            f"pin {file.name}: reading {file.path.name} failed ({_why(made, limits)}): it is "
+            f"pin {file.name}: reading {file.path.name} failed ({why}): it is "
             "damaged, too large, or has very small faces or edges; repair and export it again, "
             "or mesh it in another program and give the mesh",
             "reading-crashed",
@@ -134,13 +129,8 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
     return made
 
 
-def _silent(job: Work, _: Tell) -> Any:
-    return job()
-
-
-def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> Any:
-    """Run `work` within limits, beyond which this process ends."""
-    keep_within(limits)
+def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:
+    """Run `work` in the other process, whose limit of memory is so many bytes."""
     try:
         return work(file, *arguments)
     except (MemoryError, GeometryError, MeshError) as error:
@@ -149,42 +139,6 @@ def _limited(limits: Limits, work: Work, file: BodyFile, *arguments: object) -> 
             raise
         raise GeometryError(
             f"pin {file.name}: reading {file.path.name} needs more than the limit of "
-            f"{limits.memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser "
-            "mesh",
+            f"{memory / 2**30:g} GB of memory; it is damaged, or too fine: give a coarser mesh",
             code,
         ) from None
-
-
-def _why(died: ProcessDied, limits: Limits) -> str:
-    if died.status == -signal.SIGABRT and not portable():
-        return f"{died.reason}; its memory limit is {limits.memory / 2**30:g} GB"
-    return passed(died.status, limits) or died.reason
-
-
-def _started(job: Work) -> Any:
-    """The result of a job in a new Python process; Died if that ends without one."""
-    with TemporaryDirectory(prefix="pinstress-") as folder:
-        place = Path(folder)
-        (place / "job").write_bytes(pickle.dumps((os.getpid(), job)))
-        command, environment = trusting_python(CHILD_CODE, folder)
-        done = subprocess.run(
-            command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False
-        )
-        try:
-            raised, found = pickle.loads((place / "result").read_bytes())
-        except (OSError, EOFError):
-            return ProcessDied(ended(done.returncode), done.returncode)
-    if raised:
-        raise found
-    return found
-
-
-def serve(folder: str) -> None:
-    """Run in the new Python: read a job from a folder, write its result there."""
-    parent, job = pickle.loads((Path(folder) / "job").read_bytes())
-    end_with_parent(parent)
-    try:
-        found = False, job()
-    except Exception as error:
-        found = True, error
-    (Path(folder) / "result").write_bytes(pickle.dumps(found))

@@ -27,6 +27,7 @@ from geometry import Pin, Segment
 from geometry.mesh.outline_motion import OtherShapeError, OutlineNodes, Reach
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.shape.dimensions import dimensions
+from tests.support.each import each, sampled
 
 STEEL = Material("steel", 210e9, 0.3, 7850.0)
 HELD = ("start",)
@@ -114,12 +115,12 @@ def test_of_random_pins(k: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", sampled(CASES, every=3))
 def test_by_all_dimensions(name: str) -> None:
     check_differences(solved(*CASES[name], level=2), slice(None))
 
 
-@pytest.mark.parametrize("name", CASES)
+@each("name", CASES)
 def test_sums_over_dimensions_and_loads(name: str) -> None:
     """All lengths s times as large under the same forces: stress goes as 1 / s^2; a moment weighs
     1 / s, a weight s^3. All loads s times as large: stress goes as s.
@@ -141,7 +142,7 @@ def test_sums_over_dimensions_and_loads(name: str) -> None:
     assert forces + moments + weight == pytest.approx(scale, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", [*CASES][::3])
+@each("name", [*CASES][::3])
 def test_by_poissons_ratio(name: str) -> None:
     of = solved(*CASES[name])
     still = np.zeros((len(of.solution.mesh.nodes), 2))
@@ -156,14 +157,13 @@ def test_by_poissons_ratio(name: str) -> None:
     assert ours.youngs_modulus == 0.0
 
 
-@pytest.mark.parametrize(
+@each(
     ("force", "moment", "power"),
     [
         ((0.0, 0.0, 1e4), (0, 0, 0), -2),
         ((0.0, 0, 0), (0, 90.0, 0), -3),
         ((0.0, 0, 0), (0, 0, 90.0), -3),
     ],
-    ids=["tension", "bending", "torsion"],
 )
 def test_of_bars(force: tuple[float, ...], moment: tuple[float, ...], power: int) -> None:
     """At a fillet far from clamp and load lengths do not count, and all that lies across together

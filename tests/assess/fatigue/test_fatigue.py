@@ -14,6 +14,7 @@ from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from assess.fatigue.sn_curve import MeanStress, SnCurve
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
+from tests.support.each import each
 
 Direction = tuple[float, float, float]
 CURVE = SnCurve((300e6, 1e6), 5.0)
@@ -149,7 +150,7 @@ def test_scatter_of_lives() -> None:
     assert found.life == pytest.approx(middle)
 
 
-@pytest.mark.parametrize(
+@each(
     ("rule", "parameter", "expected"),
     [
         ("none", 0.0, 100.0),
@@ -168,8 +169,8 @@ def test_mean_stress_of_pulsating_tension(
     assert curve.equivalent(both, 0.0 * both) == pytest.approx(100.0)
 
 
-@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)])
-@pytest.mark.parametrize("course", [[700e6, -700e6], [900e6], [800e6, 100e6, 500e6]])
+@each("direction", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)])
+@each("course", [[700e6, -700e6], [900e6], [800e6, 100e6, 500e6]])
 def test_critical_plane_and_signed_von_mises_agree_in_tension(
     direction: Direction, course: list[float]
 ) -> None:

@@ -20,6 +20,7 @@ from fea.core.material import Material
 from fea.solid.model import SolidModel, UnitFields
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, solid_mesh
+from tests.support.each import each
 from tests.support.pins.solid_line import axial_stress
 from tests.support.pins.unit_loads import forces
 
@@ -99,8 +100,8 @@ def resultants(field: Field, nu: float, z: float) -> Floats:
     return total
 
 
-@pytest.mark.parametrize("nu", RATIOS)
-@pytest.mark.parametrize("field", [surface_load, to_axis])
+@each("nu", RATIOS)
+@each("field", [surface_load, to_axis])
 def test_fields_are_in_equilibrium_and_compatible(field: Field, nu: float) -> None:
     x = inside()
     first = gradient(lambda p: field(p, nu), x)
@@ -111,7 +112,7 @@ def test_fields_are_in_equilibrium_and_compatible(field: Field, nu: float) -> No
     np.testing.assert_allclose((1.0 + nu) * laplacian + by_trace, 0.0, atol=1e-4)
 
 
-@pytest.mark.parametrize("nu", RATIOS)
+@each("nu", RATIOS)
 def test_fields_carry_the_loads(nu: float) -> None:
     along = np.array([1.0, 0.0, 0.0])
     uniform = np.broadcast_to(along / (2.0 * np.pi), (48, 3))
@@ -122,7 +123,7 @@ def test_fields_carry_the_loads(nu: float) -> None:
         np.testing.assert_allclose(force, along, atol=1e-13)
 
 
-@pytest.mark.parametrize("nu", RATIOS)
+@each("nu", RATIOS)
 def test_sections_carry_the_beams_forces(nu: float) -> None:
     for z in (0.0, 1.2, LENGTH):
         v = LENGTH - z
@@ -130,7 +131,7 @@ def test_sections_carry_the_beams_forces(nu: float) -> None:
         np.testing.assert_allclose(resultants(to_axis, nu, z), 0.0, atol=1e-13)
 
 
-@pytest.mark.parametrize("nu", RATIOS)
+@each("nu", RATIOS)
 def test_terms_are_the_fields_at_the_surface(nu: float) -> None:
     tension, compression = np.array([[-1.0, 0.0, LENGTH]]), np.array([[1.0, 0.0, LENGTH]])
     for at, sign in ((tension, -1.0), (compression, 1.0)):

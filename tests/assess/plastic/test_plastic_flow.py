@@ -6,6 +6,7 @@ import pytest
 from assess.plastic.flow import Flow, FlowRule
 from fea.core.material import Material
 from geometry import ArgumentError
+from tests.support.each import each
 
 Points = tuple[tuple[float, float], ...]
 
@@ -26,8 +27,8 @@ def _uniaxial(rule: FlowRule, total: float) -> Flow:
     return found
 
 
-@pytest.mark.parametrize("rule", [PERFECT, HARD])
-@pytest.mark.parametrize("plastic", [0.0, 0.004, 0.03, 0.2])
+@each("rule", [PERFECT, HARD])
+@each("plastic", [0.0, 0.004, 0.03, 0.2])
 def test_a_uniaxial_path_is_exact(rule: FlowRule, plastic: float) -> None:
     stress = np.interp(plastic, *rule.curve)
     found = _uniaxial(rule, plastic + stress / E)
@@ -72,9 +73,7 @@ def test_a_material_without_yield_strength_does_not_flow() -> None:
     assert error.value.code == "no-yield-strength"
 
 
-@pytest.mark.parametrize(
-    "points", [((0.0, 300e6),), ((0.02, 300e6), (0.01, 310e6)), ((0.01, 200e6),)]
-)
+@each("points", [((0.0, 300e6),), ((0.02, 300e6), (0.01, 310e6)), ((0.01, 200e6),)])
 def test_hardening_that_softens_or_returns_is_refused(
     points: Points,
 ) -> None:

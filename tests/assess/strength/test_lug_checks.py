@@ -20,6 +20,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.plain_pins import double_shear
 
@@ -114,7 +115,7 @@ def test_the_largest_force_of_a_motion(steel: Material) -> None:
     assert lug_checks(PIN, lugs, PinLoads("none", ("A", "B"), np.zeros((1, 2, 3)))) == ()
 
 
-@pytest.mark.parametrize("outer", [0.019, 0.02, math.nan])
+@each("outer", [0.019, 0.02, math.nan])
 def test_an_eye_must_be_wider_than_its_bore(outer: float) -> None:
     for stress in (net_section_stress, shear_out_stress):
         with raises(ArgumentError, "out-of-range", "bore"):

@@ -37,6 +37,7 @@ from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointForces
 from geometry import Pin, Segment
+from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 S235 = Material("S235", 210e9, 0.3, None, 235e6, 360e6)
@@ -72,7 +73,7 @@ def test_shigley_3_40() -> None:
     assert shear.demand / PSI == pytest.approx(3395.0, rel=2e-4)
 
 
-@pytest.mark.parametrize(
+@each(
     ("t2", "gap", "printed"),
     [
         (31.75, 0.762, 780.29),
@@ -343,7 +344,7 @@ def test_a_limit_load_is_a_margin_at_ultimate_load() -> None:
     assert none.needs == "a limit load: no mesh"
 
 
-@pytest.mark.parametrize(
+@each(
     ("peak", "demand"),
     [
         (Maximum("P", "c", "beam", "converged", "", 100e6, 2e6), 102e6),

@@ -16,6 +16,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.voigt import von_mises
 from geometry import Pin, Segment
+from tests.support.each import each
 
 d, L = 0.02, 0.2
 I, A = math.pi / 64 * d**4, math.pi / 4 * d**2  # noqa: E741
@@ -67,7 +68,7 @@ def test_shear_of_the_solid_circle(steel: Material) -> None:
         assert (x, y) == pytest.approx((axis, 0.0), abs=1e-12 * axis)
 
 
-@pytest.mark.parametrize("m", [0.0, 0.3, 0.8])
+@each("m", [0.0, 0.3, 0.8])
 def test_flexure_is_in_equilibrium_and_compatible(m: float) -> None:
     """In polar coordinates, V = 1. Along z: (r s_rz),r / r + s_tz,t / r = -s_zz,z = -r cos / I. No
     traction on the walls, and the resultant V. Compatibility: with s_zz = -M x / I the twist per

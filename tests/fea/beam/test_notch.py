@@ -13,6 +13,7 @@ from fea.beam.stress_concentration import (
     shoulder_factor,
 )
 from geometry import Pin, Segment
+from tests.support.each import each
 
 D_SMALL = 0.02
 
@@ -60,8 +61,8 @@ ROARK = {
 }
 
 
-@pytest.mark.parametrize("kind", ROARK)
-@pytest.mark.parametrize("ratio", [1.2, 1.5, 2.0])
+@each("kind", ROARK)
+@each("ratio", [1.2, 1.5, 2.0])
 def test_factors_are_those_of_roark(kind: str, ratio: float) -> None:
     """Another edition of the fits, as printed elsewhere: 3 % (2.7 in tension at h/r = 19)."""
     fits = BENDING_FIT if kind.startswith("bending") else TENSION_FIT
@@ -72,8 +73,8 @@ def test_factors_are_those_of_roark(kind: str, ratio: float) -> None:
         assert found == pytest.approx(expected, rel=0.03)
 
 
-@pytest.mark.parametrize(("fits", "ratio", "a", "b"), NORTON)
-@pytest.mark.parametrize("radius", [0.04, 0.06, 0.1, 0.15, 0.2])
+@each(("fits", "ratio", "a", "b"), NORTON)
+@each("radius", [0.04, 0.06, 0.1, 0.15, 0.2])
 def test_factors_are_those_of_another_fit(
     fits: tuple[Fit, ...], ratio: float, a: float, b: float, radius: float
 ) -> None:
@@ -98,7 +99,7 @@ def test_a_value_that_is_read_off_the_chart() -> None:
     assert values == pytest.approx([1.68, 1.9, 1.4], rel=0.05)
 
 
-@pytest.mark.parametrize("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
+@each("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
 def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...]) -> None:
     """2h/D = 1: no shaft is left and Peterson's factors end at 1; the fits do within 4 %."""
     for (low, high), *fit in fits:
@@ -107,8 +108,8 @@ def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...]) -> Non
             assert total == pytest.approx(1.0, abs=0.04)
 
 
-@pytest.mark.parametrize("fits", [BENDING_FIT, TENSION_FIT])
-@pytest.mark.parametrize("ratio", [1.1, 1.5, 2.0, 3.0])
+@each("fits", [BENDING_FIT, TENSION_FIT])
+@each("ratio", [1.1, 1.5, 2.0, 3.0])
 def test_fits_meet_where_they_change(fits: tuple[Fit, ...], ratio: float) -> None:
     """At h/r = 2, within the 2 % of the fits."""
     r = (ratio - 1.0) / 4.0
@@ -116,7 +117,7 @@ def test_fits_meet_where_they_change(fits: tuple[Fit, ...], ratio: float) -> Non
     assert below == pytest.approx(above, rel=0.02)
 
 
-@pytest.mark.parametrize("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
+@each("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
 def test_a_sharper_fillet_is_worse(fits: tuple[Fit, ...]) -> None:
     values = [shoulder_factor(fits, 1.5, 1.0, r) for r in (0.25, 0.2, 0.15, 0.1, 0.07)]
     assert None not in values

@@ -8,6 +8,7 @@ import pytest
 
 from fea.core import memory
 from fea.core.memory import free_in_groups
+from tests.support.each import each
 
 MB = 2**20
 UNLIMITED = 9223372036854771712  # what the first version says when there is no limit
@@ -25,7 +26,7 @@ def machine(root: Path, groups: str, files: dict[str, object]) -> Path:
     return root
 
 
-@pytest.mark.parametrize(
+@each(
     ("groups", "files", "free"),
     [
         # the second version, with the group's own path
@@ -95,7 +96,7 @@ def test_the_tightest_group_counts(
     assert free_in_groups(machine(tmp_path, groups, files)) == free
 
 
-@pytest.mark.parametrize("groups", ["", "0::/job\n", "3:cpu:/job\n", "3:memory:/job\n", "nonsense"])
+@each("groups", ["", "0::/job\n", "3:cpu:/job\n", "3:memory:/job\n", "nonsense"])
 def test_without_a_limit_it_is_infinite(tmp_path: Path, groups: str) -> None:
     files: dict[str, object] = {
         "job/memory.max": "max",

@@ -13,6 +13,7 @@ from fea.solid.assembly import Discretisation
 from fea.solid.boundary import clamped_nodes
 from geometry import Pin
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from tests.support.each import each
 from tests.support.errors import raises
 
 
@@ -27,8 +28,8 @@ def system(steel: Material) -> tuple[sp.csr_matrix, np.ndarray, np.ndarray]:
     return space.stiffness(steel), free, free // 3
 
 
-@pytest.mark.parametrize("cholmod", [True, False])
-@pytest.mark.parametrize("metis", [True, False])
+@each("cholmod", [True, False])
+@each("metis", [True, False])
 def test_all_solvers_and_orders_agree(
     system: tuple[sp.csr_matrix, np.ndarray, np.ndarray],
     monkeypatch: pytest.MonkeyPatch,

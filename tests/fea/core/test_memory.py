@@ -19,6 +19,7 @@ from fea.core.memory import (
     solid_memory,
     too_much,
 )
+from tests.support.each import each
 from tests.support.errors import raises
 
 
@@ -27,7 +28,7 @@ def solvers(monkeypatch: pytest.MonkeyPatch, cholmod: bool, metis: bool) -> None
     monkeypatch.setattr(memory, "has_metis", lambda: metis)
 
 
-@pytest.mark.parametrize(
+@each(
     ("cholmod", "metis", "measured"),
     [
         (True, False, [(17_949, 121), (54_045, 555)]),
@@ -46,7 +47,7 @@ def test_other_solvers_take_more(
         assert megabytes < solid_memory(unknowns) < 1.8 * megabytes
 
 
-@pytest.mark.parametrize(
+@each(
     ("unknowns", "measured"),
     [(28_509, 212), (58_000, 396), (61_263, 369), (114_552, 791), (128_000, 964), (415_000, 5054)],
 )
@@ -57,7 +58,7 @@ def test_it_is_near_what_was_measured(
     assert 0.95 * measured < solid_memory(unknowns) < 1.4 * measured
 
 
-@pytest.mark.parametrize(
+@each(
     ("unknowns", "loads", "measured"),
     [(53_748, 10, 222), (107_988, 10, 457), (216_438, 10, 930), (24_708, 294, 1138)],
 )

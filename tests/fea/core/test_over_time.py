@@ -14,6 +14,7 @@ from fea.core.pin_loads import Distribution, Floats, PinLoads, chord_deviation
 from fea.core.requirement import Model, Requirement
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
+from tests.support.each import each
 
 # Double shear of a plain bar of 20 mm.
 BAR = Pin(
@@ -41,8 +42,8 @@ def of_cosine(times: Floats) -> PinLoads:
     return loads_at(times, "cosine")
 
 
-@pytest.mark.parametrize("model", ["beam", "harmonic"])
-@pytest.mark.parametrize("samples", [3, 5, 41])
+@each("model", ["beam", "harmonic"])
+@each("samples", [3, 5, 41])
 def test_samples_do_not_matter(model: Model, samples: int, steel: Material) -> None:
     """The largest load is at CREST, whatever the samples: maximum to 1e-9 of that of this instant
     alone, its time to 1e-5 s (a crest is flat), its error with next to nothing of the time.

@@ -21,6 +21,7 @@ from geometry.mesh.cut_piece import Piece, clipped, piece_mesh
 from geometry.mesh.solid_mesh import SolidMesh
 from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
+from tests.support.each import each
 from tests.support.errors import raises
 
 STEEL = Material("steel", 2.1e11, 0.3, yield_strength=5e8)
@@ -54,7 +55,7 @@ def largest(read: Read) -> float:
     return float(np.sqrt(square.max()))
 
 
-@pytest.mark.parametrize("mirrors", [(), ("y",), ("x", "y"), ("x", "y", "z")])
+@each("mirrors", [(), ("y",), ("x", "y"), ("x", "y", "z")])
 def test_any_stress_is_the_sum_of_its_classes(mirrors: tuple[str, ...]) -> None:
     parities = Parities(mirrors)
     stress = np.random.default_rng(1).normal(size=(len(parities.images), 3, 6, 2))

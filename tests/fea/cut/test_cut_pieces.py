@@ -70,6 +70,7 @@ def test_a_piece_that_cannot_govern_stays_coarse() -> None:
     assert found.peak.max_von_mises == pytest.approx(one.peak.max_von_mises, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_piece_whose_stress_swings_does_not() -> None:
     """For fatigue: a constant load on one hole, half of it to and fro on the other."""
     pin = shaft(Hole(0.09, 0.004), Hole(0.24, 0.004))

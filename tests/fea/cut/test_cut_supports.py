@@ -18,6 +18,7 @@ from fea.solid.boundary import resultants
 from fea.solve.solve import solve_pin
 from geometry import Cut, CutPin, Flat, Hole, Pin, Segment, Slot
 from geometry.mesh.cut_piece import piece_mesh
+from tests.support.each import each, sampled
 from tests.support.errors import raises
 from tests.support.pins.section_grid import rectangle
 
@@ -141,8 +142,8 @@ IN_BAND: dict[str, Cut] = {
 }
 
 
-@pytest.mark.parametrize("name", ["flat under the load", "keyway under the load"])
-@pytest.mark.parametrize("shears", [True, False])
+@each("name", ["flat under the load", "keyway under the load"])
+@each("shears", [True, False])
 def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None:
     """Forces and couples on the cut, of a pressure on the side that is cut away, and on the band:
     none is left over.
@@ -167,7 +168,7 @@ def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", IN_BAND)
+@pytest.mark.parametrize("name", sampled(IN_BAND, every=3))
 def test_a_flat_or_keyway_in_a_loaded_band_beside_the_whole_solid(name: str) -> None:
     """Whose pressure acts on what is left of the band, with the force of the link."""
     forces = 10e3 * np.array([[[1.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]]])

@@ -15,6 +15,7 @@ from fea.harmonic.stress_recovery import reading
 from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.exact.exact_fields import displacements_of
 
@@ -45,8 +46,8 @@ def some_loads(distribution: str = "uniform", seed: int = 0) -> PinLoads:
     return PinLoads("case", names, force, moment, "uniform", body)
 
 
-@pytest.mark.parametrize("distribution", ["uniform", "cosine"])
-@pytest.mark.parametrize("clamps", [(), ("start",)], ids=["free", "held"])
+@each("distribution", ["uniform", "cosine"])
+@each("clamps", [(), ("start",)])
 def test_turned_loads_turn_the_answer(
     distribution: str, clamps: tuple[str, ...], section: MeridianMesh, steel: Material
 ) -> None:

@@ -16,6 +16,7 @@ from fea.harmonic.model import HarmonicModel
 from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.section_grid import rectangle
 
@@ -106,7 +107,7 @@ def test_lame(ends: str, steel: Material) -> None:
     assert np.abs(stress[here, 3:]).max() < 1e-4 * pressure
 
 
-@pytest.mark.parametrize("n", [0, 1, 2, 4, 6])
+@each("n", [0, 1, 2, 4, 6])
 def test_nothing_spurious_on_the_axis(n: int, steel: Material) -> None:
     """What symmetry says of stress at r = 0 under a bearing pressure, on meshes by gmsh: which
     components vanish and which are equal; within 5 % of the peak on a mesh of 8 elements across
@@ -131,7 +132,7 @@ def test_nothing_spurious_on_the_axis(n: int, steel: Material) -> None:
     assert seen[2] < 0.4 * seen[1], seen
 
 
-@pytest.mark.parametrize("n", [0, 1, 2, 4])
+@each("n", [0, 1, 2, 4])
 def test_displacements_on_the_axis(n: int, steel: Material) -> None:
     """What makes them smooth in space holds exactly: there is no more than one value at r = 0."""
     unit = UnitLoad("B", "pressure", n)

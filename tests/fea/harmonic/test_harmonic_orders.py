@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from skfem import ElementTriP2
 
-from fea.core.local_fit import extension
+from fea.core.local_fit import nodal_extrapolation
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from fea.harmonic.assembly import Section, elasticity
@@ -15,6 +15,7 @@ from fea.harmonic.stress_recovery import reading
 from fea.harmonic.surface_stress import skin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
+from tests.support.each import each
 from tests.support.exact.exact_fields import (
     Exact,
     boundary_forces,
@@ -46,7 +47,7 @@ LINEAR: dict[str, tuple[int, Terms, Terms, Terms]] = {
 }
 
 
-@pytest.mark.parametrize("state", LINEAR, ids=str)
+@each("state", LINEAR)
 def test_patch(state: str, steel: Material) -> None:
     """States of constant strain on triangles of all shapes, curved along the fillet, on the axis
     and in a bore: residual forces below 1e-12 of the sum of the elements', stress exact to 1e-11.
@@ -84,7 +85,7 @@ def test_patch(state: str, steel: Material) -> None:
     assert wrong.max() < 1e-11 * size
 
 
-@pytest.mark.parametrize("state", LINEAR, ids=str)
+@each("state", LINEAR)
 def test_patch_solved(state: str, steel: Material) -> None:
     """The same by solving for the inside, 1e-12 of the largest displacement (round-off of the
     system is 1e-13).
@@ -128,8 +129,8 @@ def orders(seen: list[tuple[float, float]]) -> Floats:
     return np.asarray(np.log2(np.array(seen)[:-1] / np.array(seen)[1:]))
 
 
-@pytest.mark.parametrize("inner", [0.0, 0.4], ids=["solid", "hollow"])
-@pytest.mark.parametrize("case", CASES)
+@each("inner", [0.0, 0.4])
+@each("case", CASES)
 def test_orders(case: str, inner: float, steel: Material) -> None:
     """Displacement 3, stress 2, in L2 and space, over three nested meshes, within 0.15."""
     n, factors = CASES[case]
@@ -143,7 +144,7 @@ def test_orders(case: str, inner: float, steel: Material) -> None:
     assert orders(seen) == pytest.approx(np.array([[3.0, 2.0]] * 2), abs=0.15), seen
 
 
-@pytest.mark.parametrize("case", CASES)
+@each("case", CASES)
 def test_order_of_recovered_stress(case: str, steel: Material) -> None:
     """Largest error over the nodes: on the skin with order 2, less 0.1 because a maximum wanders
     from node to node; fitted to samples, up to the axis and the surface, where these are on one
@@ -167,7 +168,7 @@ def test_order_of_recovered_stress(case: str, steel: Material) -> None:
 def _by_averages(space: Section, steel: Material, exact: Exact, u: Floats) -> float:
     """Largest error of stress at nodes off the ends, of the largest stress."""
     stress = elasticity(steel) @ space.sampled_strains(exact.n, u)
-    averaged = extension(space.elements, space.sampled_at, ElementTriP2.doflocs.T)
+    averaged = nodal_extrapolation(space.elements, space.sampled_at, ElementTriP2.doflocs.T)
     inside = (space.nodes[:, 1] > 0.0) & (space.nodes[:, 1] < 1.2)
     true = exact.stress(*space.nodes[inside].T)
     wrong = np.abs((averaged @ stress.reshape(-1, 6))[inside] - true).max()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fea.core.local_fit import at_one_place, continuation
+from fea.core.local_fit import continuation, fit_weights
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
@@ -144,5 +144,5 @@ def test_quadratic_fields_are_continued_exactly() -> None:
 def test_samples_in_a_row_do_with_what_they_know() -> None:
     """Values along a line say nothing of those beside it, where they are taken to be the same."""
     offsets = np.stack([np.linspace(-1.0, 1.0, 8), np.full(8, 0.1)], axis=1)
-    weights = at_one_place(offsets, np.ones(8))
+    weights = fit_weights(offsets, np.ones(8))
     assert weights @ (1.0 + offsets[:, 0] ** 2) == pytest.approx(1.0, abs=1e-6)

@@ -21,6 +21,7 @@ from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import meridian_mesh
 from geometry.mesh.sizing import SectionSize, largest, stretches, triangles
+from tests.support.each import sampled
 from tests.support.pins.section_pins import nodes
 
 D = 0.02
@@ -53,7 +54,7 @@ def known(pin: Pin, steel: Material) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [50, 200])
+@pytest.mark.parametrize("count", sampled([50, 200], every=2))
 def test_equal_segments_are_a_plain_shaft(count: int, steel: Material) -> None:
     """Bending at the clamp, less 0.1 D that is excluded and what the clamp's rim changes."""
     moment = 100.0 * (count - 0.5) * D - 50.0 * (count // 2 + 0.5) * D
@@ -62,7 +63,7 @@ def test_equal_segments_are_a_plain_shaft(count: int, steel: Material) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [50, 100])
+@pytest.mark.parametrize("count", sampled([50, 100], every=2))
 def test_a_crowd_of_fillets(count: int, steel: Material) -> None:
     """Stress at the first fillet is that of a pin of two segments under the same moment and shear
     there: 3 %, both being known to 2.

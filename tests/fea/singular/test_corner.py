@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from fea.singular.williams import Side, antiplane_exponent, plane_eigenvalue, plane_exponent
 from geometry import ArgumentError
+from tests.support.each import each
 from tests.support.errors import raises
 
 Complex = NDArray[np.complex128]
@@ -65,8 +66,8 @@ def spectrum(omega: float, nu: float, sides: tuple[Side, Side], n: int = 22) -> 
     return values[np.isfinite(values)]
 
 
-@pytest.mark.parametrize("sides", PAIRS)
-@pytest.mark.parametrize("nu", RATIOS)
+@each("sides", PAIRS)
+@each("nu", RATIOS)
 def test_exponents_against_collocated_equations(nu: float, sides: tuple[Side, Side]) -> None:
     """To 1e-6, because double eigenvalues carry the root of the round-off."""
     for angle in ANGLES:
@@ -84,7 +85,7 @@ def test_both_modes_of_a_shoulder_are_in_the_collocated_spectrum() -> None:
     assert 1.0 - inside == pytest.approx([0.4555, 0.0915], abs=5e-5)
 
 
-@pytest.mark.parametrize(
+@each(
     ("angle", "sides", "nu", "exponent"),
     [
         (240, ("free", "free"), 0.3, 0.3843),
@@ -103,8 +104,8 @@ def test_known_exponents(angle: int, sides: tuple[Side, Side], nu: float, expone
     assert plane_exponent(math.radians(angle), nu, *sides) == pytest.approx(exponent, abs=5e-5)
 
 
-@pytest.mark.parametrize("nu", [-0.5, 0.0, 0.3, 0.49])
-@pytest.mark.parametrize("turns", [1, 2])
+@each("nu", [-0.5, 0.0, 0.3, 0.49])
+@each("turns", [1, 2])
 def test_a_sticking_punch_and_a_bonded_crack_oscillate(nu: float, turns: int) -> None:
     """Closed: Re L = 1/2 (1/4), Im L = ln(3 - 4 nu) / (2 pi turns)."""
     expected = complex(0.5 / turns, math.log(3.0 - 4.0 * nu) / (2.0 * math.pi * turns))
@@ -121,7 +122,7 @@ def test_the_order_of_the_sides_does_not_matter(
     assert antiplane_exponent(omega, *sides) == antiplane_exponent(omega, *sides[::-1])
 
 
-@pytest.mark.parametrize("nu", RATIOS)
+@each("nu", RATIOS)
 def test_wider_corners_are_stronger(nu: float) -> None:
     angles = np.linspace(0.01, 2.0 * math.pi, 400)
     for sides in PAIRS:
@@ -148,7 +149,7 @@ def test_equal_sides_are_singular_at_inner_corners_only(sides: tuple[Side, Side]
     assert antiplane_exponent(math.pi + 0.01, *sides) > 0.0
 
 
-@pytest.mark.parametrize(
+@each(
     ("angle", "sides", "exponent"),
     [
         (90, ("clamped", "free"), 0.0),
@@ -162,7 +163,7 @@ def test_torsion(angle: int, sides: tuple[Side, Side], exponent: float) -> None:
     assert antiplane_exponent(math.radians(angle), *sides) == pytest.approx(exponent, abs=1e-14)
 
 
-@pytest.mark.parametrize("omega", [0.0, -1.0, 6.3, math.nan])
+@each("omega", [0.0, -1.0, 6.3, math.nan])
 def test_impossible_angles_are_refused(omega: float) -> None:
     with raises(ArgumentError, "out-of-range", "angle"):
         plane_exponent(omega, 0.3, "free", "free")
@@ -170,7 +171,7 @@ def test_impossible_angles_are_refused(omega: float) -> None:
         antiplane_exponent(omega, "free", "free")
 
 
-@pytest.mark.parametrize("nu", [-1.0, 0.5, math.nan])
+@each("nu", [-1.0, 0.5, math.nan])
 def test_impossible_ratios_are_refused(nu: float) -> None:
     with raises(ArgumentError, "out-of-range", "Poisson"):
         plane_exponent(math.pi, nu, "clamped", "free")

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from fea.singular.williams import Side, plane_eigenvalue
+from tests.support.each import each
 
 Complex = NDArray[np.complex128]
 
@@ -76,7 +77,7 @@ def zeros_left_of(bound: float, omega: float, nu: float, sides: tuple[Side, Side
     return None if np.abs(turns).max() > 1.0 else round(float(turns.sum()) / (2.0 * math.pi))
 
 
-@pytest.mark.parametrize("sides", PAIRS)
+@each("sides", PAIRS)
 def test_the_characteristic_equations_are_those_of_the_boundary_conditions(
     sides: tuple[Side, Side],
 ) -> None:

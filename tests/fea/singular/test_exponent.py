@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fea.singular.fit_exponent import growth_exponent
+from tests.support.each import each
 
 NEAR = np.geomspace(4e-4, 1e-2, 60)  # of the diameter, as the harmonic model reads them
 
@@ -38,10 +39,9 @@ def test_units_do_not_matter(length: float, stress: float) -> None:
     assert growth_exponent(d, stress * (NEAR**-0.4 + 2.0)) == pytest.approx(0.4, abs=1e-4)
 
 
-@pytest.mark.parametrize(
+@each(
     "stress",
     [NEAR**0.5, 1.0 + NEAR, 2.0 - NEAR**-0.1, 2.0 + np.sin(300.0 * NEAR)],
-    ids=["falls", "finite", "less near by", "waves"],
 )
 def test_no_growth(stress: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
     assert growth_exponent(NEAR, stress) is None

@@ -11,11 +11,12 @@ from fea.core.material import Material
 from fea.core.peak import ErrorParts, Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Model, Requirement
-from fea.singular.fit_exponent import strength
+from fea.singular.fit_exponent import singular_intensity
 from fea.singular.singularities import find_singularities
 from fea.singular.williams import notch_factor, plane_exponent
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
+from tests.support.each import each
 
 ROOT = Pin("R", (Segment(0.04, 0.02, connection="R1"), Segment(0.01, 0.02, name="head")))
 HELD = Pin("H", (Segment(0.02, 0.02, name="held"), *ROOT.segments))
@@ -120,7 +121,7 @@ def test_a_converged_row_has_no_interval(steel: Material) -> None:
     assert found.peak.error_estimate == found.peak.parts.total
 
 
-@pytest.mark.parametrize(
+@each(
     ("verdict", "interval", "limit", "expected"),
     [
         ("singular", (90.0, 120.0), 80.0, False),
@@ -152,7 +153,7 @@ def test_what_decides(
     assert meets_limit(peak, limit) is expected
 
 
-@pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-5, 1e-8])
+@each("step", [1e-2, 1e-3, 1e-5, 1e-8])
 def test_a_sharp_corner_is_singular_however_small_its_step(step: float, steel: Material) -> None:
     """Its stress grows without bound within the step's height, wherever the nominal stress is the
     largest; the stress elsewhere is that of the plain shaft, to their errors.
@@ -219,12 +220,14 @@ def test_features_are_as_long_as_the_outline_goes_on() -> None:
 def test_strength_of_a_power_that_is_known() -> None:
     """A d^-s + B d^q, exact, in any unit of length."""
     d = np.geomspace(1e-6, 1e-4, 40)
-    assert strength(d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2) == pytest.approx(3.0, rel=1e-9)
-    millimetres = strength(1e3 * d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2)
+    assert singular_intensity(d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2) == pytest.approx(
+        3.0, rel=1e-9
+    )
+    millimetres = singular_intensity(1e3 * d, 3.0 * d**-0.45 + 50.0 * d**0.2, 0.45, 0.2)
     assert millimetres == pytest.approx(3.0 * 1e3**0.45, rel=1e-9)
 
 
-@pytest.mark.parametrize("angle", [200.0, 225.0, 270.0, 300.0])
+@each("angle", [200.0, 225.0, 270.0, 300.0])
 def test_notch_factor_is_that_of_the_stress_function(angle: float) -> None:
     """Beside Williams' stress function r^(L+1) (a cos (L+1) t + b cos (L-1) t), whose constants are
     those of a side without traction; its second derivatives are the stresses. To 1e-8.

@@ -16,11 +16,12 @@ from fea.solid.stress_recovery import nodal_stress
 from geometry import Pin
 from geometry.mesh.elements import Element, with_element
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
+from tests.support.each import each
 
 Floats = NDArray[np.float64]
 
 
-@pytest.mark.parametrize("element", ["linear", "straight", "curved"])
+@each("element", ["linear", "straight", "curved"])
 def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material, element: Element) -> None:
     """With the same quadrature; 1e-12 of its largest entry is round-off."""
     size = MeshSize(across=2.0, arc=1.0)
@@ -36,9 +37,7 @@ def test_the_matrix_is_scikit_fems(cantilever_pin: Pin, steel: Material, element
     assert difference < 1e-12
 
 
-@pytest.mark.parametrize(
-    ("element", "imbalance"), [("linear", 1e-12), ("straight", 1e-12), ("curved", 5e-3)]
-)
+@each(("element", "imbalance"), [("linear", 1e-12), ("straight", 1e-12), ("curved", 5e-3)])
 def test_patch(cantilever_pin: Pin, steel: Material, element: Element, imbalance: float) -> None:
     """A linear displacement gives its constant stress exactly, and is in equilibrium: exactly on
     straight-sided elements; on coarse curved ones but for the four-point rule, which does not

@@ -18,7 +18,7 @@ from fea.solid import model as solid
 from fea.solid import nodal_loads as solid_loads
 from fea.solid.boundary import Patch, resultants, surface
 from fea.solid.model import SolidModel, acting
-from fea.solid.nodal_loads import closed, nodal_loads
+from fea.solid.nodal_loads import nodal_loads, with_closing_tractions
 from fea.solid.superposition import envelope
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
@@ -135,7 +135,7 @@ def test_bands_take_up_what_is_left_over(model: SolidModel, steel: Material) -> 
     units = forces("A", "C", along=(0, 1, 2)) + moments("B") + BODIES
     boundary = surface(model.space)
     loads = nodal_loads(FREE, steel, model.space, boundary, units)
-    whole = closed(FREE, model.space, boundary, loads)
+    whole = with_closing_tractions(FREE, model.space, boundary, loads)
     size = np.abs(whole.forces).sum(axis=(0, 1))
     assert np.abs(resultants(model.space.nodes, whole.forces) / size).max() < 1e-13
     added = whole.traction - loads.traction
@@ -179,7 +179,9 @@ def test_loads_in_balance_close_nothing(model: SolidModel, steel: Material) -> N
     c = at(fields, A=(0.0, -500.0, 0.0), B=(0.0, 1000.0, 0.0), C=(0.0, -500.0, 0.0))
     boundary = surface(model.space)
     loads = nodal_loads(FREE, steel, model.space, boundary, fields.loads)
-    added = (closed(FREE, model.space, boundary, loads).traction - loads.traction) @ c
+    added = (
+        with_closing_tractions(FREE, model.space, boundary, loads).traction - loads.traction
+    ) @ c
     assert np.abs(added).max() < 1e-9 * np.abs(loads.traction @ c).max()
 
 

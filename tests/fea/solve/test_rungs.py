@@ -58,6 +58,7 @@ def test_a_harmonic_rung_is_the_mesh_of_a_run(cantilever_pin: Pin, steel: Materi
     assert [s.max_von_mises for s in run.peak.history] == [first.maximum, second.maximum]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("element", ["linear", "straight", "curved"])
 def test_finer_solid_meshes_are_nearer_to_the_harmonic_model(
     element: Element, cantilever_pin: Pin, steel: Material
@@ -78,6 +79,7 @@ def test_finer_solid_meshes_are_nearer_to_the_harmonic_model(
     )
 
 
+@pytest.mark.slow
 def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
     steel: Material,
 ) -> None:

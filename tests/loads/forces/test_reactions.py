@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from loads import Layout, Reactions, TableError, given_reactions, impulse_force, read_reactions
+from tests.support.each import each
 from tests.support.errors import raises
 
 
@@ -48,7 +49,7 @@ def test_a_table_with_moments(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code", "named"),
     [
         ("connection,fx\nB,1\n", "missing-column", "'fy'"),
@@ -108,7 +109,7 @@ def test_the_published_impulse() -> None:
     assert impulse_force(37500.0 / 32.2, 25.0, 0.15) == pytest.approx(194099.3788819876, rel=1e-15)
 
 
-@pytest.mark.parametrize(
+@each(
     ("pulse", "shape"),
     [
         ("rectangular", lambda s: np.ones_like(s)),
@@ -125,14 +126,13 @@ def test_every_pulse_takes_the_same_momentum(
     assert impulse_force(1000.0, 7.0, 0.15, pulse) * area == pytest.approx(7000.0, rel=1e-8)
 
 
-@pytest.mark.parametrize(
+@each(
     "text",
     [
         "time [ms],B.fx [kN],B.fy [kN],B.mz\n0,1.5,-2,1\n500,2.5,0,0\n",
         "# on a rig\n\ntime [ms];B fx [kN];B fy (kN);B mz\n0;1,5;-2;1\n# later\n500;2,5;0;0\n",
         "time\tconnection\tfx [kN]\tfy [kN]\tmz\n0\tB\t1,5\t-2\t1\n0,5\tB\t2.5\t0\t0\n",
     ],
-    ids=["wide", "semicolons", "tabs"],
 )
 def test_the_same_forces_however_they_are_laid_out(tmp_path: Path, text: str) -> None:
     found = read(tmp_path, text)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from loads import ArgumentError, Contact, LegDynamics, LegMotion, SpatialLeg, leg_dynamics
 from loads.forces.spatial_leg import t1, t2
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.mechanism.leg_of_particles import (
     Complex,
@@ -88,7 +89,7 @@ def test_rotations_are_those_of_the_matrices(particles: Particles, ours: LegDyna
     agree(ours.to_world(ours.wheel_alpha), alpha)
 
 
-@pytest.mark.parametrize("point", ["B", "C", "D"])
+@each("point", ["B", "C", "D"])
 def test_points_move_as_the_matrices_carry_them(
     particles: Particles, ours: LegDynamics, point: str
 ) -> None:
@@ -118,7 +119,7 @@ def test_the_coriolis_part(ours: LegDynamics) -> None:
     agree(ours.coriolis_C, 2.0 * np.cross(yaw, np.cross(fold, r)))
 
 
-@pytest.mark.parametrize("body", ["leg", "wheel"])
+@each("body", ["leg", "wheel"])
 def test_momenta_are_those_of_the_particles(
     particles: Particles, ours: LegDynamics, body: str
 ) -> None:
@@ -264,7 +265,7 @@ def test_a_course_that_follows_the_yaw_pulls_outwards() -> None:
     assert (round_.F_B - straight.F_B)[0] == pytest.approx([4.0 * mass, 0.0, 0.0])
 
 
-@pytest.mark.parametrize("beta", [0.0, 0.7, np.pi / 2])
+@each("beta", [0.0, 0.7, np.pi / 2])
 def test_the_gyroscopic_couple(beta: float) -> None:
     """Folding tips the spin vector -omega_w x''' towards +z''', so the leg turns B about -z'''."""
     spinning = leg_dynamics(LEG, still(beta=beta, omega_i=0.5, omega_w=60.0))
@@ -344,7 +345,7 @@ def test_a_diagonal_inertia_is_three_numbers() -> None:
     assert leg.leg_inertia.tolist() == np.diag([5.0, 5.2, 0.4]).tolist()
 
 
-@pytest.mark.parametrize(
+@each(
     ("change", "code"),
     [
         ({"leg_inertia": np.ones((2, 2))}, "bad-shape"),

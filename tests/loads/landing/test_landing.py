@@ -29,6 +29,7 @@ from loads.landing import (
     spin_up_drag,
 )
 from loads.landing.drop import fall
+from tests.support.each import each
 
 G = 9.80665
 GAS = GasSpring(8e5, 0.003, 0.008, 1.2, 1.01e5)
@@ -197,7 +198,7 @@ def test_gas_stores_the_integral_of_its_force() -> None:
         assert gas.energy(strokes[-1:])[0] == pytest.approx(work, rel=1e-6)
 
 
-@pytest.mark.parametrize(
+@each(
     ("make", "code"),
     [
         (lambda: Strut(GAS, 0.375), "stroke-exceeds-gas"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from loads import ConstantDrive, CosineDrive, CycloidalDrive, Law, LinkageError, TableDrive
+from tests.support.each import each
 from tests.support.errors import raises
 
 AT = np.linspace(0.31, 1.69, 29)
@@ -17,7 +18,7 @@ LAWS = [
 ]
 
 
-@pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
+@each("law", LAWS)
 def test_rates_are_derivatives(law: Law) -> None:
     h = 1e-5
     before, now, after = law(AT - h), law(AT), law(AT + h)
@@ -25,7 +26,7 @@ def test_rates_are_derivatives(law: Law) -> None:
     assert now[2] == pytest.approx((after[1] - before[1]) / (2 * h), abs=1e-7)
 
 
-@pytest.mark.parametrize("law", LAWS[:3], ids=lambda law: type(law).__name__)
+@each("law", LAWS[:3])
 def test_it_rests_outside_its_time(law: CosineDrive) -> None:
     value, rate, second = law(np.array([-1.0, 0.2, 1.8, 9.0]))
     assert value.tolist() == [law.start, law.start, law.end, law.end]

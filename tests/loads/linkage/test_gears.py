@@ -33,6 +33,7 @@ from loads import (
 )
 from loads.linkage.gears import gap_weights
 from loads.motion import loop_equations
+from tests.support.each import each
 
 ALPHA = math.radians(20.0)
 
@@ -174,8 +175,8 @@ def steering(turned: float = 0.3, rack_moves: bool = True) -> Linkage:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("rack_moves", [True, False])
-@pytest.mark.parametrize("turned", [0.0, 0.3, 2.0])
+@each("rack_moves", [True, False])
+@each("turned", [0.0, 0.3, 2.0])
 def test_a_rack_travels_by_radius_times_angle(rack_moves: bool, turned: float) -> None:
     """The pinion above the rack turns counter-clockwise: its lower teeth, and with them the rack,
     go to the right (e^(i turned)); a carriage on a rack that stands rolls to the left.
@@ -235,10 +236,9 @@ def moved(linkage: Linkage, end: float = 2.0) -> Course:
     return Course(linkage, [CycloidalDrive(0.0, end, 1.0)], 0.0, 1.0)
 
 
-@pytest.mark.parametrize(
+@each(
     "linkage",
     [five_bar(), five_bar(friction=1e-3), planetary(), steering()],
-    ids=["five-bar", "rubbing", "planetary", "rack"],
 )
 def test_power_balances(linkage: Linkage) -> None:
     motion = moved(linkage).at(np.linspace(0.0, 1.0, 41))

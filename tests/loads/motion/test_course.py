@@ -26,7 +26,9 @@ TURNS = 10
 MANY = 0.9 + 2.0 * np.pi * TURNS
 
 
-@pytest.mark.parametrize("samples", [2, 3, 4, 11, 21])
+@pytest.mark.parametrize(
+    "samples", [2, *(pytest.param(count, marks=pytest.mark.slow) for count in (3, 4, 11, 21))]
+)
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_ten_turns_in_few_samples_stay_on_their_branch(samples: int, sense: float) -> None:
     times = np.linspace(0.0, 1.0, samples)

@@ -147,6 +147,7 @@ def test_analyses_in_several_threads_do_not_disturb_each_other() -> None:
     assert done.stdout == "[1, 1, 1, 1] True True\n"
 
 
+@pytest.mark.slow
 def test_numeric_libraries_have_one_thread_during_an_analysis_and_theirs_afterwards(
     tmp_path: Path,
 ) -> None:

@@ -15,6 +15,7 @@ import pytest
 
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel, processes
 from pinstress.study.reading.errors import InputError
+from tests.support.each import each
 
 
 def child_processes() -> list[int]:
@@ -37,7 +38,7 @@ def square(x: float, tell: Tell) -> float:
     return x * x
 
 
-@pytest.mark.parametrize("most", [1, 2, 5])
+@each("most", [1, 2, 5])
 def test_answers_come_in_the_order_of_the_jobs(most: int) -> None:
     told: list[tuple[str, float]] = []
     work = [Job(f"{x}", partial(square, x)) for x in (0.0, 1.0, 2.0, 3.0)]
@@ -128,6 +129,7 @@ def test_an_interrupt_ends_processes_that_do_not_listen() -> None:
     assert child_processes() == before
 
 
+@pytest.mark.slow
 @pytest.mark.linux
 def test_a_child_that_is_ended_as_it_starts_does_nothing_of_its_parents() -> None:
     """Under the parent's handlers, which raise, it would go on where the parent is."""
@@ -135,7 +137,7 @@ def test_a_child_that_is_ended_as_it_starts_does_nothing_of_its_parents() -> Non
 import os
 from functools import partial
 from pinbase.processes import interrupts
-from pinbase.processes.pool import Job, side_by_side
+from pinbase.processes.pool import Job, in_parallel
 from tests.pinbase.processes.test_workers import sleep, wrong
 from pinstress import InputError
 
@@ -143,7 +145,7 @@ own = os.getpid()
 interrupts.listen()
 for _ in range(200):
     try:
-        side_by_side([Job("long", sleep), Job("pin Q", wrong)], 2)
+        in_parallel([Job("long", sleep), Job("pin Q", wrong)], 2)
     except InputError:
         continue
     finally:

@@ -18,6 +18,7 @@ from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import Study
 from tests.conftest import ROOT
+from tests.support.each import each
 
 SHIPPED = ROOT / "studies" / "drop.toml"
 
@@ -140,7 +141,7 @@ def test_side_loads_are_stated_and_not_applied() -> None:
     assert loads.dynamics.drive[0, 0] == pytest.approx(2250.0 - 30.0 * 9.80665)
 
 
-@pytest.mark.parametrize(
+@each(
     ("case", "code"),
     [
         ({"velocity": None}, "no-velocity"),
@@ -162,7 +163,7 @@ def test_mistakes_have_codes(case: dict[str, Any], code: str) -> None:
     assert code in caught.value.codes
 
 
-@pytest.mark.parametrize(
+@each(
     ("part", "values", "code"),
     [
         ("gas", {"volume": -1.0}, "not-positive"),

@@ -14,6 +14,7 @@ from fea.core.requirement import Model
 from fea.core.voigt import von_mises
 from pinstress.study.reading.errors import InputError
 from tests.pinstress.test_import import loaded_by
+from tests.support.each import each
 
 PIN = """
 title = "A pin"
@@ -122,7 +123,7 @@ def test_files_of_a_run(write: Write, tmp_path: Path) -> None:
     assert not (out / "fatigue.csv").exists()
 
 
-@pytest.mark.parametrize("method", ["signed-von-mises", "critical-plane", "fkm-p-ram"])
+@each("method", ["signed-von-mises", "critical-plane", "fkm-p-ram"])
 def test_every_method_has_an_answer(write: Write, method: str) -> None:
     more = FATIGUE.replace("life = 1000", f'method = "{method}"')
     more += '[material.steel.fkm]\ngroup = "Steel"\nroughness = "6 um"\nplastic_factor = 1.7\n'
@@ -137,7 +138,7 @@ def test_every_method_has_an_answer(write: Write, method: str) -> None:
         assert 0.0 < (early or 0.0) < (middle or 0.0) < (late or 0.0)
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "code"),
     [
         ("slope = 5\n", "", "missing-key"),
@@ -176,14 +177,3 @@ def test_the_first_point_has_the_largest_range_not_the_largest_stress(write: Wri
     assert top.case == "side"
     assert top.location is not None
     assert abs(top.location[1]) == pytest.approx(10.0)
-
-
-def test_without_pylife_histories_are_all_there_is(
-    write: Write, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("pinstress.analysis.gather.gather_fatigue.find_spec", lambda _: None)
-    results = pinstress.run(pinstress.load_study(write(PIN + FATIGUE)))
-    assert results.histories
-    assert results.fatigue is not None
-    assert results.fatigue.points == ()
-    assert results.fatigue.not_decided == {"P": "pylife is not installed"}

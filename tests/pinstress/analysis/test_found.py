@@ -105,6 +105,7 @@ def test_a_table_that_is_not_there(found: RunResults) -> None:
         found.to_pandas("motion")
 
 
+@pytest.mark.slow
 def test_mesh_and_picture(found: RunResults) -> None:
     mesh = found.to_pyvista("B", "landing")
     largest = float(np.max(mesh.point_data["von Mises [psi]"]))
@@ -125,6 +126,7 @@ def test_a_field_that_was_not_kept_is_solved_for(found: RunResults) -> None:
         replace(found, fields={}, plan=None).to_pyvista("B", "landing")
 
 
+@pytest.mark.slow
 def test_the_tutorial_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -17,6 +17,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import load_study
 from pinstress.study.reading.in_python import changed_study
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.pins.clevis import CLEVIS
 
 
@@ -35,7 +36,7 @@ def row(out: Path) -> dict[str, Any]:
     return dict(found[0])
 
 
-@pytest.mark.parametrize(
+@each(
     ("joints", "held"),
     [
         ("auto", "in contact with its lugs"),

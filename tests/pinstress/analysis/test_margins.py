@@ -15,6 +15,7 @@ from pinstress import run, study_from
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.errors import InputError
 from reports.data.governing import governing, skipped
+from tests.support.each import each
 
 STUDY: dict[str, Any] = {
     "title": "A pin in double shear",
@@ -138,7 +139,7 @@ def test_a_pin_in_two_lugs_of_a_structure_is_a_beam_on_two_supports() -> None:
     assert "EN 1993 bending" in {m.margin.method for m in solved.margins if m.margin.governs}
 
 
-@pytest.mark.parametrize(
+@each(
     ("material", "analysis", "code"),
     [
         (
@@ -159,7 +160,7 @@ def test_bad_input(material: dict[str, Any], analysis: dict[str, Any], code: str
     assert caught.value.code == code
 
 
-@pytest.mark.parametrize(
+@each(
     ("strength", "required", "strict", "status"),
     [(235, "", True, 0), (60, "", True, 4), (60, "", False, 0), (235, 9.0, True, 4)],
 )

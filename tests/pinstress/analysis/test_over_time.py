@@ -38,6 +38,7 @@ def many() -> PinResult:
     return solved(4001)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("samples", "turns"), [(2, 1), (41, 1), (11, 10)])
 def test_the_maximum_is_of_time_not_of_samples(samples: int, turns: int, many: PinResult) -> None:
     """Beside 4,001 samples of one turn, where a sample is at most 3e-5 s from the crest: maximum to

@@ -68,6 +68,7 @@ def test_moments_reach_the_pin_and_the_tables(tmp_path: Path) -> None:
     assert 1.5 < pin["location"][2] < 2.0  # in the fillet
 
 
+@pytest.mark.slow
 def test_the_same_study_gives_the_same_numbers(run_once: tuple[Path, str, str]) -> None:
     folder = run_once[0]
     first = json.loads((folder / "out" / "study" / "results.json").read_text())

@@ -16,6 +16,7 @@ from pinstress.study.reading.file import load_study
 from reports.data.results import Results
 from reports.format.numbers import engineering
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 DUTY = """
@@ -153,7 +154,7 @@ def test_fatigue_of_a_sequence_has_no_zero_between_its_steps(tmp_path: Path) -> 
     assert worst.damage == pytest.approx(10.0 * (amplitude / 100.0) ** 5 / 1e6)
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "code", "named"),
     [
         ('case = "locked", ', 'case = "unlocked", ', "unknown-case", "steps[2].case"),

@@ -17,6 +17,7 @@ from pinstress.cli.commands import commands, run_command_line
 from pinstress.cli.output_folder import replacing
 from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
 from tests.support.programs.process_group import started
 
@@ -30,7 +31,7 @@ def two_pins(text: str) -> str:
     return f"{head}[pin.B]{pin}[pin.C]{other}[case.landing]{case}"
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "change", "message"),
     [
         (["study.toml", "--pins", "Q"], ("", ""), "--pins: the study has no pin 'Q'"),
@@ -154,7 +155,7 @@ def test_without_a_command_the_help_is_whole(capsys: pytest.CaptureFixture[str])
     assert capsys.readouterr().err.strip() == whole.strip()
 
 
-@pytest.mark.parametrize(
+@each(
     "command",
     ["run", "loads", "chart", "check", "import", "init", "schema", "size", "view", "completion"],
 )
@@ -260,6 +261,7 @@ sys.exit(run_command_line(["run", "study.toml", "--no-pictures", "--jobs", "2"])
 """
 
 
+@pytest.mark.slow
 def test_a_crash_of_a_library_costs_its_pin_alone(tmp_path: Path) -> None:
     """In a process of its own, without threads: beside others there are no workers to crash."""
     (tmp_path / "study.toml").write_text(two_pins(QUICK))

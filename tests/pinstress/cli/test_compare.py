@@ -12,6 +12,7 @@ from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.inputs import inputs
 from reports.vtk.read_back import open_results
 from tests.conftest import ROOT
+from tests.support.each import each
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
@@ -53,6 +54,7 @@ def folders(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return out[0], out[1]
 
 
+@pytest.mark.slow
 def test_two_runs_side_by_side(
     folders: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -69,7 +71,7 @@ def test_a_run_and_itself(folders: tuple[Path, Path], capsys: pytest.CaptureFixt
     assert "The inputs are the same." in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("content", [None, "{", "[]", '{"schema": "pinstress-results/2"}', "null"])
+@each("content", [None, "{", "[]", '{"schema": "pinstress-results/2"}', "null"])
 def test_what_is_no_run_is_refused(
     folders: tuple[Path, Path],
     content: str | None,

@@ -59,6 +59,7 @@ def as_script(folder: Path) -> tuple[str, ...]:
     return (str(folder / "bin" / "pinstress"),)
 
 
+@pytest.mark.slow
 def test_a_run_imports_nothing_from_the_current_folder(folder: Path) -> None:
     done = run(folder, ("-m", "pinstress"), "run", "study.toml", "--out", "out", "--plots")
     assert (done.returncode, "No pictures" in done.stderr) == (0, False), done.stderr

@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from pinstress import InputError, load_study
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
 
-@pytest.mark.parametrize(
+@each(
     "name",
     ["../up", "/etc/passwd", "a/b", "a\\\\b", "..", ".", ".hidden", "", " ", "nul\\u0000", "a\\nb",
      "x" * 101, "ß" * 20, "C:", "a*b", "a?b", "a|b", "<b>"],
 )  # fmt: skip
-@pytest.mark.parametrize("place", ["[pin.B]", "[case.landing]"])
+@each("place", ["[pin.B]", "[case.landing]"])
 def test_a_name_that_is_no_part_of_a_file_name_is_refused(
     tmp_path: Path, name: str, place: str
 ) -> None:
@@ -28,15 +27,13 @@ def test_a_name_that_is_no_part_of_a_file_name_is_refused(
         load_study(tmp_path / "study.toml")
 
 
-@pytest.mark.parametrize("name", ["x" * 100, "Ü1", "pin 3", "a.b", "-"])
+@each("name", ["x" * 100, "Ü1", "pin 3", "a.b", "-"])
 def test_other_names_are_taken(tmp_path: Path, name: str) -> None:
     (tmp_path / "study.toml").write_text(ONE_PIN.replace("[pin.B]", f'[pin."{name}"]'))
     assert name in load_study(tmp_path / "study.toml").table.pin
 
 
-@pytest.mark.parametrize(
-    ("first", "second"), [("Pin", "pIN"), ("straße", "STRASSE"), ("K", "\u212a")]
-)
+@each(("first", "second"), [("Pin", "pIN"), ("straße", "STRASSE"), ("K", "\u212a")])
 def test_names_that_differ_in_capitals_only_are_refused(
     tmp_path: Path, first: str, second: str
 ) -> None:

@@ -144,6 +144,7 @@ def test_a_run_takes_a_turned_body_as_a_profile(tmp_path: Path) -> None:
     assert "is taken as a profile" in describe(study)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("used", "change", "why"),
     [

@@ -16,11 +16,11 @@ from pathlib import Path
 
 import pytest
 
-from pinbase.processes import exchange
-from pinstress.cli import manifest
+from pinstress.cli import manifest, output_folder
 from pinstress.cli.output_folder import replacing
 from pinstress.study.reading.errors import InputError
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.process_group import alive, started
 
 WRITER = """
@@ -202,7 +202,7 @@ def test_a_full_disk_is_told_and_nothing_is_written(earlier: Path, jobs: str) ->
 def test_without_an_exchange_in_one_step_there_are_two(
     earlier: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(exchange, "RENAME_EXCHANGE", 1 << 20)  # which no file system knows
+    monkeypatch.setattr(output_folder, "RENAME_EXCHANGE", 1 << 20)  # which no file system knows
     with replacing(earlier) as staging:
         (staging / "results.json").write_text("next")
     assert (earlier / "results.json").read_text() == "next"
@@ -348,7 +348,7 @@ def test_a_list_that_names_files_elsewhere_removes_none_of_them(tmp_path: Path) 
     assert names(tmp_path) == ["home", "out"]
 
 
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"schema": 1, "files": []}', "\0", '{"schema'])
+@each("text", ["", "[]", "{}", '{"schema": 1, "files": []}', "\0", '{"schema'])
 def test_a_list_that_is_none_makes_nothing_ours(text: str, tmp_path: Path) -> None:
     (tmp_path / "results.json").write_text("{}")
     (tmp_path / manifest.MANIFEST_FILE).write_text(text)

@@ -36,6 +36,7 @@ def folder(made: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(made, tmp_path / "out"))
 
 
+@pytest.mark.slow
 def test_a_run_prints_what_the_folder_prints_later_to_the_last_byte(folder: Path) -> None:
     first = (folder / "report.pdf").read_bytes()
     (folder / "report.pdf").unlink()

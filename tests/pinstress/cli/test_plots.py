@@ -27,6 +27,7 @@ def names(folder: Path) -> set[str]:
     return {path.name for path in (folder / "plots").iterdir()}
 
 
+@pytest.mark.slow
 def test_a_folder_gets_its_plots_and_may_be_replaced_then(folder: Path) -> None:
     assert not (folder / "plots").exists()
     assert run_command_line(["plots", str(folder)]) == 0

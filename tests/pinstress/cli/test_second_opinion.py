@@ -52,6 +52,7 @@ def test_without_calculix_it_says_how_to_get_it(
     assert "no.toml" not in told
 
 
+@pytest.mark.slow
 def test_a_calculix_that_fails_is_told_and_the_results_are_kept(tmp_path: Path) -> None:
     done = run(tmp_path, **put(tmp_path, "echo no luck; exit 201"))
     assert done.returncode == 1

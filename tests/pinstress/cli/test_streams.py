@@ -16,7 +16,7 @@ import click
 import pytest
 
 from fea.core.linear_solver import SolveError
-from fea.solve.solve import solve_pin
+from fea.solve.solve import solve
 from pinbase.processes import interrupts
 from pinstress import InputError
 from pinstress.cli.commands import run_command_line
@@ -85,6 +85,7 @@ def ended(commands: Iterable[str], *ends: str) -> list[Any]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "to", "told"), ended(TABLES, *ENDS))
 def test_a_table_that_cannot_be_printed_changes_no_status(
     tmp_path: Path, command: str, to: str, told: str
@@ -99,6 +100,7 @@ def test_a_table_that_cannot_be_printed_changes_no_status(
     assert "Exception ignored" not in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "to", "told"), ended(DATA, "full", "closed"))
 def test_data_that_cannot_be_printed_are_lost(
     tmp_path: Path, command: str, to: str, told: str
@@ -154,6 +156,7 @@ ASCII: list[Any] = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("environment", ASCII)
 def test_a_terminal_that_knows_ascii_alone(tmp_path: Path, environment: dict[str, str]) -> None:
     text = SHARP.replace("[pin.B]", '[pin."Bügel ±"]').replace('"One pin', '"Bügel–β')
@@ -251,10 +254,10 @@ def test_an_interrupt_that_is_dropped_comes_back(
     def dropping(*arguments: Any) -> Any:
         with suppress(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
-        return solve_pin(*arguments)
+        return solve(*arguments)
 
     (tmp_path / "study.toml").write_text(QUICK)
-    monkeypatch.setattr("pinstress.analysis.solve.solve_pin", dropping)
+    monkeypatch.setattr("pinstress.analysis.solve.solve", dropping)
     monkeypatch.chdir(tmp_path)
     with signals_heard():
         assert run_command_line([*RUN, "--jobs", "1"]) == 130

@@ -23,6 +23,7 @@ from pinstress.analysis.gather_fields import MAX_STILLS, instants
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin
 from tests.conftest import INCH
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK
 from tests.support.programs.process_group import started
 
@@ -74,6 +75,7 @@ def row(directory: Path) -> dict[str, Any]:
     return dict(found)
 
 
+@pytest.mark.slow
 def test_colour_and_progress_on_a_terminal_unless_they_are_not_wanted(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(QUICK)
     command = ("run", "study.toml", "--no-pictures")
@@ -164,9 +166,7 @@ def test_all_of_a_revolved_pin(tmp_path: Path) -> None:
     assert moment == pytest.approx(988.86 * 0.8 / 1.6 * 0.4, rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("count", "governing"), [(1, 0), (3, 2), (201, 0), (201, 121), (5000, 4999)]
-)
+@each(("count", "governing"), [(1, 0), (3, 2), (201, 0), (201, 121), (5000, 4999)])
 def test_stills_are_few_and_have_the_governing_one(count: int, governing: int) -> None:
     found = instants(count, governing)
     assert governing in found
@@ -175,6 +175,7 @@ def test_stills_are_few_and_have_the_governing_one(count: int, governing: int) -
     assert len(found) <= MAX_STILLS + 1
 
 
+@pytest.mark.slow
 def test_view_draws_the_run(swept: Path, tmp_path: Path) -> None:
     picture = tmp_path / "b.png"
     assert run_command_line(["view", str(swept), "--screenshot", str(picture)]) == 0
@@ -182,6 +183,7 @@ def test_view_draws_the_run(swept: Path, tmp_path: Path) -> None:
     assert len(np.unique(pixels, axis=0)) > 500
 
 
+@pytest.mark.slow
 def test_view_overwrites_no_file_unasked(
     swept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -198,7 +200,7 @@ def test_view_overwrites_no_file_unasked(
     assert mine.read_text() == "mine"
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "message"),
     [
         ([], "no display"),
@@ -232,7 +234,7 @@ def test_view_of_no_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert "results.json is a pipe or a device" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+@each("shell", ["bash", "zsh", "fish"])
 def test_completion_script(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["completion", shell]) == 0
     assert "_PINSTRESS_COMPLETE" in capsys.readouterr().out

@@ -28,6 +28,7 @@ from reports.tables.strength.safety_factors import (
 from reports.tables.table import Table
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
+from tests.support.each import each
 
 SAFETY_FACTORS = [
     "pin",
@@ -166,7 +167,7 @@ def test_unconverged_rows_meet_nothing_in_markdown(results: Results, tmp_path: P
     assert all("| not decided: not converged " in line for line in loose)
 
 
-@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\r=1"])
+@each("text", ["=1+1", "+1", "-1", "@x", "\t=1", " =1", "\r=1"])
 def test_formulas_are_made_harmless(text: str) -> None:
     assert harmless(text) == "'" + text
 

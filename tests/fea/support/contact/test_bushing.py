@@ -14,6 +14,7 @@ from fea.support.lugs.eye_mesh import eye_mesh
 from fea.support.lugs.lug import Bushing, Lug
 from fea.support.lugs.rings import annulus, graded
 from geometry import Pin, Segment
+from tests.support.each import each
 from tests.support.exact.layered_annulus import widening
 
 STEEL, BRONZE = Material("steel", 210e9, 0.3), Material("bronze", 100e9, 0.34)
@@ -47,7 +48,7 @@ def test_the_exact_annulus_is_lames_and_muskhelishvilis() -> None:
         assert split == pytest.approx(widening(one, n, strain=True), rel=1e-9)
 
 
-@pytest.mark.parametrize("n", range(7))
+@each("n", range(7))
 def test_a_thin_lug_is_an_annulus_in_plane_stress(n: int) -> None:
     """Two rings, within 0.5 %; for n = 0 Lame's compound tube, for n = 1 with the reaction."""
     exact = widening([(A, C, BRONZE), (C, B, STEEL)], n, strain=False)
@@ -105,8 +106,8 @@ def test_a_thin_bushing_does_little() -> None:
     assert more[1] == pytest.approx(10.0 * more[0], rel=0.25)
 
 
-@pytest.mark.parametrize("thickness", [0.0005, 0.002])
-@pytest.mark.parametrize("material", [BRONZE, Material("soft", 21e9, 0.45), RIGID_BUSH])
+@each("thickness", [0.0005, 0.002])
+@each("material", [BRONZE, Material("soft", 21e9, 0.45), RIGID_BUSH])
 def test_high_harmonics_of_a_bushing(thickness: float, material: Material) -> None:
     """A layer on a half-plane is the annulus to 7 % at n = 13 and 2 % at 40, as 1 / n."""
     rings = [(A, A + thickness, material), (A + thickness, B, STEEL)]

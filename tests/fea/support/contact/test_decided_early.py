@@ -17,6 +17,7 @@ from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import met
 from fea.support.contact.pressed_cases import Compared
 from fea.support.contact.variations import AtPlaces, ResolutionComparison
+from tests.support.each import each
 
 STEEL = Material("steel", 210e9, 0.3, yield_strength=400e6)
 CLAMP = Zone(0.01, 0.02, "edge of a clamp", ("held", "shaft"), 0.5, 0.5, 0.002, "none")
@@ -36,7 +37,7 @@ def seen(*results: MeshMaximum, fewest: int = 3) -> MeshHistory:
     return MeshHistory("P", "c", "harmonic", results, times, meshes)
 
 
-@pytest.mark.parametrize(
+@each(
     ("felt", "maximum", "done"),
     [
         (90.0, 100.0, True),  # far below the limit
@@ -89,7 +90,7 @@ def compared(surface: float, section: float, beneath: float, cells: AtPlaces) ->
     return Compared(found, found)
 
 
-@pytest.mark.parametrize(
+@each(
     ("stress", "cells", "value", "decide"),
     [
         ((150.0, 100.0, 90.0), (0.01, 0.01, 0.01), True, True),  # little of the tolerance

@@ -17,6 +17,7 @@ from fea.support.contact.solve_joint import ContactModel, JointContact, Resoluti
 from fea.support.lugs.lug import Lug
 from fea.support.support import Solution
 from geometry import Pin, Segment
+from tests.support.each import each
 
 E, NU, D, EYE, ARM, FORCE = 210e9, 0.3, 0.02, 0.05, 0.04, 50e3
 STEEL = Material("steel", E, NU, density=7850.0)
@@ -162,7 +163,7 @@ def test_an_edge_radius_takes_load_from_the_edge() -> None:
     assert not sharp.gap(ends).any()
 
 
-@pytest.mark.parametrize(
+@each(
     ("change", "said"),
     [
         ({"outer_diameter": 0.0}, "outer diameter"),

@@ -17,6 +17,7 @@ from fea.support.contact.flexibility import half_plane, lug_flexibility, pin_fle
 from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import annulus, graded, ring, ringed
 from geometry import Pin, Segment
+from tests.support.each import each
 
 E, NU = 210e9, 0.3
 STEEL = Material("steel", E, NU)
@@ -39,7 +40,7 @@ def test_rings_fill_the_band_and_keep_the_shape() -> None:
     assert [b.length for b in bands] == pytest.approx(np.diff(graded(whole.length, 6)))
 
 
-@pytest.mark.parametrize("n", [0, 2, 3, 6])
+@each("n", [0, 2, 3, 6])
 def test_a_thin_disc_is_the_plane_ones(n: int) -> None:
     """R / (4 mu) [k / (n + 1) + 1 / (n - 1)] in plane stress, R (1 - nu) / E for n = 0."""
     r, t = 0.01, 0.0002

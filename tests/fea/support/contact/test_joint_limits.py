@@ -14,6 +14,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import Pin, Segment
+from tests.support.each import each
 from tests.support.exact.layered_annulus import widening
 
 E, NU, D, EYE, FORCE = 210e9, 0.3, 0.02, 0.05, 50e3
@@ -85,7 +86,7 @@ def test_huge_clearance_is_in_equilibrium() -> None:
     assert (np.degrees(found.contact_angle) < 20.0).all()
 
 
-@pytest.mark.parametrize("size", [500.0, 50.0, 5.0])
+@each("size", [500.0, 50.0, 5.0])
 def test_loads_that_hardly_close_the_clearance_settle(size: float) -> None:
     """Few cells of four lugs touch then, far from where the forces point."""
     over, names = Segment(0.002, D), "ABCD"

@@ -9,6 +9,7 @@ import pytest
 from fea.core.peak import ErrorParts, Maximum, accuracy
 from fea.core.requirement import Requirement
 from fea.support.contact.error_parts import with_cells
+from tests.support.each import each
 
 ASKED = Requirement(tolerance=0.02)
 
@@ -23,7 +24,7 @@ def peak(mesh: float) -> Maximum:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize(
+@each(
     ("mesh", "cells", "verdict", "note", "reason"),
     [
         (0.005, 0.01, "converged", "estimated error 1.5%", "within-tolerance"),

@@ -29,6 +29,7 @@ from fea.support.foundation.foundation_model import (
 from fea.support.foundation.supported_beam import SupportedBeam, refined, respond
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
+from tests.support.each import sampled
 
 D, FORCE = 0.02, 50e3
 STEEL = Material("steel", 210e9, 0.3, density=7850.0)
@@ -280,9 +281,10 @@ def test_contact_is_within_the_stated_error_of_three_pins() -> None:
 
 
 @pytest.mark.slow
-def test_contact_is_within_the_stated_error_of_most_pins() -> None:
+@pytest.mark.parametrize("count", sampled([6, 20], every=2))
+def test_contact_is_within_the_stated_error_of_most_pins(count: int) -> None:
     """19 in 20, on pins that had no part in any constant."""
-    assert sum(_within(trial) for trial in joint_trials(20, 4)) >= 19
+    assert sum(_within(trial) for trial in joint_trials(count, 4)) >= math.floor(0.95 * count)
 
 
 def test_a_foundation_is_softer_with_a_bore() -> None:

@@ -26,6 +26,7 @@ from fea.support.lugs.lug import Bushing, Lug
 from fea.support.support import PinProblem, Solution
 from geometry import Pin, Segment
 from tests.fea.support.contact.test_contact import PERSSON
+from tests.support.each import each, sampled
 
 D, FORCE = 0.02, 50e3
 STEEL = Material("steel", 210e9, 0.3, density=7850.0)
@@ -124,7 +125,7 @@ def test_a_single_lug_of_a_structure_reacts_a_couple() -> None:
         FoundationModel(pin, STEEL, [replace(lug, tilt=0.0) for lug in lugs]).solve(loads)
 
 
-@pytest.mark.parametrize("gap", PERSSON)
+@each("gap", PERSSON)
 def test_plane_contact_is_perssons(gap: float) -> None:
     angle, peak = PERSSON[gap]
     assert math.degrees(half_angle(gap)) == pytest.approx(angle, abs=1e-3)
@@ -133,16 +134,17 @@ def test_plane_contact_is_perssons(gap: float) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("play", [0.0, 3.0])
-def test_contact_is_within_the_bounds_of_most_pins(play: float) -> None:
-    """9 in 10 of 20, on pins that had no part in any constant: the larger of surface and section,
+@pytest.mark.parametrize("count", sampled([6, 20], every=2))
+def test_contact_is_within_the_bounds_of_most_pins(play: float, count: int) -> None:
+    """9 in 10, on pins that had no part in any constant: the larger of surface and section,
     and what lies beneath contact.
     """
     inside = 0
-    for trial in (played(x, play) for x in joint_trials(20, 25)):
+    for trial in (played(x, play) for x in joint_trials(count, 25)):
         low, high = bounds_of(trial).bounds or (0.0, 0.0)
         found = contact_places(trial)
         inside += low <= found.row <= max(found.row, found.beneath) <= high
-    assert inside >= 18
+    assert inside >= math.floor(0.9 * count)
 
 
 def test_what_the_beam_leaves_out_makes_the_bounds_wider() -> None:
@@ -158,7 +160,7 @@ def test_what_the_beam_leaves_out_makes_the_bounds_wider() -> None:
         assert wider.bounds[1] > tight.bounds[1]
 
 
-@pytest.mark.parametrize(
+@each(
     "change",
     [{"clearance": 1.9e-3}, {"edge_radius": 2e-3}, {"outer_diameter": 0.1}],
 )
@@ -275,7 +277,7 @@ def test_auto_takes_contact_for_more_than_foundations_can() -> None:
     assert solved(lugs, pin, Requirement(tolerance=0.5)).peak.model == "harmonic"
 
 
-@pytest.mark.parametrize(("lugs", "clearance", "largest"), [
+@each(("lugs", "clearance", "largest"), [
     ((inner, outer, gap), clearance, mid)
     for inner, outer, gap, clearance, _, mid in TRUTH if inner != 10
 ])  # fmt: skip

@@ -11,6 +11,7 @@ from fea.core.material import Material
 from fea.support.lugs.changes import JointChange, joint_variations
 from fea.support.lugs.lug import Lug, LugRange
 from geometry import ArgumentError, Pin, Segment
+from tests.support.each import each
 
 STEEL = Material("steel", 210e9, 0.3)
 PIN = Pin("P", (Segment(0.01, 0.02, connection="L"), Segment(0.02, 0.02, connection="M")))
@@ -57,7 +58,7 @@ def test_what_changes_nothing_is_left_out() -> None:
     assert ("clearance", "none") not in by_name((TIGHT,))
 
 
-@pytest.mark.parametrize(
+@each(
     ("given", "code"),
     [
         ({"clearance": (2e-5, 1e-5)}, "range-order"),

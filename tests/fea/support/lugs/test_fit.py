@@ -13,6 +13,7 @@ from fea.core.material import Material
 from fea.support.lugs.fit import fitted, yielding_interference
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, GeometryError, Pin, Segment
+from tests.support.each import each
 
 D, EYE = 0.02, 0.05
 STEEL = Material("steel", 210e9, 0.3, yield_strength=1e9)
@@ -28,7 +29,7 @@ def test_lugs_come_in_the_order_of_the_bands() -> None:
     assert fitted(PIN, STEEL, [B, A]) == (A, B)
 
 
-@pytest.mark.parametrize(
+@each(
     ("change", "code", "said"),
     [
         ({"outer_diameter": 0.0}, "not-positive", "lug A: its outer diameter must be positive"),
@@ -46,21 +47,21 @@ def test_lugs_that_cannot_be(change: dict[str, Any], code: str, said: str) -> No
     assert raised.value.code == code
 
 
-@pytest.mark.parametrize("thickness", [0.0, -1e-3, math.nan, math.inf])
+@each("thickness", [0.0, -1e-3, math.nan, math.inf])
 def test_bushings_that_cannot_be(thickness: float) -> None:
     with pytest.raises(ArgumentError, match="thickness of a bushing") as raised:
         Bushing(thickness, BRONZE)
     assert raised.value.code == "not-positive"
 
 
-@pytest.mark.parametrize("modulus", [0.0, -1.0, math.nan, math.inf])
+@each("modulus", [0.0, -1.0, math.nan, math.inf])
 def test_materials_without_a_modulus(modulus: float) -> None:
     with pytest.raises(ArgumentError, match="Young's modulus") as raised:
         Material("m", modulus, 0.3)
     assert raised.value.code == "not-positive"
 
 
-@pytest.mark.parametrize(
+@each(
     ("change", "code", "said"),
     [
         ({"outer_diameter": 0.019}, "lug-too-narrow", "0.95 of the pin's"),
@@ -80,7 +81,7 @@ def test_lugs_that_do_not_fit(change: dict[str, Any], code: str, said: str) -> N
     assert "lug A" in str(raised.value)
 
 
-@pytest.mark.parametrize("lugs", [[A], [A, A], [A, B, B], [A, replace(B, connection="Q")]])
+@each("lugs", [[A], [A, A], [A, B, B], [A, replace(B, connection="Q")]])
 def test_every_band_has_one_lug(lugs: list[Lug]) -> None:
     with pytest.raises(ArgumentError, match="pin P needs one lug for each of A, B") as raised:
         fitted(PIN, STEEL, lugs)

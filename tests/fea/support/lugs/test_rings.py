@@ -101,6 +101,7 @@ def punch(
     return np.diff(inside, axis=0) @ grown / np.diff(ends), reach
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("interference", "cells"),
     [(2e-3, Resolution(16, 6, 0, beside=0.01)), (2e-4, Resolution(8, 6, 0, beside=0.004))],

@@ -17,6 +17,7 @@ from pinstress.analysis import serialise as packing
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.stored import Entry, PinOutcome
 from reports.data.results import Field
+from tests.support.each import each
 from tests.support.programs.folder_contents import contents, flipped
 
 
@@ -25,9 +26,7 @@ def large(size: int) -> PinOutcome:
     return PinOutcome((Maximum("P", "c", "beam", "rigid", "w" * size),))
 
 
-@pytest.mark.parametrize(
-    "damage", [flipped, lambda d: d[:-1], lambda d: d[:40], lambda _: b"", lambda d: d + b"\0"]
-)
+@each("damage", [flipped, lambda d: d[:-1], lambda d: d[:40], lambda _: b"", lambda d: d + b"\0"])
 def test_a_damaged_entry_is_none_and_is_replaced(
     tmp_path: Path, damage: Callable[[bytes], bytes]
 ) -> None:
@@ -127,7 +126,7 @@ def test_packing_keeps_every_bit() -> None:
     assert repr(back.fields[0].outside) == repr(field.outside)
 
 
-@pytest.mark.parametrize(
+@each(
     "wrong",
     [
         Maximum("P", "c", "beam", "perhaps", ""),  # type: ignore[arg-type]

@@ -16,7 +16,8 @@ import meshio
 import pytest
 
 from fea.core.peak import Maximum, Refinement
-from fea.solve.solve import solve_pin
+from fea.solve.solve import solve as solve_problem
+from fea.support.support import PinProblem
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinstress import load_study
@@ -88,11 +89,11 @@ def solve(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Solve:
     """Runs a study and says which pins were solved."""
     solved: list[str] = []
 
-    def counted(pin: Any, *rest: Any) -> Any:
-        solved.append(pin.name)
-        return solve_pin(pin, *rest)
+    def counted(problem: PinProblem, *rest: Any) -> Any:
+        solved.append(problem.pin.name)
+        return solve_problem(problem, *rest)
 
-    monkeypatch.setattr(solving, "solve_pin", counted)
+    monkeypatch.setattr(solving, "solve", counted)
 
     def run(text: str = STUDY, *options: str, status: int = 0) -> list[str]:
         solved.clear()
@@ -213,13 +214,13 @@ def test_a_folder_that_cannot_be_made(solve: Solve, folder: Path) -> None:
 def test_what_failed_is_not_kept(solve: Solve, monkeypatch: pytest.MonkeyPatch) -> None:
     study = STUDY.replace("diameter = 24", "diameter = 23")
 
-    def fails(pin: Any, *rest: Any) -> Any:
-        if pin.name == "B":
+    def fails(problem: PinProblem, *rest: Any) -> Any:
+        if problem.pin.name == "B":
             raise ArithmeticError("no mesh")
-        return solve_pin(pin, *rest)
+        return solve_problem(problem, *rest)
 
     with monkeypatch.context() as broken:
-        broken.setattr(solving, "solve_pin", fails)
+        broken.setattr(solving, "solve", fails)
         solve(study, status=3)
     assert solve(study) == ["B"]
 
@@ -273,6 +274,7 @@ def key_of(study: Path) -> str:
     return Cache(study.parent, "").key(cache_key(plan, plan.tasks[0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "changes"), [("vtk", "pin.vtk"), ("ele", "pin.node")])
 def test_a_mesh_is_known_by_its_bytes_and_by_what_lies_beside(
     tmp_path: Path, form: str, changes: str

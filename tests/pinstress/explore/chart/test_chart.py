@@ -23,6 +23,7 @@ from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart_summary import cost, failures, reference_line, staying, summary
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN
 
 STUDY = ROOT / "studies" / "one_pin.toml"
@@ -197,6 +198,7 @@ def test_the_chart_is_the_same_bytes_every_time(made_up: Chart, tmp_path: Path) 
         assert (one / name).read_bytes() == (two / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
     """What it says is the same every time; its time and memory are its own."""
     rung = Rung("harmonic", level=0)
@@ -208,7 +210,7 @@ def test_a_point_in_its_own_process(plan: ChartPlan) -> None:
     assert 30.0 < one.bare < 500.0
 
 
-@pytest.mark.parametrize(
+@each(
     ("rung", "limits", "reason"),
     [
         (Rung("solid", level=2), MeasureLimits(seconds=0.5), "exceeded the limit of 0.5 s"),

@@ -15,6 +15,7 @@ from pinstress.explore.reliability.drivers import base_samples, indices
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import parse_study
 from tests.conftest import ROOT
+from tests.support.each import each
 
 EXACT = 0.0291981946  # of tests/pinstress/explore/reliability/test_reliability_mathematics.py
 
@@ -43,6 +44,7 @@ def _table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_the_bar_through_the_whole_chain(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -77,6 +79,7 @@ def test_the_bar_through_the_whole_chain(
     assert "normal, mean 75000 N" in page
 
 
+@pytest.mark.slow
 def test_the_same_study_gives_the_same_numbers_with_more_processes(tmp_path: Path) -> None:
     small = BAR.replace("samples = 200", "samples = 250").replace("= 300", "= 20")
     small = small.replace("sobol_samples = 16", "sobol_samples = 0")
@@ -88,7 +91,7 @@ def test_the_same_study_gives_the_same_numbers_with_more_processes(tmp_path: Pat
     assert (tmp_path / "again" / "reliability.json").read_bytes() == first
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "said"),
     [
         ("[vary.parameters]", "[nothing]", "unknown key"),
@@ -191,6 +194,7 @@ def test_ranges_are_refused_by_the_function_too() -> None:
     assert caught.value.code == "no-law"
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_page_shows_what_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With all samples, whose interval has the exact probability in it too."""

@@ -10,6 +10,7 @@ import pytest
 import pinstress
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import load_study
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK, Refused, sizes_nothing
 
 WITH_LAWS = (
@@ -21,6 +22,7 @@ WITH_LAWS = (
 )
 
 
+@pytest.mark.slow
 def test_a_factor_at_a_probability(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -58,14 +60,14 @@ def test_to_a_step_shoulders_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     command = ["size", "study.toml", "--least-weight", "--step", "0.25", "--jobs", "1", "--quiet"]
     assert run_command_line(command) == 0
     root, shaft = tomllib.loads(Path("study_sized.toml").read_text())["pin"]["B"]["profile"]
-    for each in (root, shaft):
-        assert each["diameter"] % 0.25 == 0.0
+    for segment in (root, shaft):
+        assert segment["diameter"] % 0.25 == 0.0
     assert root["diameter"] >= 1.2 * shaft["diameter"]
     (row,) = pinstress.run(load_study("study_sized.toml")).pins
     assert (row.safety_factor or 0.0) >= 10.0
 
 
-@pytest.mark.parametrize(
+@each(
     "refused",
     [
         Refused([], ("required_safety_factor = 10", ""), 2, "--fos 10"),
@@ -84,7 +86,6 @@ def test_to_a_step_shoulders_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         Refused([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),
         Refused(["--fos", "1e7"], ("", ""), 1, "times these dimensions"),
     ],
-    ids=lambda refused: refused.message,
 )
 def test_what_cannot_be_had_is_told(tmp_path: Path, refused: Refused) -> None:
     sizes_nothing(tmp_path, refused, "--least-weight", "--jobs", "1")

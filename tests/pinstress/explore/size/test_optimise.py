@@ -12,6 +12,7 @@ from scipy.special import ndtr
 
 from pinstress.explore.reliability.form import form_quantile
 from pinstress.explore.size.optimise import ImpossibleError, StressPlace, least_weight
+from tests.support.each import each
 
 Array = NDArray[np.float64]
 
@@ -56,7 +57,7 @@ def powers(moments: Array, allowed: float) -> Callable[[Array], tuple[StressPlac
     return at
 
 
-@pytest.mark.parametrize("start", [0.01, 1.0, 30.0])
+@each("start", [0.01, 1.0, 30.0])
 def test_a_stepped_cantilever_by_beam_theory(start: float) -> None:
     """Every segment is fully stressed: d = (32 M / (pi s))^(1/3); multipliers 2/3 of its share."""
     lengths, moments = np.array([1.0, 2.0, 1.5]), np.array([9.0, 4.0, 1.0])

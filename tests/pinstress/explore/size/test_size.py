@@ -22,6 +22,7 @@ from pinstress.study.reading.file import load_study, parse_study
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import factor_ends, outcome
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, QUICK, Refused, sizes_nothing
 
 
@@ -125,7 +126,7 @@ def test_every_shipped_profile_can_be_resized() -> None:
 FILES = [path for path in sorted((ROOT / "studies").glob("*.toml")) if ".csv" in path.read_text()]
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@each("path", FILES)
 def test_a_study_written_elsewhere_names_the_same_files(path: Path, tmp_path: Path) -> None:
     study = load_study(path)
     target = tmp_path / "deep" / "new.toml"
@@ -250,7 +251,7 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
     assert 10.0 <= found <= 10.0 * (1.0 + FACTOR_TOLERANCE)
 
 
-@pytest.mark.parametrize(
+@each(
     "refused",
     [
         Refused([], ("required_safety_factor = 10", ""), 2, "--fos 10"),
@@ -262,7 +263,6 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
         Refused([], ('["start"]', "[]"), 1, "it is unconstrained in case landing"),
         Refused(["--fos", "1e7"], ("", ""), 1, "times its diameters"),
     ],
-    ids=lambda refused: refused.message,
 )
 def test_what_cannot_be_sized_is_told(tmp_path: Path, refused: Refused) -> None:
     sizes_nothing(tmp_path, refused)

@@ -25,6 +25,7 @@ from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.explore.sweep.sample import designs_of
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from pinstress.study.schema.vary import VaryTable
+from tests.support.each import each
 from tests.support.programs.swept import DIAMETER, FORCE, STRENGTH, swept
 
 SIGMA = float(np.sqrt(np.log1p(0.2**2)))
@@ -42,7 +43,7 @@ KNOWN: dict[str, tuple[Law, Any]] = {
 }
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_quantiles_are_those_of_scipy(name: str) -> None:
     law, known = KNOWN[name]
     u = np.array([1e-6, 0.01, 0.2, 0.25, 0.5, 0.9, 0.999, 1.0 - 1e-9])
@@ -70,7 +71,7 @@ def _number(nominal: float, dimension: str = "length") -> Number:
     return Number("key", ("pin",), dimension, nominal, "mm", 1e-3)
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "low", "high"),
     [
         ("+0.1 mm -0.05 mm", -50.0, 100.0),
@@ -90,7 +91,7 @@ def test_tolerances_of_a_drawing_are_limits(text: str, low: float, high: float) 
     np.testing.assert_allclose(found, np.array([low, high]) * 1e-6, atol=1e-15)
 
 
-@pytest.mark.parametrize("size", NOMINAL_SIZE_LIMITS)
+@each("size", NOMINAL_SIZE_LIMITS)
 def test_a_range_of_nominal_sizes_has_its_upper_end(size: float) -> None:
     """As the standard has them: over the lower, up to and including the upper."""
     at, above = (
@@ -120,7 +121,7 @@ def _designs(head: str, more: str = "") -> Floats:
     return designs_of(study.table.vary, parameters, correlations_of(study, parameters))
 
 
-@pytest.mark.parametrize("sample", ["sobol", "latin-hypercube", "random"])
+@each("sample", ["sobol", "latin-hypercube", "random"])
 def test_a_sample_is_the_same_for_the_same_seed(sample: str) -> None:
     head = f'sample = "{sample}"\ncount = 8\nseed = '
     first, again, other = (_designs(head + seed) for seed in ("1", "1", "2"))

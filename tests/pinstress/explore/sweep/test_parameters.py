@@ -14,6 +14,7 @@ from pinstress.explore.sweep.laws import Uniform
 from pinstress.explore.sweep.number import number_at, unit_of
 from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.study.schema.units import DIMENSION_EXPONENTS, UNIT_SYSTEMS, to_si
+from tests.support.each import each
 from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH, swept, varied
 
 LANDING_GEAR = shipped_studies()["landing_gear"]
@@ -79,8 +80,8 @@ def test_an_angle_varies_in_degrees() -> None:
     assert str(number.in_study(12.5)) == "12.5 deg"
 
 
-@pytest.mark.parametrize("dimension", DIMENSION_EXPONENTS)
-@pytest.mark.parametrize("system", UNIT_SYSTEMS.values())
+@each("dimension", DIMENSION_EXPONENTS)
+@each("system", UNIT_SYSTEMS.values())
 def test_the_unit_of_a_dimension_can_be_read(dimension: str, system: object) -> None:
     """What a table names as a unit is that unit; radians are numbers."""
     found = UNIT_SYSTEMS[getattr(system, "name", "")]
@@ -91,7 +92,7 @@ def test_the_unit_of_a_dimension_can_be_read(dimension: str, system: object) -> 
     assert value == pytest.approx(found.factor(dimension), rel=1e-12)
 
 
-@pytest.mark.parametrize(
+@each(
     ("parameters", "code", "text"),
     [
         ('"pin.B.material" = { from = 1, to = 2 }', "not-a-varying-number", "is the text"),
@@ -181,7 +182,7 @@ def _pair(first: str, second: str, coefficient: float) -> str:
     )
 
 
-@pytest.mark.parametrize(
+@each(
     ("pairs", "code"),
     [
         (

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.programs.process_group import started
 from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, varied
@@ -51,7 +52,7 @@ def test_designs_that_all_fail_are_told(tmp_path: Path) -> None:
     assert "2 designs, 2 failed" in made.stdout
 
 
-@pytest.mark.parametrize(
+@each(
     ("prepare", "arguments", "message"),
     [
         ("notes.txt", (), "contains files that are not results of this command"),

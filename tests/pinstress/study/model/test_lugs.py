@@ -306,6 +306,7 @@ bushing = { thickness = 2, material = "bronze" }
     assert "bending, joint model" in {c.name for c in found.hand_checks}
 
 
+@pytest.mark.slow
 def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
     """All cases of a pin are solved on the same meshes: at the angle of its maximum the surface has
     the stress that each case has there, and where lugs press on a part of the circumference, which
@@ -331,6 +332,7 @@ def test_cases_in_contact_share_a_surface(tmp_path: Path) -> None:
         assert stress[free] == pytest.approx(case.largest[free], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_pin_on_a_structure_has_the_hand_checks_of_its_joint(tmp_path: Path) -> None:
     """What the structure takes, and so the pin's bending, is known to the joint alone."""
     path = study(tmp_path, "lug.gap = {}\nlug.M = { outer_diameter = 50 }")

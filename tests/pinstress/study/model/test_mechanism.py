@@ -18,6 +18,7 @@ from reports.tables.json_results import to_json
 from reports.text.loads import remarks
 from reports.text.loads_summary import write_loads_summary
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 STUDIES = ROOT / "studies"
@@ -39,9 +40,7 @@ def every_case(path: Path) -> None:
         case_loads(study, case, drawn)
 
 
-@pytest.mark.parametrize(
-    "name", ["bowman2019", "matrix_four_bar", "slider_crank", "kuleuven2014", "excavator"]
-)
+@each("name", ["bowman2019", "matrix_four_bar", "slider_crank", "kuleuven2014", "excavator"])
 def test_every_study_that_ships_is_described(name: str) -> None:
     text, *_ = describe(load_study(STUDIES / f"{name}.toml"))
     assert "case " in text
@@ -54,7 +53,7 @@ def test_check_says_what_the_four_bar_is() -> None:
     assert "mobility 1;" in text
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "old", "new", "code", "named"),
     [
         (BOWMAN, "distances = [30, 26]", "distances = [3, 4]", "unreachable-point", "3 in and 4"),
@@ -240,7 +239,7 @@ duration = 5
         describe(load_study(write(tmp_path, loose)))
 
 
-@pytest.mark.parametrize(
+@each(
     ("row", "message"),
     [
         ("snapshot,,angle,nobody,1,", "has no body 'nobody' with angle"),
@@ -266,7 +265,7 @@ def test_published_values_that_name_nothing(tmp_path: Path, row: str, message: s
         loads_only(load_study(path))
 
 
-@pytest.mark.parametrize("samples", [2, 6, 201])
+@each("samples", [2, 6, 201])
 def test_published_values_are_set_beside_those_of_their_own_time(
     tmp_path: Path, samples: int
 ) -> None:
@@ -335,7 +334,7 @@ mass = 0.5
     return path
 
 
-@pytest.mark.parametrize("samples", [2, 11, 41])
+@each("samples", [2, 11, 41])
 def test_the_torque_of_ten_turns_is_that_of_all_the_time(tmp_path: Path, samples: int) -> None:
     """Every sample of eleven shows 0.93 N m; a turn has 1.62 at most, 0 in the mean."""
     results = loads_only(load_study(crank(tmp_path, samples)))
@@ -356,6 +355,7 @@ def test_the_torque_of_ten_turns_is_that_of_all_the_time(tmp_path: Path, samples
     assert np.sin(np.radians(peak.position or 0.0)) == pytest.approx(-1.0, abs=1e-6)  # below
 
 
+@pytest.mark.slow
 def test_what_is_not_resolved_is_said(tmp_path: Path) -> None:
     """Three hundred turns take more instants than are looked at."""
     results = loads_only(load_study(crank(tmp_path, 11, turns=300.0)))

@@ -15,7 +15,7 @@ from geometry.imported.body_file import BodyFile, Place
 from geometry.imported.imported_pin import SolidBody
 from geometry.imported.recognise import recognised_profile
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
-from pinbase.processes.system import portable
+from pinbase.platform import portable
 from pinstress.study.model.imported_pin import apart, read_body, turned_apart
 from tests.conftest import ROOT
 from tests.support.pins.pin_files import MM, write_mesh, write_step
@@ -126,7 +126,7 @@ from pinstress.study.model import imported_pin as module
 from tests.support.programs import failing_readers
 
 one = module.Limits(seconds=1, clock=600, memory=2**28)
-module.CAD, module.LARGE = one, module.Limits(seconds=600, clock=3, memory=2**28)
+module.CAD_LIMITS, module.LONG_LIMITS = one, module.Limits(seconds=600, clock=3, memory=2**28)
 
 def read(work, name):
     try:

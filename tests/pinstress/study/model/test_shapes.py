@@ -18,6 +18,7 @@ from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.study.model.pins import pin as pin_of
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 from tests.support.pins.pin_files import write_mesh, write_step
 
@@ -107,7 +108,7 @@ def test_runs(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert "P" in (tmp_path / "out/study/report.html").read_text()
 
 
-@pytest.mark.parametrize(
+@each(
     ("shape", "code", "named"),
     [
         (PROFILE + FILE, "give-one", "pin.P: "),
@@ -135,8 +136,13 @@ def test_bad_tables(shape: str, code: str, named: str, tmp_path: Path) -> None:
         (FILE.replace("pin.step", "gone.step"), "no-such-file", "gone.step"),
         (FILE.replace("pin.step", "study.toml"), "unreadable-geometry", "study.toml"),
         (FILE.replace("40.0, 60.0", "70.0, 80.0"), "band-not-found", "z = 70 and 80"),
-        (FILE.replace("z = [0.0, 10.0]", 'surface = "foot"'), "unknown-surface", "'foot'"),
-        (FILE, "unknown-surface", "'side'"),
+        pytest.param(
+            FILE.replace("z = [0.0, 10.0]", 'surface = "foot"'),
+            "unknown-surface",
+            "'foot'",
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(FILE, "unknown-surface", "'side'", marks=pytest.mark.slow),
     ],
 )
 def test_bad_shapes(

@@ -11,6 +11,7 @@ from pinstress.cli.commands import commands
 from pinstress.study.model.weights import weight_warnings
 from pinstress.study.reading.file import load_study
 from pinstress.study.reading.shipped import shipped
+from tests.support.each import each
 
 STUDIES = shipped("one_pin.toml").parent
 GEAR = (STUDIES / "grenier2008.toml").read_text(encoding="utf-8")
@@ -25,12 +26,12 @@ def gear(tmp_path: Path, stated: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("study", sorted(p.name for p in STUDIES.glob("*.toml")))
+@each("study", sorted(p.name for p in STUDIES.glob("*.toml")))
 def test_the_shipped_studies_do_not_contradict_themselves(study: str) -> None:
     assert weight_warnings(load_study(STUDIES / study)) == []
 
 
-@pytest.mark.parametrize(("stated", "warned"), [("14.4", 0), ("14.5", 1), ("13.8", 1), ("14", 0)])
+@each(("stated", "warned"), [("14.4", 0), ("14.5", 1), ("13.8", 1), ("14", 0)])
 def test_two_hundredths_apart_is_told(tmp_path: Path, stated: str, warned: int) -> None:
     """The profile of pin E weighs 14.17 lbf."""
     assert len(weight_warnings(load_study(gear(tmp_path, stated)))) == warned

@@ -9,6 +9,7 @@ import pytest
 from pinstress.study.model.cases import case_loads
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, load_study
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK, run_here
 
 FORCES = "forces = { B = [0.0, -988.86] }"
@@ -59,7 +60,7 @@ def test_the_command_line_selects_among_them(tmp_path: Path) -> None:
     assert "taxi" in wrong.stderr
 
 
-@pytest.mark.parametrize(
+@each(
     ("section", "table", "more", "code"),
     [
         ("*", TABLE.replace("case", "name"), "", "missing-column"),

@@ -5,9 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
-
 from tests.conftest import ROOT
+from tests.support.each import each
 
 CODE_AT = {"InputError": 3, "ChoiceError": 3, "SolveError": 1, "LayoutError": 1}
 
@@ -26,7 +25,9 @@ def uncoded(path: Path) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("folder", ["analysis", "chart", "cli", "model", "study"])
+@each(
+    "folder", ["analysis", "cli", "explore/chart", "explore/sweep", "study/model", "study/reading"]
+)
 def test_every_error_has_a_code(folder: str) -> None:
     files = sorted((ROOT / "pinstress" / folder).glob("*.py"))
     assert files

@@ -88,6 +88,7 @@ def test_a_fillet_beside_a_real_step_is_measured_by_it(tmp_path: Path) -> None:
         pin_of(load_study(write(tmp_path, step)), "P")
 
 
+@pytest.mark.slow
 def test_cuts_that_leave_nothing_of_a_band_are_refused_before_anything_runs(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -14,6 +14,7 @@ from pinstress.study.model.cases import case_loads
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.schema.cases import GivenCase
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK, run_here
 
 STUDIES = ROOT / "studies"
@@ -52,7 +53,7 @@ def test_a_wide_table_with_units_gives_the_same_stress(tmp_path: Path) -> None:
     assert after == pytest.approx(before, rel=1e-6)
 
 
-@pytest.mark.parametrize(
+@each(
     ("cell", "remedy"),
     [
         ('"1,988"', "write 1988, or 1.988 with a point"),

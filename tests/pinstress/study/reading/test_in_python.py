@@ -11,6 +11,7 @@ import pytest
 
 import pinstress
 from pinstress import InputError, changed_study, load_study, shipped_studies, study_from
+from tests.support.each import each
 
 ONE_PIN = shipped_studies()["one_pin"]
 BAR: dict[str, Any] = {
@@ -99,7 +100,7 @@ def test_a_value_with_provenance_is_replaced() -> None:
     assert new.provenance == ()
 
 
-@pytest.mark.parametrize(
+@each(
     "key",
     [
         *("", "pin.", "pin..P", "pin.Q.clamp", "pin.P[1].x"),

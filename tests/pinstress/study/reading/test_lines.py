@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from pinstress import InputError, load_study
 from pinstress.study.reading.toml_lines import Place, lines_of, places
 from tests.conftest import ROOT
+from tests.support.each import each
 
 STUDIES = sorted((ROOT / "studies").glob("**/*.toml"))
 MARK = "MARK{}KRAM"
@@ -105,7 +106,7 @@ def test_a_marked_value_is_found_on_its_line(tree: dict[str, Any], data: st.Data
             assert found[place] == text.count("\n", 0, text.index(mark)) + 1
 
 
-@pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
+@each("study", STUDIES)
 def test_every_key_of_a_study_is_found_as_messages_spell_it(study: Path) -> None:
     text = study.read_text()
     found = places(text)
@@ -154,7 +155,7 @@ law = 1
 )
 
 
-@pytest.mark.parametrize(
+@each(
     ("message", "line"),
     [
         ("title: is wrong", 1),
@@ -190,7 +191,7 @@ def test_a_message_has_the_line_of_its_key(message: str, line: int | None) -> No
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "message"),
     [
         ("diameter = 4.0", "diameter = -4.0", "pin.B.profile[1].diameter: "),

@@ -5,12 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-import pytest
-
 from pinstress.cli.check import describe
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import load_study
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 STUDIES = ROOT / "studies"
@@ -22,7 +21,7 @@ SHARED = 'connections = ["sun_planet1", "sun_planet2", "sun_planet3"]'
 LOCKS = 'bodies = ["upper_lock", "lower_lock"]'
 
 
-@pytest.mark.parametrize(
+@each(
     ("study", "old", "new", "code", "named"),
     [
         ("engine", 'position_of = "crank"', 'position_of = "krank"', "unknown-slider", "'krank'"),

@@ -19,6 +19,7 @@ from pinstress.study.reading.validation import OTHER_MISTAKE, explain
 from pinstress.study.schema.tables import StudyTable
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 ABSENT = object()
@@ -58,7 +59,13 @@ def mistakes(raw: Any) -> list[Wrong]:
     return []
 
 
-@pytest.mark.parametrize("study", ["one_pin", "bowman2019", "kuleuven2014", "slider_crank"])
+@pytest.mark.parametrize(
+    "study",
+    [
+        *("one_pin", "kuleuven2014"),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("bowman2019", "slider_crank")),
+    ],
+)
 def test_no_wording_of_pydantic_reaches_the_user(study: str) -> None:
     raw = tomllib.loads((ROOT / "studies" / f"{study}.toml").read_text(encoding="utf-8"))
     count = 0
@@ -80,7 +87,7 @@ STUDIES = {"one_pin": ONE_PIN, "slider_crank": CRANK}
 LANDING = "case.landing"
 
 
-@pytest.mark.parametrize(
+@each(
     ("study", "old", "new", "code", "key", "right"),
     [
         ("one_pin", 'title = "One pin"', "title = 1", "not-a-text", "title", "not 1"),

@@ -9,11 +9,12 @@ import pytest
 
 from pinstress.cli.commands import run_command_line
 from tests.conftest import ROOT
+from tests.support.each import each
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "message"),
     [
         ("length = 1.5", f"length = {'9' * 400}", "too large: the limit is 1e+18"),

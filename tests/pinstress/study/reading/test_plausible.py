@@ -10,6 +10,7 @@ from pinstress import InputError, load_study, run
 from pinstress.cli.commands import run_command_line
 from pinstress.study.reading.file import parse_study
 from tests.conftest import ROOT
+from tests.support.each import each
 
 STUDIES = sorted((ROOT / "studies").glob("**/*.toml"))
 METRIC = """\
@@ -38,12 +39,12 @@ IN_MSI = IN_INCHES.replace("= 30e6", '= "30 Msi"')
 E, RHO, YIELD, BORE = "youngs_modulus", "density", "yield_strength", "diameter"
 
 
-@pytest.mark.parametrize("study", STUDIES, ids=lambda path: path.stem)
+@each("study", STUDIES)
 def test_no_shipped_study_is_questioned(study: Path) -> None:
     assert load_study(study).warnings == ()
 
 
-@pytest.mark.parametrize("text", [METRIC, IN_METRES, IN_INCHES, HEAVY, IN_MSI])
+@each("text", [METRIC, IN_METRES, IN_INCHES, HEAVY, IN_MSI])
 def test_what_is_right_is_not_questioned(text: str) -> None:
     assert parse_study(Path("s.toml"), text).warnings == ()
 
@@ -55,7 +56,7 @@ def test_a_strength_near_the_modulus_questions_both() -> None:
     assert warned[0].endswith("more than 5% of youngs_modulus (1,448 MPa); check the units of both")
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "old", "new", "key", "likely"),
     [
         (METRIC, "= 210000", '= "210 MPa"', E, "210 GPa"),
@@ -122,7 +123,7 @@ def test_a_modulus_in_question_leaves_its_strength_alone() -> None:
     )
 
 
-@pytest.mark.parametrize("command", ["check", "run", "loads", "size"])
+@each("command", ["check", "run", "loads", "size"])
 def test_every_command_that_reads_a_study_says_it(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

@@ -17,6 +17,7 @@ from pinstress.study.schema.units import (
     to_si,
 )
 from tests.conftest import INCH, LBF, PSI, ROOT
+from tests.support.each import each
 from tests.support.errors import raises
 
 ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
@@ -33,7 +34,7 @@ def test_shipped_studies_are_valid(name: str) -> None:
     assert load_study(ROOT / "studies" / f"{name}.toml").name == name
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "dimension", "system", "si"),
     [
         (2.0, "length", "in-lbf-s", 2 * INCH),
@@ -63,18 +64,18 @@ def test_units(text: object, dimension: str, system: str, si: float) -> None:
     assert to_si(text, dimension, UNIT_SYSTEMS[system]) == pytest.approx(si, rel=1e-14)
 
 
-@pytest.mark.parametrize("unit", USUAL_UNITS)
+@each("unit", USUAL_UNITS)
 def test_the_usual_units_are_pints(unit: str) -> None:
     dimension, factor = USUAL_UNITS[unit]
     assert factor == pytest.approx(_by_pint(unit, dimension, unit), rel=1e-15)
 
 
-@pytest.mark.parametrize("dimension", DIMENSION_EXPONENTS)
+@each("dimension", DIMENSION_EXPONENTS)
 def test_the_examples_in_messages_are_right(dimension: str) -> None:
     assert to_si(DIMENSION_EXPONENTS[dimension][1], dimension, UNIT_SYSTEMS["m-N-s"]) > 0.0
 
 
-@pytest.mark.parametrize(
+@each(
     ("value", "code", "named"),
     [
         ("2 inn", "unknown-unit", "'in'"),
@@ -114,7 +115,7 @@ def test_values_carry_their_provenance() -> None:
             assert f"pin.{name}.profile[{i + 1}]" in by_key
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "code", "named"),
     [
         ("diameter = 2.0,", "diametre = 2.0,", "unknown-key", "profile[2]: unknown key 'diametre'"),
@@ -206,7 +207,7 @@ GEAR = (
 )
 
 
-@pytest.mark.parametrize(
+@each(
     ("old", "new", "code", "named"),
     [
         ('A = "AE" }', 'A = "AF" }', "unknown-body", "joint.A.connections.A: no body 'AF'"),

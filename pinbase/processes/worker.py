@@ -1,0 +1,156 @@
+"""A process that serves items which its parent sends it, forked or spawned, and ends with it."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import pickle
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from importlib import import_module
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from types import ModuleType
+from typing import TypeVar
+
+from pinbase.platform import portable
+from pinbase.processes import interrupts
+from pinbase.processes.current_folder import elsewhere, trusted_path
+from pinbase.processes.threads import hold_threads
+
+T = TypeVar("T")
+Item = TypeVar("Item")
+Serve = Callable[[Item, Callable[[str], None]], T]
+
+PARENT_DEATH = 1  # PR_SET_PDEATHSIG
+
+
+def start_worker(
+    serve: Serve[Item, T], forks: bool, libraries: tuple[str, ...]
+) -> tuple[BaseProcess, Connection]:
+    """Start a process that serves items; returns it with the pipe over which it gets them.
+
+    forks: whether it is forked; otherwise it is a new Python, which is sent `serve`. libraries:
+    which a new Python imports first.
+    """
+    ours, theirs = multiprocessing.Pipe()
+    context = multiprocessing.get_context("fork" if forks else "spawn")
+    # Typeshed has Process only in the contexts of each kind.
+    process: BaseProcess = context.Process(  # type: ignore[attr-defined]
+        target=_serve,
+        args=(serve, theirs, os.getpid(), () if forks else libraries),
+        daemon=False,
+    )
+    if forks:
+        with interrupts.blocked():  # a child that ours reach would go on with what we are doing
+            process.start()
+    else:
+        with _without_main(), _trusting():
+            process.start()
+    theirs.close()  # so that its end is the pipe's
+    return process, ours
+
+
+def load(modules: Iterable[str]) -> None:
+    """Import what work will need; what is missing it misses itself. Interrupts wait until then: one
+    in the middle of VTK's import crashes it.
+    """
+    with interrupts.deferred(), elsewhere():
+        for name in modules:
+            with suppress(ImportError):
+                import_module(name)
+
+
+@contextmanager
+def _without_main() -> Iterator[None]:
+    """No main module meanwhile: the new process would run the user's script once more, up to where
+    it starts processes. Nothing of ours is in it.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
+
+
+@contextmanager
+def _trusting() -> Iterator[None]:
+    """An environment in which a new Python imports nothing from the current folder."""
+    wanted = {"PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(trusted_path())}
+    before = {name: os.environ.get(name) for name in wanted}
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
+
+
+def _serve(
+    serve: Serve[Item, T], pipe: Connection, parent: int, libraries: tuple[str, ...]
+) -> None:
+    """What the process does: the items that it is sent, until there is none."""
+    hold_threads()  # of a user of Python, whose environment does not say so
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
+    signal.signal(signal.SIGTERM, _leave)
+    interrupts.unblock()
+    try:
+        _end_with_parent(parent)
+        load(libraries)
+        _do_items(serve, pipe)
+    finally:  # nothing is left to be cleaned up
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def _do_items(serve: Serve[Item, T], pipe: Connection) -> None:
+    def say(kind: str, value: object) -> None:
+        pipe.send((kind, pickle.dumps(value)))
+
+    while (sent := pipe.recv()) is not None:
+        name, item = sent
+        try:
+            say("returns", serve(item, lambda message: say("tells", message)))
+        except Exception as error:
+            text = "".join(traceback.format_exception(error))
+            error.add_note(f"{name}, in its own process:\n{text}")
+            try:
+                say("raises", error)
+            except (pickle.PicklingError, TypeError, AttributeError):
+                say("raises", RuntimeError(f"{name}, in its own process:\n{text}"))
+
+
+def _leave(*_: object) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # leaving is not begun once more
+    # In a finalizer Python prints what is raised and goes on; the parent kills us then.
+    sys.unraisablehook = lambda _: None
+    sys.exit(128 + signal.SIGTERM)
+
+
+def _end_with_parent(parent: int) -> None:
+    """End this process when the one that started it, `parent`, has ended, however that ends; now if
+    it has.
+    """
+    if portable():
+        threading.Thread(target=_wait_for_parent, daemon=True).start()
+        return
+    import ctypes
+
+    ctypes.CDLL(None).prctl(PARENT_DEATH, signal.SIGKILL)
+    if os.getppid() != parent:  # it was gone before
+        sys.exit(1)
+
+
+def _wait_for_parent() -> None:
+    """For processes that multiprocessing has spawned, which know a handle of their parent."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

@@ -1,0 +1,38 @@
+"""Optional packages, which the extras of pyproject.toml install."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.file import Study
+
+EXTRAS = {"distributed": "cluster", "pylife": "fatigue", "typst": "pdf"}  # by their package
+MISSING = "missing-extra"
+
+
+def require_package(package: str, user: str) -> None:
+    """Require an optional package before the work begins that needs it.
+
+    user: the option or command that needs it, with which the message begins.
+
+    Raises: InputError where it is not installed, which names the extra that installs it.
+    """
+    if problem := _missing(package):
+        raise InputError(f"{user}: {problem}", code=MISSING)
+
+
+def require_fatigue(study: Study) -> None:
+    """Require what the fatigue assessment of a study needs, if it has one.
+
+    Raises: InputError with the line of [fatigue], as `require_package`.
+    """
+    if study.table.fatigue is not None and (problem := _missing("pylife")):
+        raise study.error(f"fatigue: {problem}", code=MISSING)
+
+
+def _missing(package: str) -> str:
+    """What to do where a package is not installed; empty where it is."""
+    if find_spec(package) is not None:
+        return ""
+    return f"needs {package}, which is not installed: pip install 'pinstress[{EXTRAS[package]}]'"
