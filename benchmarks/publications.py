@@ -18,7 +18,7 @@ from pinstress.study.schema.cases import LegCase
 from reports.data.results import Results
 from reports.format.files import markdown
 from reports.format.numbers import engineering, ratio
-from reports.tables.published import published_reactions, published_table
+from reports.tables.published import published_reactions, published_values_table
 
 STUDIES = ROOT / "studies"
 PAGE = ROOT / "docs" / "measured" / "publications.md"
@@ -103,7 +103,7 @@ def bowman() -> str:
     closed = 10.0 ** np.ceil(np.log10(max(retract.ledger.violation, 1e-12)))
     return (
         f"## Four-bar landing gear: {results.published_source}\n\n"
-        f"{published_table(results.published)}\n\n"
+        f"{_published(results)}\n\n"
         "### The printed system, corrected step by step\n\n"
         f"{markdown.table(('correction', *UNKNOWNS), _corrected(results), (False, *[True] * 9))}"
         "\n\nForces in lbf, the torque in lbf in. The last row is ours, from geometry and the "
@@ -118,6 +118,10 @@ def bowman() -> str:
 def _table(study: str, name: str) -> list[dict[str, str]]:
     path = STUDIES / study / name
     return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
+def _published(results: Results) -> str:
+    return published_values_table(results).grid(results.units).markdown()
 
 
 def _corrected(results: Results) -> list[list[str]]:
@@ -148,7 +152,7 @@ def four_bar() -> str:
     return (
         f"## Four-bar by the matrix method: {results.published_source}\n\n"
         "`printed` uses the printed inertia forces and couples (d'Alembert); `motion` only the "
-        f"geometry and the crank's motion.\n\n{published_table(results.published)}\n"
+        f"geometry and the crank's motion.\n\n{_published(results)}\n"
     )
 
 

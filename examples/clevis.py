@@ -37,4 +37,4 @@ with TemporaryDirectory() as folder:
 
 print(f"finite elements: {pin.max_von_mises:.0f} ± {pin.error_estimate:.1f} MPa ({pin.verdict})")
 for check in pin.hand_checks:
-    print(f"{check.name} at {check.at}: {check.stress:.1f} MPa, factor {check.factor:.2f}")
+    print(f"{check.method} at {check.at}: {check.demand:.1f} MPa, factor {check.safety_factor:.2f}")

@@ -13,4 +13,4 @@ print(f"required                  {results.required_safety_factor:g}, met: {pin.
 print(f"verdict                   {pin.verdict} ({pin.note})")
 
 for check in pin.hand_checks:
-    print(f"hand check: {check.name:34} {check.stress:6.0f} {unit} = {check.formula}")
+    print(f"hand check: {check.method:34} {check.demand:6.0f} {unit} = {check.formula}")

@@ -1,7 +1,7 @@
 """Geometry: a pin as a body of revolution, its exact volume, and its solid mesh.
 
-Lengths in m. This room imports nothing else of ours. `geometry.mesh.solid_mesh` needs meshio,
-scikit-fem and gmsh and is therefore not imported here.
+Lengths are in m. Of the other packages here, it imports only `pinbase`. `geometry.mesh.solid_mesh`
+needs meshio, scikit-fem and gmsh and is therefore not imported here.
 """
 
 from geometry.mesh.cut_pin import CutPin

@@ -1,6 +1,6 @@
 """Loads: from a mechanism and its motion, or from a table, to the forces on every pin.
 
-Everything here is in SI units. This room imports nothing else of ours.
+All quantities are in SI units. Of the other packages here, it imports only `pinbase`.
 """
 
 from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying

@@ -1,4 +1,4 @@
-"""Types of arrays."""
+"""Types of NumPy arrays in annotations; shape and unit are stated in docstrings."""
 
 from __future__ import annotations
 

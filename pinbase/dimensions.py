@@ -1,4 +1,4 @@
-"""Dimensions of numbers in SI, as annotations of fields: reports.data.in_units converts by them."""
+"""Dimensions of fields in SI, as annotations by which reports.data.in_units converts them."""
 
 from __future__ import annotations
 

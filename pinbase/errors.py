@@ -1,4 +1,4 @@
-"""Errors that programs can tell apart without reading their message."""
+"""Errors with a code, by which programs tell them apart without reading their message."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ Place = tuple[str | int, ...]
 
 
 class CodedError(Exception):
-    """An error with a `code`, short and stable, for programs; its message is for people.
+    """An error with a short, stable `code` for programs and a message for people.
 
-    at: the part that is wrong, for instance ("segment", 2); empty for the whole.
+    message: what was wrong, where, and what would be right.
+    at: path of the part that is wrong, for instance ("segment", 2); empty for the whole.
     """
 
     def __init__(self, message: str, code: str = "", at: Place = ()) -> None:
@@ -17,8 +18,8 @@ class CodedError(Exception):
 
 
 class ArgumentError(CodedError, ValueError):
-    """An argument that a function cannot use."""
+    """An argument has a value or shape that the function cannot use."""
 
 
 class Damaged(ValueError):
-    """A file whose content cannot be what pinstress wrote; the message names the file."""
+    """A file's content is not what pinstress wrote; the message names the file."""

@@ -1,5 +1,6 @@
-"""Which of two ways is taken where operating systems differ: what Linux alone has, or its portable
-twin. PINSTRESS_PORTABLE=1 takes the twins on Linux too, so that they are tested.
+"""The choice between features that only Linux has and their portable substitutes.
+
+PINSTRESS_PORTABLE=1 chooses the substitutes on Linux too, so that they can be tested there.
 """
 
 from __future__ import annotations
@@ -13,12 +14,12 @@ PORTABLE_VARIABLE = "PINSTRESS_PORTABLE"
 
 
 def portable() -> bool:
-    """Whether to use nothing but what Windows and macOS have, too."""
+    """Whether to use only features that Windows and macOS have, too."""
     return sys.platform != "linux" or not hasattr(os, "fork") or _requested()
 
 
 def offered(library: str) -> Any:
-    """A compiled library that has no wheels for some systems; None where it is missing."""
+    """The compiled library of this name, or None where the system has no wheel for it."""
     if _requested():
         return None
     try:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from reports.animation.page import write_animations
 from reports.data.results import Results
 from reports.page.page import write_page
 from reports.tables.all import load_tables, sheets, stress_tables
+from reports.tables.column import Table
 from reports.tables.json_results import write_json
 from reports.tables.published import write_published_reactions, write_published_values
 from reports.tables.strength.hand_checks import write_hand_checks
 from reports.tables.strength.landing import write_landing
 from reports.tables.strength.safety_factors import write_safety_factors
-from reports.tables.table import Table
 from reports.tables.workbook import write_workbook
 from reports.text.loads_summary import write_loads_summary
 
@@ -46,7 +47,7 @@ def write_pages(results: Results, directory: Path) -> Path:
     return write_page(results, directory)
 
 
-def _write_tables(results: Results, directory: Path, others: Sequence[Table]) -> None:
+def _write_tables(results: Results, directory: Path, others: Sequence[Table[Any]]) -> None:
     """others: tables that come before those of the loads."""
     directory.mkdir(parents=True, exist_ok=True)
     write_json(results, directory / "results.json")

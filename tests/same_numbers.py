@@ -30,7 +30,8 @@ COMMANDS: dict[str, tuple[str, ...]] = {  # those beside `run`, by study
     "grenier2008": ("loads",),
 }
 RENAMED: dict[str, str] = {}  # key before -> key after, in results.json and in headings of CSV
-VOLATILE = {"created", "date", "seconds", "duration", "version", "memory", "processor_seconds"}
+VOLATILE = {"created", "date", "seconds", "duration", "version", "memory", "processor_seconds",
+            "sweep", "but_count"}  # fmt: skip
 
 
 def solve(folder: Path, names: list[str]) -> None:

@@ -43,7 +43,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from assess.strength.records import BeamCheck
+from assess.opinion.records import BeamCheck
 from fea.beam.timoshenko import MOMENT, SHEAR, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from assess.situation import Situation
 from assess.strength.section_forces import section_forces
-from assess.strength.situation import Situation
 from fea.support.records import Couple
 from pinbase.dimensions import Time
 

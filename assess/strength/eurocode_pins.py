@@ -21,26 +21,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from assess.strength.margin import RATIO_DIMENSION, Margin
-from assess.strength.section_forces import SectionForces
-from assess.strength.situation import Situation
-from assess.strength.worst import Check, strength_key
+from assess.check import CheckText, check
+from assess.margin import RATIO_DIMENSION, Margin, strength_key
+from assess.situation import SectionForces, Situation
 from pinbase.arrays import Floats
 
 GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
 
 _CLAUSE = "EN 1993-1-8, 3.13"
 _TABLE = f"{_CLAUSE}.2, table 3.10"
-SHEAR_CHECK = Check("EN 1993 shear", _TABLE, "ultimate", "force")
-BEARING_CHECK = Check("EN 1993 bearing", _TABLE, "ultimate", "force")
-BENDING_CHECK = Check("EN 1993 bending", _TABLE, "ultimate", "moment")
-INTERACTION_CHECK = Check("EN 1993 shear and bending", _TABLE, "ultimate", RATIO_DIMENSION)
-BEARING_SER_CHECK = Check("EN 1993 bearing, replaceable", _TABLE, "limit", "force")
-BENDING_SER_CHECK = Check("EN 1993 bending, replaceable", _TABLE, "limit", "moment")
-CONTACT_SER_CHECK = Check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", "limit", "stress")
+_by_forces = partial(check, clause=_TABLE, kind="clause", takes="section forces")
+_by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics")
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:
@@ -85,47 +80,94 @@ def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
     return np.asarray(0.591 * np.sqrt(at.modulus * force * play / area))
 
 
-def eurocode_bending(s: Situation, forces: SectionForces) -> list[Margin]:
-    """Shear and bending of table 3.10."""
-    bending = [_bending(s, forces, BENDING_SER_CHECK)] if s.replaceable else []
-    return [*_resistances(s, forces), *bending]
-
-
-def eurocode_bearing(s: Situation) -> list[Margin]:
-    """Bearing and contact of table 3.10."""
-    if not s.replaceable:
-        return [_bearing(s, BEARING_CHECK)]
-    return [_bearing(s, BEARING_CHECK), _bearing(s, BEARING_SER_CHECK), _contact(s)]
-
-
-def _resistances(s: Situation, forces: SectionForces) -> list[Margin]:
-    """Of the pin in shear, in bending and in both."""
-    fu, fy = s.material.ultimate_strength, s.material.yield_strength
-    bending = _bending(s, forces, BENDING_CHECK)
-    needs = [
-        strength_key(s.material.name, which)
-        for which, value in (("ultimate", fu), ("yield", fy))
-        if value is None
-    ]
+@_by_forces("EN 1993 shear", level="ultimate", dimension="force")
+def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
+    """The shear force against F_v,Rd."""
+    fu = s.material.ultimate_strength
+    if s.forces.kind == "concentrated":
+        return []
     if fu is None:
-        return [SHEAR_CHECK.lacks(s, needs[0]), bending, INTERACTION_CHECK.lacks(s, *needs)]
-    sheared = np.asarray(shear_resistance(forces.of_sections("area"), fu))
-    shear = SHEAR_CHECK.along(s, forces, forces.shear, sheared)
-    if fy is None:
-        return [shear, bending, INTERACTION_CHECK.lacks(s, *needs)]
-    bent = np.asarray(bending_resistance(forces.of_sections("modulus"), fy))
+        return [text.lacks(s, strength_key(s.material.name, "ultimate"))]
+    return [text.along(s, s.forces.shear, _sheared(s.forces, fu))]
+
+
+@_by_forces("EN 1993 bending", level="ultimate", dimension="moment")
+def eurocode_bending(text: CheckText, s: Situation) -> list[Margin]:
+    """The bending moment against M_Rd."""
+    return _bending(text, s)
+
+
+@_by_forces("EN 1993 shear and bending", level="ultimate", dimension=RATIO_DIMENSION)
+def eurocode_shear_and_bending(text: CheckText, s: Situation) -> list[Margin]:
+    """The largest moment and the largest shear force of an instant together, against 1."""
+    forces, fu, fy = s.forces, s.material.ultimate_strength, s.material.yield_strength
+    if forces.kind == "concentrated":
+        return []
+    if fu is None or fy is None:
+        strengths = ("ultimate", fu), ("yield", fy)
+        missing = (strength_key(s.material.name, w) for w, value in strengths if value is None)
+        return [text.lacks(s, *missing)]
+    sheared, bent = _sheared(forces, fu), _bent(forces, fy)
     used = np.hypot((forces.moment / bent).max(axis=1), (forces.shear / sheared).max(axis=1))
     note = "root of the sum of squares; the clause's sum is its square"
-    return [shear, bending, INTERACTION_CHECK.along(s, forces, used[:, None], np.ones(1), note)]
+    return [text.along(s, used[:, None], np.ones(1), note)]
 
 
-def _bending(s: Situation, forces: SectionForces, check: Check) -> Margin:
+@_by_forces("EN 1993 bending, replaceable", dimension="moment")
+def eurocode_bending_replaceable(text: CheckText, s: Situation) -> list[Margin]:
+    """The bending moment of a replaceable pin against M_Rd,ser."""
+    return _bending(text, s, replaceable=True) if s.replaceable else []
+
+
+@_by_bands("EN 1993 bearing", level="ultimate", dimension="force")
+def eurocode_bearing(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on each band against F_b,Rd of pin and lug."""
+    return _bearing(text, s)
+
+
+@_by_bands("EN 1993 bearing, replaceable", dimension="force")
+def eurocode_bearing_replaceable(text: CheckText, s: Situation) -> list[Margin]:
+    """The force on each band of a replaceable pin against F_b,Rd,ser of pin and lug."""
+    return _bearing(text, s, replaceable=True) if s.replaceable else []
+
+
+@check("EN 1993 contact, replaceable", f"{_CLAUSE}.2(3)", kind="clause", takes="statics")
+def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
+    """The contact stress of a replaceable pin in lugs with a clearance, against 2.5 f_y."""
+    if not s.replaceable:
+        return []
+    strengths, lacking = _lower_strengths(s)
+    if lacking:
+        return [text.lacks(s, *lacking)]
+    lugs = [s.lug(name) for name in s.loads.surfaces]
+    loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.clearance > 0.0]
+    if not loose:
+        return [text.lacks(s, f"a clearance in pin.{s.pin.name}.lug")]
+    holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
+    at = PinInHole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
+    stress = contact_stress(s.across[:, loose], at)
+    allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
+    names = tuple(s.loads.surfaces[k] for k in loose)
+    found = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
+    return [replace(found, factor=math.sqrt(found.factor))]
+
+
+def _sheared(forces: SectionForces, ultimate: float) -> Floats:
+    return np.asarray(shear_resistance(forces.of_sections("area"), ultimate))
+
+
+def _bent(forces: SectionForces, strength: float, *, replaceable: bool = False) -> Floats:
+    modulus = forces.of_sections("modulus")
+    return np.asarray(bending_resistance(modulus, strength, replaceable=replaceable))
+
+
+def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> list[Margin]:
     fy = s.material.yield_strength
+    if s.forces.kind == "concentrated":
+        return []
     if fy is None:
-        return check.lacks(s, strength_key(s.material.name, "yield"))
-    modulus, ser = forces.of_sections("modulus"), check is BENDING_SER_CHECK
-    resisted = np.asarray(bending_resistance(modulus, fy, replaceable=ser))
-    return check.along(s, forces, forces.moment, resisted)
+        return [text.lacks(s, strength_key(s.material.name, "yield"))]
+    return [text.along(s, s.forces.moment, _bent(s.forces, fy, replaceable=replaceable))]
 
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
@@ -139,40 +181,20 @@ def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
     return found, list(dict.fromkeys(lacking))
 
 
-def _bearing(s: Situation, check: Check) -> Margin:
+def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> list[Margin]:
     strengths, lacking = _lower_strengths(s)
     if lacking:
-        return check.lacks(s, *lacking)
+        return [text.lacks(s, *lacking)]
     bands = [s.pin.band(name) for name in s.loads.surfaces]
     resisted = bearing_resistance(
         np.array([b.length for b in bands]),
         np.array([2.0 * b.radius for b in bands]),
         np.array(strengths),
-        replaceable=check is BEARING_SER_CHECK,
+        replaceable=replaceable,
     )
     bare = [name for name in s.loads.surfaces if s.lug(name) is None]
     basis = f"strength of the pin alone at {', '.join(bare)}: no lug given" if bare else ""
-    return check.worst(s, s.across, resisted, s.loads.surfaces, basis)
-
-
-def _contact(s: Situation) -> Margin:
-    """Of bands in lugs with a clearance."""
-    strengths, lacking = _lower_strengths(s)
-    if lacking:
-        return CONTACT_SER_CHECK.lacks(s, *lacking)
-    lugs = [s.lug(name) for name in s.loads.surfaces]
-    loose = [k for k, lug in enumerate(lugs) if lug is not None and lug.clearance > 0.0]
-    if not loose:
-        return CONTACT_SER_CHECK.lacks(s, f"a clearance in pin.{s.pin.name}.lug")
-    holes = [_hole(s, s.loads.surfaces[k]) for k in loose]
-    at = PinInHole(*(np.array(sizes) for sizes in zip(*holes, strict=True)))
-    stress = contact_stress(s.across[:, loose], at)
-    allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
-    names = tuple(s.loads.surfaces[k] for k in loose)
-    found = CONTACT_SER_CHECK.worst(
-        s, stress, allowed, names, "the factor is the root of that on loads"
-    )
-    return replace(found, factor=math.sqrt(found.factor))
+    return [text.worst(s, s.across, resisted, s.loads.surfaces, basis)]
 
 
 def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:

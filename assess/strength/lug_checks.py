@@ -21,23 +21,24 @@ edge shear, bearing); E. F. Bruhn, Analysis and Design of Flight Vehicle Structu
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 
 import numpy as np
 
-from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS
-from assess.strength.records import HandCheck
-from fea.core.pin_loads import PinLoads
+from assess.check import CheckText, WorstPlace, check
+from assess.margin import Margin
+from assess.situation import Situation
+from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
 from fea.support.lugs.lug import Lug
-from geometry import ArgumentError, Pin
+from geometry import ArgumentError
 
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
 NET_SECTION_FORMULA = "F / ((W - D) t)"
 SHEAR_OUT_FORMULA = "F / (t (sqrt(W^2 - (D sin 40°)^2) - D cos 40°))"
 BEARING_FORMULA = "F / (d t)"
 SHEAR_PLANE_ANGLE = math.radians(40.0)  # of shear-out, off the direction of the force
-NO_BUSHING_BORES: Mapping[str, float] = MappingProxyType({})
+NET_SECTION = CheckText("lug, net section", SHIGLEY_JOINTS, "hand")
+SHEAR_OUT = CheckText("lug, shear-out", BRUHN, "hand")
+BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand")
 
 
 def net_section_stress(force: float, outer: float, bore: float, thickness: float) -> float:
@@ -64,55 +65,36 @@ def bearing_stress(force: float, diameter: float, thickness: float) -> float:
     return force / (diameter * thickness)
 
 
-def lug_checks(
-    pin: Pin,
-    lugs: Sequence[Lug],
-    loads: PinLoads,
-    bores: Mapping[str, float] = NO_BUSHING_BORES,
-) -> tuple[HandCheck, ...]:
-    """Three checks of every loaded lug, at the instant when the force across the pin is largest.
-
-    pin: with a band for each lug, not cut into rings; the lug is as thick as its band is long.
-    bores: diameters of bores that hold a bushing, m, by connection; others fit the pin.
-
-    Raises: ArgumentError as `net_section_stress`; GeometryError for a band that the pin has not.
+@check("lug", SHIGLEY_JOINTS, kind="hand", takes="loads")
+def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
+    """Net section, shear-out and bearing of every loaded lug whose size is given, at the instant
+    when the force across the pin is largest. The lug is as thick as its band is long.
     """
-    return tuple(
-        check
-        for lug in lugs
-        if lug.connection in loads.surfaces
-        for check in _of_lug(pin, lug, loads, bores.get(lug.connection))
-    )
+    return [m for lug in s.sized if lug.connection in s.loads.surfaces for m in _of_lug(s, lug)]
 
 
-def _of_lug(pin: Pin, lug: Lug, loads: PinLoads, bushed: float | None) -> tuple[HandCheck, ...]:
-    band = pin.band(lug.connection)
-    x, y = loads.forces[:, loads.surfaces.index(lug.connection), :2].T
+def _of_lug(s: Situation, lug: Lug) -> list[Margin]:
+    band = s.pin.band(lug.connection)
+    x, y = s.loads.forces[:, s.loads.surfaces.index(lug.connection), :2].T
     size = np.hypot(x, y)
     t = int(size.argmax())
     force, thickness, W = float(size[t]), band.length, lug.outer_diameter
     if not force:
-        return ()
-    inside = bushed or 2.0 * band.radius
-    bore = bushed or inside + lug.clearance
-    yields = lug.material.yield_strength
-    in_shear = yields / math.sqrt(3.0) if yields else None
+        return []
+    # The pin bears on the bushing, if there is one, and that on the bore of the lug.
+    inside = 2.0 * (band.radius + (lug.bushing.thickness if lug.bushing else 0.0))
+    bore = inside if lug.bushing else inside + lug.clearance
+    material, place = lug.material, WorstPlace.at_band(band, s.loads, t)
     net = net_section_stress(force, W, bore, thickness)
     out = shear_out_stress(force, W, bore, thickness)
-    found = (
-        ("lug, net section", net, yields, NET_SECTION_FORMULA, SHIGLEY_JOINTS, "ultimate"),
-        ("lug, shear-out", out, in_shear, SHEAR_OUT_FORMULA, BRUHN, "shear"),
-        (
-            *("lug, bearing", bearing_stress(force, inside, thickness), yields),
-            *(BEARING_FORMULA, BEARING_SOURCE, "bearing"),
+    pressure, yields = bearing_stress(force, inside, thickness), material.yield_strength
+    return [
+        *NET_SECTION.at_levels(s, net, place, material, yields, "ultimate", NET_SECTION_FORMULA),
+        *SHEAR_OUT.at_levels(
+            s, out, place, material, shear_yield(material), "shear", SHEAR_OUT_FORMULA
         ),
-    )
-    time = None if loads.times is None else float(loads.times[t])
-    at, made_of = (band.name, band.middle, time), lug.material.name
-    return tuple(
-        HandCheck(name, *at, stress, strength, formula, source, made_of, ruptures)
-        for name, stress, strength, formula, source, ruptures in found
-    )
+        *BEARING.at_levels(s, pressure, place, material, yields, "bearing", BEARING_FORMULA),
+    ]
 
 
 def _require_eye(outer: float, bore: float) -> None:

@@ -11,43 +11,47 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from assess.strength.margin import Level, Margin, skipped
-from assess.strength.situation import LoadFactors
-from assess.strength.worst import strength_key
-from fea.core.material import Material
+from assess.check import CheckText, check
+from assess.margin import Margin, strength_key
+from assess.situation import Situation
 from fea.core.peak import Maximum
 
 CLAUSE = "14 CFR 25.305"
 YIELD_METHOD, RUPTURE_METHOD = "von Mises stress, yield", "von Mises stress, rupture"
-STRESS_METHODS: tuple[tuple[str, Level, str], ...] = (
-    (YIELD_METHOD, "limit", "yield"),
-    (RUPTURE_METHOD, "ultimate", "ultimate"),
-)
 
 
-def model_margins(
-    peak: Maximum, material: Material, factors: LoadFactors, required: float | None = None
-) -> list[Margin]:
-    """Both, of one pin in one case. required: the safety factor against yield that the study asks
-    for, which counts in place of a smaller factor at limit load.
+@check(YIELD_METHOD, CLAUSE, kind="model", takes="results")
+def model_yield(text: CheckText, s: Situation) -> list[Margin]:
+    """Yield at limit load. The safety factor that the study requires counts in place of a smaller
+    factor at limit load.
     """
-    demand = None if peak.max_von_mises is None else peak.upper_end
-    out = []
-    for method, level, which in STRESS_METHODS:
-        factor = factors.at(level)
-        if method == YIELD_METHOD:
-            factor = max(factor, required or 0.0)
-        strength: float | None = getattr(material, f"{which}_strength")
-        if strength is None:
-            needs = strength_key(material.name, which)
-            out.append(skipped(method, CLAUSE, level, factor, needs))
-        elif demand is None:
-            needs = f"a maximum of the model, which is {peak.verdict}"
-            out.append(skipped(method, CLAUSE, level, factor, needs))
-        else:
-            found = Margin(method, CLAUSE, level, demand, strength, factor)
-            out.append(replace(found, time=peak.time, basis=_basis(peak)))
-    return out
+    if s.row is None:
+        return []
+    margin = _margin(text, s, s.row.peak, "yield", s.material.yield_strength)
+    return [replace(margin, factor=max(margin.factor, s.row.required or 0.0))]
+
+
+@check(RUPTURE_METHOD, CLAUSE, kind="model", takes="results", level="ultimate")
+def model_rupture(text: CheckText, s: Situation) -> list[Margin]:
+    """Rupture at ultimate load."""
+    if s.row is None:
+        return []
+    return [_margin(text, s, s.row.peak, "ultimate", s.material.ultimate_strength)]
+
+
+def _margin(
+    text: CheckText, s: Situation, peak: Maximum, which: str, strength: float | None
+) -> Margin:
+    """which: the strength, as a study has it."""
+    if strength is None:
+        return text.lacks(s, strength_key(s.material.name, which))
+    if peak.max_von_mises is None:
+        return text.lacks(s, f"a maximum of the model, which is {peak.verdict}")
+    factor = s.factors.at(text.level)
+    return Margin(
+        text.method, text.clause, text.kind, text.level, factor, peak.upper_end, strength,
+        time=peak.time, material=s.material.name, basis=_basis(peak),
+    )  # fmt: skip
 
 
 def _basis(peak: Maximum) -> str:

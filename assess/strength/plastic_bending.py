@@ -22,13 +22,11 @@ import math
 
 import numpy as np
 
-from assess.strength.margin import RATIO_DIMENSION, Margin
-from assess.strength.section_forces import SectionForces
-from assess.strength.situation import Situation
-from assess.strength.worst import Check, strength_key
+from assess.check import CheckText, check
+from assess.margin import RATIO_DIMENSION, Margin, strength_key
+from assess.situation import Situation
 from fea.beam.round_section import Circle
 
-PLASTIC_CHECK = Check("plastic bending and shear", "rule of pinstress", "ultimate", RATIO_DIMENSION)
 INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque"
 
 
@@ -38,12 +36,22 @@ def plastic_shear(section: Circle, strength: float) -> float:
     return area * strength / math.sqrt(3.0)
 
 
-def plastic_margin(s: Situation, forces: SectionForces) -> Margin:
-    """Of the section that is nearest to a hinge."""
-    fy = s.material.yield_strength
+@check(
+    "plastic bending and shear",
+    "rule of pinstress",
+    kind="clause",
+    takes="section forces",
+    level="ultimate",
+    dimension=RATIO_DIMENSION,
+)
+def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
+    """The utilisation of the section that is nearest to a hinge, by even loads or the joint."""
+    forces, fy = s.forces, s.material.yield_strength
+    if forces.kind == "concentrated":
+        return []
     if fy is None:
-        return PLASTIC_CHECK.lacks(s, strength_key(s.material.name, "yield"))
+        return [text.lacks(s, strength_key(s.material.name, "yield"))]
     M = fy * forces.of_sections("plastic_modulus")
     V = np.array([plastic_shear(section, fy) for section in forces.sections])
     used = np.hypot(forces.moment / M, forces.shear / V)
-    return PLASTIC_CHECK.along(s, forces, used, np.ones(used.shape[1]), INTERACTION_RULE)
+    return [text.along(s, used, np.ones(used.shape[1]), INTERACTION_RULE)]

@@ -14,15 +14,20 @@ ways); EN 1993-1-8:2005, 3.13.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Literal
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from assess.strength.records import JOINT_MODEL_BASIS
-from assess.strength.situation import Situation
+from assess.margin import JOINT_MODEL_BASIS
+from assess.situation import NominalStress, SectionForces, Situation
 from fea.beam.line_load import acting, shares
-from fea.beam.round_section import Circle, thinnest_section
+from fea.beam.round_section import thinnest_section
 from fea.beam.stress import sample
 from fea.beam.timoshenko import MOMENT, SHEAR, InternalForces, stepped_beam
 from fea.support.records import JointForces
@@ -33,32 +38,38 @@ SHARED_COUPLE_BASIS = "the couple that is left over is shared by all bands"
 Cells = NDArray[np.intp]  # (S,) numbers of a beam's cells
 
 
-@dataclass(frozen=True)
-class SectionForces:
-    """At S stations: z (S,) m, sections, shear and moment (T, S), N and N m; labels: of the
-    segments. times: of the instants, s; basis: where they come from.
+def with_section_forces(s: Situation) -> Iterator[Situation]:
+    """The situation with each kind of section forces, the one that the study chooses first.
+
+    Where the joint was solved, its section forces govern; even loads are there for comparison, or
+    the other way round. Even loads that leave a couple over are no complete statics: the lugs carry
+    it, and only the joint model knows which, so that its section forces govern in any case.
+    Concentrated forces are a comparison beside the joint model. Without one all govern.
+
+    Raises: as `section_forces`.
     """
-
-    z: Floats
-    sections: tuple[Circle, ...]
-    labels: tuple[str, ...]
-    shear: Floats
-    moment: Floats
-    times: Floats | None
-    basis: str
-
-    def of_sections(self, name: str) -> Floats:
-        """A property of the sections, (S,)."""
-        return np.array([getattr(section, name) for section in self.sections])
+    even, concentrated = section_forces(s)
+    if s.joint is None:
+        ways = [(even, True), (concentrated, True)]
+    elif s.even_governs:
+        ways = [(even, True), (of_joint(s, s.joint), s.joint_governs), (concentrated, False)]
+    else:
+        ways = [(of_joint(s, s.joint), True), (even, False), (concentrated, False)]
+    for number, (forces, governs) in enumerate(ways):
+        yield replace(s, section_forces=forces, chosen=number == 0, governs=governs)
 
 
 def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
-    """With even loads on the bands, and with concentrated ones. Raises: as `stepped_beam`."""
+    """Section forces with even loads on the bands, and with concentrated ones.
+
+    Raises: as `stepped_beam`.
+    """
     s = replace(s, loads=s.by_formula)
     forces = stepped_beam(s.pin, s.material, acting(s.loads), s.clamps)
     c = shares(forces.loads, s.loads)
     cells, z = sample(forces)
     even = _sized(s, forces, cells, z, _values(forces, c, cells, z))
+    even = replace(even, exact=partial(_largest, s, forces, c))
     bands = [s.pin.band(name) for name in s.loads.surfaces]
     inside = np.any([(z > b.z0) & (z < b.z1) for b in bands], axis=0)
     outside = _values(forces, c, cells[~inside], z[~inside])
@@ -69,11 +80,12 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     both = np.concatenate([outside, at_bands], axis=1)
     at_middles = _sized(s, forces, there, where, both)
     middles_of = "forces at the middles of bands"
-    return even, replace(at_middles, basis=even.basis.replace(EVEN_LOAD_BASIS, middles_of))
+    basis = even.basis.replace(EVEN_LOAD_BASIS, middles_of)
+    return even, replace(at_middles, basis=basis, kind="concentrated")
 
 
 def of_joint(s: Situation, joint: JointForces) -> SectionForces:
-    """By the model of the joint, on both sides of each station."""
+    """Section forces by the model of the joint, on both sides of each station."""
     inner = np.array(s.pin.stations[1:-1])
     sides = [np.searchsorted(inner, joint.z, side=side) for side in ("left", "right")]
     segments, z = [int(i) for i in np.concatenate(sides)], np.tile(joint.z, 2)
@@ -89,6 +101,7 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
         np.tile(joint.moment, 2),
         joint.times,
         JOINT_MODEL_BASIS,
+        "joint",
     )
 
 
@@ -137,3 +150,40 @@ def _sized(
         s.loads.times,
         EVEN_LOAD_BASIS if s.balanced else f"{EVEN_LOAD_BASIS}; {SHARED_COUPLE_BASIS}",
     )
+
+
+def _largest(
+    s: Situation, forces: InternalForces, c: Floats, quantity: Literal["shear", "moment"]
+) -> NominalStress:
+    """The largest mean shear stress or bending stress, whichever its plane.
+
+    c: (T, 2, K) shares of the unit loads. The instant is found by samples; the place then exactly,
+    as the square of V or M is a polynomial between two stations.
+    """
+    component = SHEAR if quantity == "shear" else MOMENT
+    cells, z = sample(forces)
+    values = np.einsum("sk,tpk->spt", forces.inside(cells, z)[:, component], c)
+    per = np.array(
+        [
+            1.0 / x.area if quantity == "shear" else x.outer / x.inertia  # Pa per N, or per N m
+            for x in forces.sections
+        ]
+    )
+    size = np.hypot(values[:, 0], values[:, 1]) * per[cells, None]
+    k, t = np.unravel_index(size.argmax(), size.shape)
+    best = int(cells[k]), float(z[k]), float(size[k, t])
+    for cell in forces.free:
+        a, b = forces.stations[cell : cell + 2]
+        x, y = (Polynomial(forces.coefficients[cell, :, component] @ c[t, p]) for p in (0, 1))
+        square = x * x + y * y
+        for root in square.deriv().trim().roots():
+            here = float(root.real)
+            if 0.0 < here < b - a:
+                value = math.sqrt(max(float(square(here)), 0.0)) * per[cell]
+                if value > best[2]:
+                    best = cell, float(a) + here, float(value)
+    cell, at, stress = best
+    middle = 0.5 * (forces.stations[cell] + forces.stations[cell + 1])
+    label = s.pin.labels[int(np.searchsorted(s.pin.stations[1:-1], middle, side="right"))]
+    time = None if s.loads.times is None else float(s.loads.times[t])
+    return NominalStress(stress, label, at, time, forces.sections[cell])

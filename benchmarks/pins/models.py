@@ -12,11 +12,11 @@ from pinstress import load_study
 from pinstress.explore.chart.chart import ELEMENT_NAMES, ChartPlan, chart, plan_chart
 from pinstress.explore.chart.measured_process import Measured, MeasureJob, MeasureLimits, measure
 from pinstress.explore.chart.mesh_sequences import FIRST_SOLID_LEVEL
-from reports.data.chart import Chart, ChartPoint
-from reports.format.numbers import engineering
+from reports.data.chart import Chart, ChartPoint, error
+from reports.format.numbers import engineering, percent, seconds
 from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
-from reports.text.chart_summary import cost, error, percent, seconds
+from reports.text.chart_summary import cost
 
 PINS = (
     ("one_pin.toml", "B", "landing"),

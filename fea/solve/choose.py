@@ -27,9 +27,9 @@ from fea.harmonic.evaluate import Harmonic
 from fea.solid.evaluate import Solid
 from fea.solve.by_beam import by_beam
 from fea.solve.refine import refine, zones_of
-from fea.support.contact.held import RESOLUTIONS, ROUGH, Contact, HeldContact, cells_matter
-from fea.support.foundation.held import Foundation, HeldFoundation
-from fea.support.prescribed import Prescribed
+from fea.support.contact.held import RESOLUTIONS, ROUGH, ContactSupport, HeldContact, cells_matter
+from fea.support.foundation.held import FoundationSupport, HeldFoundation
+from fea.support.prescribed import PrescribedSupport
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, Support
 from geometry import ArgumentError, CutPin, Pin
 
@@ -101,7 +101,7 @@ def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
             "auto or solid",
             "not-axisymmetric",
         )
-    prescribed = Prescribed()
+    prescribed = PrescribedSupport()
     if isinstance(pin, Pin) and model in ("auto", "beam"):
         yield Rung(prescribed, _beam)
     if isinstance(pin, Pin) and model in ("auto", "harmonic"):
@@ -115,7 +115,7 @@ def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
 
 
 def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
-    joints, foundation = requirement.joints, Foundation()
+    joints, foundation = requirement.joints, FoundationSupport()
     if joints == "foundation":
         yield Rung(foundation, _foundation_requested)
     elif joints == "auto" and foundation.may_be_enough(problem, requirement):
@@ -127,7 +127,7 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
         resolutions = (ROUGH, *RESOLUTIONS)
     for cells, finer in pairwise((*resolutions, None)):
         assert cells is not None
-        yield Rung(Contact(cells, finer), _contact)
+        yield Rung(ContactSupport(cells, finer), _contact)
 
 
 def _beam(at: Attempt) -> dict[str, Solution]:

@@ -21,7 +21,7 @@ from geometry import Pin, PinLike
 MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
 
 
-class Prescribed:
+class PrescribedSupport:
     """Clamps and prescribed tractions (fea.support.support.Support)."""
 
     def hold(

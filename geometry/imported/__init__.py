@@ -1,1 +1,1 @@
-"""Pins from CAD and mesh files."""
+"""Pins from CAD and mesh files, as meshes or as recognised profiles with cuts."""

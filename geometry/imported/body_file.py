@@ -1,17 +1,20 @@
-"""A pin's shape in a file, and where on it links bear."""
+"""A file with a pin's shape, and the bands on which links bear."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
-CAD_SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")  # shapes; everything else is a mesh
+CAD_SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")  # every other file is a mesh
 
 
 @dataclass(frozen=True)
 class Place:
-    """A band: the outermost surface between two z (m, in the file's axes), or the file's surface
-    of that name; connection: whether a link of the same name bears on it.
+    """A band of a body from a file.
+
+    z: it is the outermost surface between two z, m, in the file's axes.
+    surface: or it is the file's surface of that name.
+    connection: whether a link with the band's name bears on it.
     """
 
     name: str
@@ -22,7 +25,10 @@ class Place:
 
 @dataclass(frozen=True)
 class BodyFile:
-    """unit: m per unit of the file, whose z-axis is the pin's axis."""
+    """A CAD or mesh file with the shape of a pin, whose axis is the file's z-axis.
+
+    name: of the pin. unit: m per unit of the file. places: its bands.
+    """
 
     name: str
     path: Path
@@ -31,5 +37,5 @@ class BodyFile:
 
     @property
     def meshed(self) -> bool:
-        """Whether it is a mesh already."""
+        """Whether the file is a mesh."""
         return self.path.suffix.lower() not in CAD_SUFFIXES

@@ -1,6 +1,6 @@
-"""A CAD file (STEP, BREP, IGES) as curved quadratic tetrahedra, by gmsh.
+"""The mesh of a CAD file (STEP, BREP, IGES) by curved quadratic tetrahedra of gmsh.
 
-The solid is split by planes at the edges of bands, so that these lie on edges of elements.
+The solid is split by planes at the ends of bands, so that these lie on edges of elements.
 """
 
 from __future__ import annotations
@@ -20,27 +20,29 @@ from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
 from geometry.shape.pin import GeometryError
 
-MAX_PLANE_CURVATURE = 1e-9  # curvature times the body's size below which a surface is plane
+MAX_PLANE_CURVATURE = 1e-9  # of a plane surface, times the body's size
 
 
 def cad_mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
-    """Mesh the solids of a file; its boundaries are the file's surfaces, by their names or as
-    "face 1" and so on.
+    """The mesh of the solid in a file, m.
 
-    Raises: GeometryError when the file is not geometry or has no solid; MeshError.
+    Its boundaries are the file's surfaces, by their names or as "face 1" and so on.
+
+    Raises: GeometryError when the file is not geometry or does not contain one solid; MeshError.
     """
-    small = f"very small faces and edges in {file.path.name}"
-    return sound_mesh(lambda finer: _mesh(file, finer), size, file.name, small)
+    cause = f"very small faces and edges in {file.path.name}"
+    return sound_mesh(lambda finer: _mesh(file, finer), size, file.name, cause)
 
 
 def cad_volume(file: BodyFile) -> float:
-    """Volume of the solids of a file, m^3. Raises: GeometryError as `cad_mesh`."""
+    """Volume of the solid in a file, m^3. Raises: GeometryError as `cad_mesh`."""
     with gmsh_model(file.name) as gmsh:
         solids = solids_of(gmsh, file)
         return float(sum(gmsh.model.occ.getMass(*s) for s in solids)) * file.unit**3
 
 
 def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
+    """A mesh of the solid of this size, m, after repair."""
     with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
         solids = solids_of(gmsh, file)
         z = dict.fromkeys(v for place in file.places if place.z for v in place.z)
@@ -55,6 +57,10 @@ def _mesh(file: BodyFile, size: MeshSize) -> SolidMesh:
 
 
 def solids_of(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
+    """Read a CAD file into gmsh's model; returns the entity of its only solid, in a list.
+
+    Raises: GeometryError when the file is not geometry or does not contain one solid.
+    """
     try:
         gmsh.option.setNumber("Geometry.OCCImportLabels", 0)
         with silence():
@@ -77,16 +83,18 @@ def solids_of(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
         )
     if len(solids) > 1:
         raise GeometryError(
-            f"pin {file.name}: {file.path.name} contains {len(solids)} solids, but a pin is one: "
-            "export it alone, or unite them",
+            f"pin {file.name}: {file.path.name} contains {len(solids)} solids, but a pin must be "
+            "one: export it alone, or unite them",
             "several-pieces",
         )
     return solids
 
 
 def face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
-    """Names of a file's faces by gmsh's tags: gmsh numbers them as the shells of a STEP file list
-    them, but does not hand on their names.
+    """Names of a file's faces by gmsh's tags (`tags`, in order).
+
+    gmsh numbers faces in the order in which the shells of a STEP file list them, but does not pass
+    on their names.
     """
     names = [f"face {tag}" for tag in tags]
     if file.path.suffix.lower() in (".step", ".stp"):
@@ -102,7 +110,7 @@ def face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
 def _split(
     gmsh: Any, file: BodyFile, solids: list[tuple[int, int]], cuts: Iterable[float]
 ) -> dict[str, list[int]]:
-    """Split the solids at z = `cuts`; tags of the boundary's faces by name."""
+    """Split the solids at z = `cuts` (file's unit); returns tags of the surface's faces by name."""
     model, occ = gmsh.model, gmsh.model.occ
     tags = [tag for _, tag in model.getEntities(2)]
     names = face_names(file, tags)
@@ -111,7 +119,7 @@ def _split(
     inner = [z for z in cuts if z0 + 1e-6 * size < z < z1 - 1e-6 * size]
     if not inner:
         return _by_name({tag: [tag] for tag in tags}, names)
-    # gmsh reports wrongly here which face becomes which: compare with copies of the whole faces
+    # gmsh reports wrongly which face becomes which here: compare pieces with copies of whole faces.
     whole = [tag for _, tag in occ.copy([(2, tag) for tag in tags])]
     extent = (x0 - size, y0 - size), (x1 - x0 + 2 * size, y1 - y0 + 2 * size)
     planes = [(2, occ.addRectangle(*extent[0], z, *extent[1])) for z in inner]
@@ -122,13 +130,14 @@ def _split(
     for _, face in model.getBoundary(volumes, oriented=False):
         k = _same_surface(gmsh, face, whole, 1e-5 * size)
         pieces_of.setdefault(tags[k], []).append(face)
-    kept = {t for _, t in model.getBoundary(volumes, combined=False, oriented=False)}
-    occ.remove([e for e in model.getEntities(2) if e[1] not in kept], recursive=True)
+    bounding = {t for _, t in model.getBoundary(volumes, combined=False, oriented=False)}
+    occ.remove([e for e in model.getEntities(2) if e[1] not in bounding], recursive=True)
     occ.synchronize()
     return _by_name(pieces_of, names)
 
 
 def _by_name(pieces: dict[int, list[int]], names: dict[int, str]) -> dict[str, list[int]]:
+    """Tags of pieces by the names of the faces of which they are parts."""
     named: dict[str, list[int]] = {}
     for tag, faces in pieces.items():
         named.setdefault(names[tag], []).extend(faces)
@@ -136,61 +145,63 @@ def _by_name(pieces: dict[int, list[int]], names: dict[int, str]) -> dict[str, l
 
 
 def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
-    """Which of the faces `whole` the face is a part of: within its box, and on it."""
+    """Index of the face among `whole` of which a face is a part: it lies in its box and on it."""
     model = gmsh.model
     around = model.getBoundary([(2, face)], combined=False, oriented=False)
     x = np.concatenate([_on(gmsh, curve) for _, curve in around])
-    off = np.full(len(whole), np.inf)
+    distance = np.full(len(whole), np.inf)
     for k, other in enumerate(whole):
         box = np.array(model.getBoundingBox(2, other)).reshape(2, 3)
         inside = (x > box[0] - slack).all() and (x < box[1] + slack).all()
         if inside and model.getType(2, other) == model.getType(2, face):
             nearest = np.reshape(model.getClosestPoint(2, other, x.ravel())[0], (-1, 3))
-            off[k] = np.abs(nearest - x).max()
-    return int(np.argmin(off))
+            distance[k] = np.abs(nearest - x).max()
+    return int(np.argmin(distance))
 
 
 def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
-    """By the curvature of every face, and finer at the edges of bands."""
+    """Set the element size by the curvature of every face, finer at the ends of bands."""
     model = gmsh.model
     x0, y0, z0, x1, y1, z1 = model.getBoundingBox(-1, -1)
-    whole = max(x1 - x0, y1 - y0, z1 - z0)
+    body_size = max(x1 - x0, y1 - y0, z1 - z0)
     far = min(x1 - x0, y1 - y0) / size.across
     tags = []
     for _, face in model.getBoundary(model.getEntities(3), oriented=False):
-        radius, coaxial = _curvature(gmsh, face, whole)
+        radius, coaxial = _curvature(gmsh, face, body_size)
         if radius < math.inf:
             h = 2.0 * radius / size.across
             if not coaxial:
                 h = min(math.pi / 2 * radius / size.arc, math.pi * radius / size.across)
             tags.append(near(gmsh, "SurfacesList", [face], min(h, far), size.growth))
-    rims = [c for _, c in model.getEntities(1) if _lies_at(gmsh, c, cuts, 1e-6 * whole)]
+    rims = [c for _, c in model.getEntities(1) if _lies_at(gmsh, c, cuts, 1e-6 * body_size)]
     if rims:
         thin = min([far, *(2.0 * _reach(gmsh, c) / size.across for c in rims)])
         tags.append(near(gmsh, "CurvesList", rims, thin / size.corner, size.growth))
     set_size(gmsh, [*tags, formula_size(gmsh, f"{far!r}")])
 
 
-def _curvature(gmsh: Any, face: int, whole: float) -> tuple[float, bool]:
+def _curvature(gmsh: Any, face: int, body_size: float) -> tuple[float, bool]:
     """Smallest radius of curvature of a face, and whether it is a cylinder about the z-axis."""
     low, high = gmsh.model.getParametrizationBounds(2, face)
     u, v = (np.linspace(a, b, 5)[1:-1] for a, b in zip(low, high, strict=True))
     at = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
     largest = max(np.abs(k).max() for k in gmsh.model.getPrincipalCurvatures(face, at.ravel())[:2])
-    if largest * whole < MAX_PLANE_CURVATURE:
+    if largest * body_size < MAX_PLANE_CURVATURE:
         return math.inf, False
     x = np.reshape(gmsh.model.getValue(2, face, at.ravel()), (-1, 3))
     r = np.hypot(x[:, 0], x[:, 1])
-    coaxial = gmsh.model.getType(2, face) == "Cylinder" and np.ptp(r) < 1e-6 * whole
+    coaxial = gmsh.model.getType(2, face) == "Cylinder" and np.ptp(r) < 1e-6 * body_size
     return float(1.0 / largest), bool(coaxial and abs(r[0] * largest - 1.0) < 1e-6)
 
 
 def _lies_at(gmsh: Any, curve: int, cuts: list[float], slack: float) -> bool:
+    """Whether a curve lies in one of the planes z = `cuts`."""
     z = _on(gmsh, curve)[:, 2]
     return any(float(np.abs(z - cut).max()) < slack for cut in cuts)
 
 
 def _reach(gmsh: Any, curve: int) -> float:
+    """Largest distance of a curve from the z-axis."""
     x = _on(gmsh, curve)
     return float(np.hypot(x[:, 0], x[:, 1]).max())
 

@@ -27,26 +27,28 @@ CHORD_NODE_TOLERANCE = 0.05  # of an arc's sag: a middle node nearer to the chor
 MAX_STRAIGHT_SHARE = 0.5  # of the arcs; some edges lie on no arc
 
 
-def here(work: Callable[..., Any], *arguments: object) -> Any:
-    """Run `work` in this process."""
+def call_directly(work: Callable[..., Any], *arguments: object) -> Any:
+    """The result of `work`, run in this process."""
     return work(*arguments)
 
 
 @dataclass(frozen=True)
 class SolidBody:
-    """The body in a file, with its bands measured. call: runs `work(file, ...)`, in another process
-    if wanted, since the libraries that read the file crash on some damaged ones. source: why it is
-    not a profile, for people.
+    """The body in a file, with its bands measured on a mesh.
+
+    call: runs `work(file, ...)`; it may use another process, since the libraries that read the file
+    crash on some damaged ones.
+    source: the reason why it is not a profile, for people.
 
     Raises: GeometryError when the file is missing or not a solid, or a band is not on it;
     MeshError when it cannot be meshed.
     """
 
     file: BodyFile
-    call: Callable[..., Any] = field(default=here, compare=False, repr=False)
+    call: Callable[..., Any] = field(default=call_directly, compare=False, repr=False)
     source: str = field(default="", compare=False)
 
-    revolved: ClassVar[bool] = False  # not known to be
+    revolved: ClassVar[bool] = False  # at least it is not known to be
 
     def __post_init__(self) -> None:
         if not self.file.path.is_file():
@@ -64,34 +66,38 @@ class SolidBody:
 
     @cached_property
     def _coarse(self) -> SolidMesh:
+        """The coarse mesh on which the body is measured."""
         return self.mesh(MEASURING_MESH_SIZE)
 
     def mesh(self, size: MeshSize) -> SolidMesh:
-        """A mesh of this size; the elements of a mesh file are halved once for every factor of two
-        by which `size` is finer than the default.
+        """A mesh of this size.
+
+        The elements of a mesh file are halved once for every factor of two by which `size` is finer
+        than the default.
         """
         if not self.meshed:
-            made: SolidMesh = self.call(cad_mesh, self.file, size)
-            return SolidMesh(with_places(made.mesh, self.file), made.jacobian, made.repaired)
-        made = self._read
-        mesh = with_places(made.mesh, self.file)
+            solid: SolidMesh = self.call(cad_mesh, self.file, size)
+            return SolidMesh(with_places(solid.mesh, self.file), solid.jacobian, solid.repaired)
+        solid = self._read
+        mesh = with_places(solid.mesh, self.file)
         for _ in range(round(np.log2(max(size.across / MeshSize().across, 1.0)))):
             mesh = refined(mesh)
-        return SolidMesh(mesh, made.jacobian, made.repaired)
+        return SolidMesh(mesh, solid.jacobian, solid.repaired)
 
     @cached_property
     def _read(self) -> SolidMesh:
-        found: SolidMesh = self.call(mesh_from_file, self.file)
-        return found
+        """The mesh in a mesh file."""
+        solid: SolidMesh = self.call(mesh_from_file, self.file)
+        return solid
 
     @property
     def name(self) -> str:
-        """The pin's."""
+        """Name of the pin."""
         return self.file.name
 
     @property
     def meshed(self) -> bool:
-        """Whether it comes with a mesh."""
+        """Whether its file is a mesh."""
         return self.file.meshed
 
     @cached_property
@@ -107,7 +113,7 @@ class SolidBody:
 
     @cached_property
     def volume(self) -> float:
-        """m^3: of the CAD file's solids, or of the mesh."""
+        """Volume of the CAD file's solid, or of the mesh, m^3."""
         if not self.meshed:
             volume: float = self.call(cad_volume, self.file)
             return volume
@@ -117,23 +123,25 @@ class SolidBody:
 
     @cached_property
     def cut_off(self) -> float:
-        """Approximate fraction of the volume by which a file's mesh is wrong, because its elements'
-        sides are straight where the surface is curved.
+        """Approximate fraction of the volume that a file's mesh cuts off.
+
+        It does so where sides of its elements are straight although the surface is curved.
         """
         return _cut_off(self._coarse.mesh) / self.volume if self.meshed else 0.0
 
     @property
     def connections(self) -> tuple[str, ...]:
-        """Bands on which links bear, by z."""
+        """Names of the bands on which links bear, in order of z."""
         bands = (self.band(p.name) for p in self.file.places if p.connection)
         return tuple(b.name for b in sorted(bands, key=lambda b: b.middle))
 
     @cached_property
     def _bands(self) -> dict[str, Band]:
+        """All bands by name, measured."""
         return {p.name: measure(self._coarse.mesh, p) for p in self.file.places}
 
     def band(self, name: str) -> Band:
-        """A band by name, measured. Raises: GeometryError listing the names there are."""
+        """The measured band of this name. Raises: GeometryError that lists the names there are."""
         if name not in self._bands:
             raise self._unknown(name)
         return self._bands[name]
@@ -141,13 +149,14 @@ class SolidBody:
     def surface(self, name: str) -> str:
         """The mesh boundary of that name: a band, a surface of the file, "start" or "end".
 
-        Raises: GeometryError listing the names there are.
+        Raises: GeometryError that lists the names there are.
         """
         if name not in self._coarse.mesh.boundaries:
             raise self._unknown(name)
         return name
 
     def _unknown(self, name: str) -> GeometryError:
+        """The error of a name that is no surface."""
         known = ", ".join(self._coarse.mesh.boundaries)
         return GeometryError(
             f"pin {self.name} has no surface {name!r}; its surfaces are {known}", "unknown-surface"

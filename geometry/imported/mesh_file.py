@@ -1,4 +1,4 @@
-"""A mesh of tetrahedra from a file, by meshio, as quadratic tetrahedra with named surfaces."""
+"""The mesh in a file, read by meshio, as quadratic tetrahedra with named surfaces."""
 
 from __future__ import annotations
 
@@ -20,15 +20,17 @@ from geometry.shape.pin import GeometryError
 from pinbase.arrays import Ints
 
 SURFACE_CELLS = ("triangle", "triangle6")
-MAX_COORDINATE = 1000.0  # m; as pins with a profile
+MAX_COORDINATE = 1000.0  # m; the limit for profiles, too
 ACCEPTED_CELLS = ("vertex", "line", "line3", *SURFACE_CELLS)
 
 
 def mesh_from_file(file: BodyFile) -> SolidMesh:
-    """Quadratic tetrahedra (m) of a file, linear ones given straight sides; its boundaries are the
-    file's named sets of triangles, or of nodes.
+    """The mesh in a file by quadratic tetrahedra, m; linear ones are given straight sides.
 
-    Raises: GeometryError when the file is not a mesh of tetrahedra; MeshError when one is inverted.
+    Its boundaries are the file's named sets of triangles, or of nodes.
+
+    Raises: GeometryError when the file is not a mesh of tetrahedra in one piece; MeshError when
+    elements are inverted or overlap.
     """
     mesh = _read(file)
     where = f"pin {file.name}: {file.path.name}"
@@ -37,8 +39,7 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
     if not (np.isfinite(points).all() and np.abs(points).max() < MAX_COORDINATE / file.unit):
         raise GeometryError(
             f"{where}: it has nodes whose coordinates are not finite or exceed "
-            f"{MAX_COORDINATE:g} m; "
-            "check geometry_unit, or export it again",
+            f"{MAX_COORDINATE:g} m; check geometry_unit, or export it again",
             "bad-nodes",
         )
     cells = np.concatenate([b.data for b in mesh.cells if b.type.startswith("tetra")])
@@ -50,33 +51,33 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
                 f"{where}: the file is damaged: elements refer to nodes that do not exist",
                 "unknown-nodes",
             )
-    made = quadratic(points * file.unit, cells.astype(np.int64))
-    shape = distortion(made)
-    if wrong := int(np.sum(~(shape > 0.0))):
+    tetrahedra = quadratic(points * file.unit, cells.astype(np.int64))
+    jacobians = distortion(tetrahedra)
+    if inverted := int(np.sum(~(jacobians > 0.0))):
         raise MeshError(
-            f"{where}: {wrong} elements are inverted (their Jacobian is not positive); repair them "
-            "in the program that made the mesh",
+            f"{where}: {inverted} elements are inverted (their Jacobian is not positive); repair "
+            "them in the program that made the mesh",
             "inverted-elements",
         )
-    if wrong := folded(made.mesh):
+    if overlaps := folded(tetrahedra.mesh):
         raise MeshError(
-            f"{where}: elements overlap their neighbours at {wrong} facets; repair them in the "
+            f"{where}: elements overlap their neighbours at {overlaps} facets; repair them in the "
             "program that made the mesh",
             "overlapping-elements",
         )
-    if (pieces := _pieces(made.mesh)) > 1:
+    if (pieces := _pieces(tetrahedra.mesh)) > 1:
         raise GeometryError(
             f"{where}: the mesh consists of {pieces} pieces that share no facet, but a pin is one "
             "piece: merge coincident nodes, or export the pin alone",
             "several-pieces",
         )
-    found = {name: find_facets(made, t) for name, t in named.items() if len(t)}
+    boundaries = {name: find_facets(tetrahedra, t) for name, t in named.items() if len(t)}
     for name, nodes in sets.items():
-        facets = made.mesh.facets[:, made.mesh.boundary_facets()].T
-        on = np.isin(facets, made.vertex[nodes]).all(axis=1)
-        if on.any():
-            found.setdefault(name, made.mesh.boundary_facets()[on])
-    return SolidMesh(made.mesh.with_boundaries(found), float(shape.min()), 0)
+        facets = tetrahedra.mesh.facets[:, tetrahedra.mesh.boundary_facets()].T
+        in_set = np.isin(facets, tetrahedra.vertex[nodes]).all(axis=1)
+        if in_set.any():
+            boundaries.setdefault(name, tetrahedra.mesh.boundary_facets()[in_set])
+    return SolidMesh(tetrahedra.mesh.with_boundaries(boundaries), float(jacobians.min()), 0)
 
 
 def _require_tetrahedra(kinds: set[str], where: str) -> None:
@@ -101,15 +102,16 @@ def _require_tetrahedra(kinds: set[str], where: str) -> None:
 
 
 def _read(file: BodyFile) -> meshio.Mesh:
+    """The file as meshio reads it. Raises: GeometryError where it cannot."""
     try:
-        # meshio prints its warnings, and finds a format by trying several
+        # meshio prints warnings while it tries several formats.
         printed = io.StringIO()
         with redirect_stdout(printed), redirect_stderr(printed), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return meshio.read(file.path)
     except MemoryError:
         raise
-    except SystemExit:  # how meshio ends when no format it knows is right
+    except SystemExit:  # meshio exits when no format fits
         known = file.path.suffix.lower() in meshio.extension_to_filetypes
         reason = "it is damaged" if known else "its suffix is not that of a mesh format"
     except Exception as error:
@@ -122,7 +124,7 @@ def _read(file: BodyFile) -> meshio.Mesh:
 
 
 def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
-    """Corner nodes (T, 3) of the triangles of every named set."""
+    """Corner nodes (T, 3) of the triangles of every named set, by name."""
     out: dict[str, list[Ints]] = {}
     for name, blocks in mesh.cell_sets.items():
         if name.startswith("gmsh:"):
@@ -139,7 +141,7 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
 
 
 def _pieces(mesh: MeshTet2) -> int:
-    """How many bodies there are that are joined by no facet."""
+    """Number of pieces of a mesh that are not joined by a facet."""
     first, second = mesh.f2t[:, mesh.f2t[1] >= 0]
     n = mesh.nelements
     joined = sp.coo_matrix((np.ones(len(first)), (first, second)), shape=(n, n))

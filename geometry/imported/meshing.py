@@ -16,13 +16,16 @@ from geometry.shape.pin_like import PinLike
 def solid_mesh(
     pin: PinLike, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
 ) -> SolidMesh:
-    """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at,
-    which for a body from a file are the ends of its bands.
+    """The mesh of a pin.
+
+    edges: z of further circles on the surface at which it is refined, m; for a body from a file
+    these are the ends of its bands.
+    element: kind of tetrahedra.
 
     Raises: MeshError.
     """
     if isinstance(pin, SolidBody):
-        made = pin.mesh(size)
-        return replace(made, mesh=with_element(made.mesh, element))
+        solid = pin.mesh(size)
+        return replace(solid, mesh=with_element(solid.mesh, element))
     assert isinstance(pin, Pin | CutPin)
     return turned.solid_mesh(pin, size, edges, element)

@@ -1,4 +1,4 @@
-"""Bands and end faces of a body, found on its mesh."""
+"""The bands and end faces of a body, identified on its mesh."""
 
 from __future__ import annotations
 
@@ -11,27 +11,30 @@ from geometry.imported.body_file import BodyFile, Place
 from geometry.shape.pin import END_FACES, Band, GeometryError
 from pinbase.arrays import Floats, Ints, Mask
 
-MIN_OUTWARD_COSINE = 0.5  # cosine to the radius above which a facet belongs to an outer surface
-MAX_FACET_DEPTH = 0.02  # of the local radius: how far below it corners of a band's facets may lie
-BAND_END_SLACK = 1e-6  # of the body's length
+MIN_OUTWARD_COSINE = 0.5  # between normal and radius, of a facet of an outer surface
+MAX_FACET_DEPTH = 0.02  # of the corners of a band's facets below the local radius, over that radius
+BAND_END_SLACK = 1e-6  # of the body's length: facets this close to an end lie in it
 
 
 @dataclass(frozen=True)
 class MeasuredBand(Band):
-    """A band whose area (m^2) and mean radius are those of the mesh."""
+    """A band whose area and mean radius are those of the mesh. measured: its area, m^2."""
 
     measured: float = 0.0
 
     @property
     def area(self) -> float:
-        """m^2."""
+        """Area on the mesh, m^2."""
         return self.measured
 
 
 @dataclass(frozen=True)
 class Facets:
-    """The boundary: facets (F,) by number, corners (F, 3, 3) m, normals (F, 3) outward with the
-    area as length, m^2; linear between the corners.
+    """The boundary facets of a mesh, taken as plane.
+
+    number: (F,) in the mesh.
+    corners: (F, 3, 3) m.
+    normals: (F, 3) outward, with the area as length, m^2.
     """
 
     number: Ints
@@ -40,12 +43,12 @@ class Facets:
 
     @property
     def areas(self) -> Floats:
-        """(F,) m^2."""
+        """Areas of the facets, (F,) m^2."""
         return np.asarray(np.linalg.norm(self.normals, axis=1))
 
 
 def facets(mesh: MeshTet2) -> Facets:
-    """The boundary of a mesh."""
+    """The boundary facets of a mesh."""
     number = mesh.boundary_facets()
     x = mesh.doflocs.T
     corners = x[mesh.facets[:, number].T]
@@ -57,24 +60,26 @@ def facets(mesh: MeshTet2) -> Facets:
 
 
 def with_places(mesh: MeshTet2, file: BodyFile) -> MeshTet2:
-    """The mesh with the file's bands among its boundaries, and "start" and "end" where there are
-    plane faces at the least and greatest z.
+    """The mesh with the file's bands among its boundaries.
 
-    Raises: GeometryError when a band is not on it.
+    Plane faces at the least and greatest z become "start" and "end".
+
+    Raises: GeometryError when a band is not on the mesh.
     """
     named: dict[str, Ints] = dict(mesh.boundaries or {})
-    here = facets(mesh)
-    z = here.corners[..., 2]
+    surface = facets(mesh)
+    z = surface.corners[..., 2]
     slack = BAND_END_SLACK * np.ptp(z)
     for name, at in zip(END_FACES, (z.min(), z.max()), strict=True):
         flat = (np.abs(z - at) < slack).all(axis=1)
         if flat.any():
-            named.setdefault(name, here.number[flat])
-    found = {p.name: _find(here, named, p, file) for p in file.places}
-    return mesh.with_boundaries({**named, **found})
+            named.setdefault(name, surface.number[flat])
+    bands = {p.name: _band_facets(surface, named, p, file) for p in file.places}
+    return mesh.with_boundaries({**named, **bands})
 
 
-def _find(here: Facets, named: dict[str, Ints], place: Place, file: BodyFile) -> Ints:
+def _band_facets(surface: Facets, named: dict[str, Ints], place: Place, file: BodyFile) -> Ints:
+    """Numbers of the facets of a band. Raises: GeometryError when there are none."""
     where = f"pin {file.name}: band {place.name}"
     if place.surface is not None:
         if place.surface not in named:
@@ -87,9 +92,9 @@ def _find(here: Facets, named: dict[str, Ints], place: Place, file: BodyFile) ->
             )
         return named[place.surface]
     assert place.z is not None
-    on = outermost(here, *place.z)
+    on = outermost(surface, *place.z)
     if not on.any():
-        low, high = here.corners[..., 2].min(), here.corners[..., 2].max()
+        low, high = surface.corners[..., 2].min(), surface.corners[..., 2].max()
         a, b, low, high = (v / file.unit for v in (*place.z, low, high))
         raise GeometryError(
             f"{where}: no outer surface between z = {a:.6g} and {b:.6g} in {file.path.name}, "
@@ -98,24 +103,26 @@ def _find(here: Facets, named: dict[str, Ints], place: Place, file: BodyFile) ->
             "band-not-found",
             ("band", place.name),
         )
-    return here.number[on]
+    return surface.number[on]
 
 
-def outermost(here: Facets, z0: float, z1: float) -> Mask:
-    """Which facets have their middle between z0 and z1 (m) and, at their z, lie furthest from the
-    z-axis, facing away from it.
+def outermost(surface: Facets, z0: float, z1: float) -> Mask:
+    """Mask (F,) of the facets of the outermost surface between z0 and z1 (m).
+
+    Their middle lies between these, they face away from the z-axis, and at their z no other such
+    facet lies further from it.
     """
-    middle = here.corners.mean(axis=1)
+    middle = surface.corners.mean(axis=1)
     r = np.hypot(middle[:, 0], middle[:, 1])
-    facing = (
-        np.sum(middle[:, :2] * here.normals[:, :2], axis=1) > MIN_OUTWARD_COSINE * r * here.areas
-    )
+    outward = np.sum(middle[:, :2] * surface.normals[:, :2], axis=1)
+    facing = outward > MIN_OUTWARD_COSINE * r * surface.areas
     on = (middle[:, 2] > z0) & (middle[:, 2] < z1) & facing
     candidates = np.flatnonzero(on)
+    # Compare each candidate with the largest radius of those in its range of z.
     candidates = candidates[np.argsort(middle[candidates, 2])]
-    height, radius = middle[candidates, 2], np.hypot(*np.moveaxis(here.corners, -1, 0)[:2])
+    height, radius = middle[candidates, 2], np.hypot(*np.moveaxis(surface.corners, -1, 0)[:2])
     largest = radius[candidates].max(axis=1, initial=0.0)
-    z = here.corners[candidates][..., 2]
+    z = surface.corners[candidates][..., 2]
     first = np.searchsorted(height, z.min(axis=1, initial=np.inf))
     last = np.searchsorted(height, z.max(axis=1, initial=-np.inf))
     for i, facet in enumerate(candidates):
@@ -125,7 +132,7 @@ def outermost(here: Facets, z0: float, z1: float) -> Mask:
 
 
 def measure(mesh: MeshTet2, place: Place) -> MeasuredBand:
-    """A band's ends, mean radius and area on the mesh."""
+    """A band with its ends, mean radius and area on the mesh."""
     basis = FacetBasis(mesh, ElementTetP2(), facets=mesh.boundaries[place.name], intorder=4)
     x, weight = np.asarray(basis.global_coordinates()), np.asarray(basis.dx)
     z = mesh.doflocs[2, mesh.facets[:, mesh.boundaries[place.name]]]

@@ -1,4 +1,4 @@
-"""From the sides of a section, found face by face, to its outlines by corners and radii."""
+"""The outlines of a section by corners and radii, from its sides as recognised face by face."""
 
 from __future__ import annotations
 
@@ -19,8 +19,12 @@ QUARTER_TURN = math.pi / 2.0 * (1.0 + 1e-9)
 
 @dataclass(frozen=True)
 class MeridianSide:
-    """A straight or round part of the outline from (r, z) to (r, z); of round ones the centre, and
-    the angle by which they turn to the left from start to end. name: of its face.
+    """A straight or circular part of the outline.
+
+    start, end: (r, z).
+    centre: of a circular part; None for a straight one.
+    turn: angle by which a circular part turns to the left from start to end, rad.
+    name: of its face.
     """
 
     start: RZ
@@ -31,19 +35,20 @@ class MeridianSide:
 
     @staticmethod
     def of(face: SampledFace, to_axis: bool, size: float) -> MeridianSide | None:
-        """Of a face of revolution about the z-axis; None where it is neither straight nor round.
+        """The side of a face of revolution about the z-axis; None if not straight or circular.
 
-        to_axis: whether the axis goes through it, if it is plane.
+        to_axis: whether a plane face reaches the axis.
+        size: of the body.
         """
         r, z = np.hypot(face.points[:, 0], face.points[:, 1]), face.points[:, 2]
         out = np.sum(face.points[:, :2] * face.normals[:, :2], axis=1)
         normals = np.stack([out / np.maximum(r, FACE_TOLERANCE * size), face.normals[:, 2]], axis=1)
-        off = r > 1e-3 * size * FACE_TOLERANCE
-        rz, normals = np.stack([r, z], axis=1)[off], normals[off]
+        off_axis = r > 1e-3 * size * FACE_TOLERANCE
+        rz, normals = np.stack([r, z], axis=1)[off_axis], normals[off_axis]
         rim = np.stack([np.hypot(face.rim[:, 0], face.rim[:, 1]), face.rim[:, 2]], axis=1)
         if np.ptp(normals, axis=0).max() < 10.0 * FACE_TOLERANCE:
             return _straight(face, rz, rim, normals[0], to_axis)
-        return _round(np.vstack([np.stack([r, z], axis=1), rim]), rz, normals, size, face.name)
+        return _circular(np.vstack([np.stack([r, z], axis=1), rim]), rz, normals, size, face.name)
 
     @property
     def cylinder(self) -> bool:
@@ -53,27 +58,27 @@ class MeridianSide:
 
     @property
     def radius(self) -> float:
-        """Of a round one."""
+        """Radius of a circular side; 0 for a straight one."""
         return math.dist(self.start, self.centre) if self.centre else 0.0
 
     def reversed(self) -> MeridianSide:
-        """The same from its end to its start."""
+        """The same side from its end to its start."""
         return replace(self, start=self.end, end=self.start, turn=-self.turn)
 
     def quarters(self) -> Iterator[MeridianSide]:
-        """The same in parts that turn by a right angle at most."""
+        """The same side in parts that turn by at most a right angle."""
         if self.centre is None:
             yield self
             return
         count = math.ceil(abs(self.turn) / QUARTER_TURN)
         at = [self.start]
         for k in range(1, count):
-            at.append(_turned_about(self.centre, self.start, self.turn * k / count))
+            at.append(_rotated(self.centre, self.start, self.turn * k / count))
         for a, b in zip(at, [*at[1:], self.end], strict=True):
             yield replace(self, start=a, end=b, turn=self.turn / count)
 
     def tangent(self) -> RZ:
-        """Unit vector at its start."""
+        """Unit tangent at its start."""
         if self.centre is None:
             length = math.dist(self.start, self.end)
             return (self.end[0] - self.start[0]) / length, (self.end[1] - self.start[1]) / length
@@ -89,34 +94,38 @@ def _straight(
     normal: Floats,
     to_axis: bool,
 ) -> MeridianSide:
-    every = rim if face.plane else np.vstack([rz, rim])
+    """A straight side through points rz and rim (P, 2) with a normal (2,)."""
+    points = rim if face.plane else np.vstack([rz, rim])
     along = np.array([-normal[1], normal[0]])
-    at = every @ along
-    low, high = every[int(at.argmin())], every[int(at.argmax())]
+    at = points @ along
+    low, high = points[int(at.argmin())], points[int(at.argmax())]
     if face.plane and to_axis:
-        wide = max(_pair(low), _pair(high))
-        return MeridianSide((0.0, wide[1]), wide, None, 0.0, face.name)
+        outer = max(_pair(low), _pair(high))
+        return MeridianSide((0.0, outer[1]), outer, None, 0.0, face.name)
     return MeridianSide(_pair(low), _pair(high), None, 0.0, face.name)
 
 
-def _round(
-    every: Floats, rz: Floats, normals: Floats, size: float, name: str
+def _circular(
+    points: Floats, rz: Floats, normals: Floats, size: float, name: str
 ) -> MeridianSide | None:
-    """A circle p = c + rho n through points with normals."""
+    """A circular side through points, or None, by least squares p = c + rho n.
+
+    points: (P, 2) that it covers. rz, normals: (Q, 2) those from which it is fitted.
+    """
     count = len(rz)
     rows = np.zeros((2 * count, 3))
     rows[:count, 0], rows[count:, 1] = 1.0, 1.0
     rows[:, 2] = normals.T.ravel()
-    found, *_ = np.linalg.lstsq(rows, rz.T.ravel(), rcond=None)
-    if np.abs(rows @ found - rz.T.ravel()).max() > 10.0 * FACE_TOLERANCE * size:
+    solution, *_ = np.linalg.lstsq(rows, rz.T.ravel(), rcond=None)
+    if np.abs(rows @ solution - rz.T.ravel()).max() > 10.0 * FACE_TOLERANCE * size:
         return None
-    centre = found[:2]
-    way = every - centre
+    centre = solution[:2]
+    arm = points - centre
     middle = (rz - centre).mean(axis=0)
-    angle = np.arctan2(middle[0] * way[:, 1] - middle[1] * way[:, 0], way @ middle)
+    angle = np.arctan2(middle[0] * arm[:, 1] - middle[1] * arm[:, 0], arm @ middle)
     low, high = int(angle.argmin()), int(angle.argmax())
     turn = float(angle[high] - angle[low])
-    start, end = _pair(every[low]), _pair(every[high])
+    start, end = _pair(points[low]), _pair(points[high])
     return MeridianSide(start, end, (float(centre[0]), float(centre[1])), turn, name)
 
 
@@ -124,19 +133,22 @@ def _pair(point: Floats) -> RZ:
     return float(point[0]), float(point[1])
 
 
-def _turned_about(centre: RZ, at: RZ, angle: float) -> RZ:
+def _rotated(centre: RZ, at: RZ, angle: float) -> RZ:
+    """A point rotated about a centre."""
     c, s = math.cos(angle), math.sin(angle)
     r, z = at[0] - centre[0], at[1] - centre[1]
     return centre[0] + c * r - s * z, centre[1] + s * r + c * z
 
 
 def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], list[Bend]]:
-    """Corners of the outer surface and of the bore (none of a solid body), in order of z.
+    """Corners of the outer surface and of the bore (empty for a solid body), in order of z.
 
-    near: distance within which two places are one. Raises: ValueError where the sides do not make
-    one outline.
+    near: distance within which two points are one.
+
+    Raises: ValueError where the sides do not form one outline.
     """
-    chain = _chain(_whole(sides, near), near)
+    # The outer surface runs between the outermost points of both end faces.
+    chain = _chain(_connected(sides, near), near)
     places = [chain[0].start, *(side.end for side in chain)]
     low, high = min(z for _, z in places), max(z for _, z in places)
     first = max((p for p in places if p[1] - low <= near), key=lambda p: p[0])
@@ -146,25 +158,27 @@ def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], li
         chain = [side.reversed() for side in reversed(chain)]
         count = len(places) - 1
         i, j = count - i, count - j
+    # A closed chain has a bore through the pin, on the smaller of the two routes between them.
     if chain[0].start == chain[-1].end:
-        routes = [chain[i:j], _back([*chain[j:], *chain[:i]])]
+        routes = [chain[i:j], _reversed([*chain[j:], *chain[:i]])]
         core, shaft = sorted(routes, key=_area_below)
-        return _bends(shaft, near), _bends(_inside(core, low, high, near), near)
-    before, after = _back(chain[:i]), _back(chain[j:])
+        return _bends(shaft, near), _bends(_without_end_faces(core, low, high, near), near)
+    before, after = _reversed(chain[:i]), _reversed(chain[j:])
     return _bends(chain[i:j], near), _blind(before, after, low, high, near)
 
 
-def _back(sides: Sequence[MeridianSide]) -> list[MeridianSide]:
+def _reversed(sides: Sequence[MeridianSide]) -> list[MeridianSide]:
+    """A chain of sides in the other direction."""
     return [side.reversed() for side in reversed(sides)]
 
 
 def _area_below(sides: Sequence[MeridianSide]) -> float:
-    """Between the axis and a chain of sides, roughly."""
+    """Approximate area between the axis and a chain of sides, times 2."""
     return sum((s.start[0] + s.end[0]) * (s.end[1] - s.start[1]) for s in sides)
 
 
-def _whole(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
-    """Each once, with exactly equal ends where they meet; without those that lead nowhere."""
+def _connected(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
+    """The sides, each once, with exactly equal ends where they meet, and without dead ends."""
     places: list[RZ] = []
 
     def place(at: RZ) -> RZ:
@@ -175,25 +189,26 @@ def _whole(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
         places.append(at)
         return at
 
-    met: list[MeridianSide] = []
+    unique: list[MeridianSide] = []
     for side in sides:
         start, end = place(side.start), place(side.end)
         if start == end and abs(side.turn) < math.pi:
             continue
-        made = replace(side, start=start, end=end)
-        if not any(_alike(made, other, near) for other in met):
-            met.append(made)
+        joined = replace(side, start=start, end=end)
+        if not any(_same(joined, other, near) for other in unique):
+            unique.append(joined)
     while True:
-        ends = [p for s in met for p in (s.start, s.end)]
+        ends = [p for s in unique for p in (s.start, s.end)]
         leading = [
-            s for s in met if all(p[0] == 0.0 or ends.count(p) > 1 for p in (s.start, s.end))
+            s for s in unique if all(p[0] == 0.0 or ends.count(p) > 1 for p in (s.start, s.end))
         ]
-        if len(leading) == len(met):
-            return met
-        met = leading
+        if len(leading) == len(unique):
+            return unique
+        unique = leading
 
 
-def _alike(a: MeridianSide, b: MeridianSide, near: float) -> bool:
+def _same(a: MeridianSide, b: MeridianSide, near: float) -> bool:
+    """Whether two sides with the same ends are one, in either direction."""
     if {a.start, a.end} != {b.start, b.end}:
         return False
     if a.centre is None or b.centre is None:
@@ -205,9 +220,12 @@ def _alike(a: MeridianSide, b: MeridianSide, near: float) -> bool:
 
 
 def _chain(sides: list[MeridianSide], near: float) -> list[MeridianSide]:
-    """The sides one after the other: from axis to axis, or all round."""
+    """The sides in order, from axis to axis or around a closed outline.
+
+    Raises: ValueError where they do not form one chain.
+    """
     if not sides:
-        raise ValueError("its faces of revolution make no outline")
+        raise ValueError("its faces of revolution form no outline")
     starts = [s for s in sides if s.start[0] == 0.0 or s.end[0] == 0.0]
     first = starts[0] if starts else sides[0]
     chain = [first if not starts or first.start[0] == 0.0 else first.reversed()]
@@ -223,12 +241,12 @@ def _chain(sides: list[MeridianSide], near: float) -> list[MeridianSide]:
         chain.append(following[0] if following[0].start == at else following[0].reversed())
     closed = chain[0].start == chain[-1].end
     if left or not (closed or chain[0].start[0] == chain[-1].end[0] == 0.0):
-        raise ValueError("its faces of revolution do not make one closed outline")
+        raise ValueError("its faces of revolution do not form one closed outline")
     return chain
 
 
 def _bends(sides: Sequence[MeridianSide], near: float) -> list[Bend]:
-    """Corners of a chain; a round side is a corner between its tangents, rounded."""
+    """The corners of a chain; a circular side is a rounded corner between its end tangents."""
     if not sides:
         return []
     out = [Bend(sides[0].start[1], sides[0].start[0])]
@@ -243,20 +261,20 @@ def _bends(sides: Sequence[MeridianSide], near: float) -> list[Bend]:
 
 
 def _without_straight(bends: list[Bend], near: float) -> list[Bend]:
-    """Without corners that are none."""
+    """The corners without those at which the outline goes straight on."""
     out = bends[:1]
     for bend, after in pairwise(bends[1:]):
         before = out[-1]
         one, two = (bend.r - before.r, bend.z - before.z), (after.r - bend.r, after.z - bend.z)
         length = math.hypot(*one) * math.hypot(*two)
-        bent = abs(cross(one, two)) > 10.0 * FACE_TOLERANCE * length
-        if bend.radius or (bent and math.hypot(*one) > near):
+        is_corner = abs(cross(one, two)) > 10.0 * FACE_TOLERANCE * length
+        if bend.radius or (is_corner and math.hypot(*one) > near):
             out.append(bend)
     return [*out, bends[-1]]
 
 
 def _without_faces(bends: list[Bend], near: float) -> list[Bend]:
-    """Without what lies in the end faces."""
+    """The corners without those in the end faces."""
     while len(bends) > 2 and abs(bends[0].z - bends[1].z) <= near and not bends[0].radius:
         bends = bends[1:]
     while len(bends) > 2 and abs(bends[-1].z - bends[-2].z) <= near and not bends[-1].radius:
@@ -264,17 +282,17 @@ def _without_faces(bends: list[Bend], near: float) -> list[Bend]:
     return bends
 
 
-def _inside(
+def _without_end_faces(
     sides: Sequence[MeridianSide], low: float, high: float, near: float
 ) -> list[MeridianSide]:
-    """Without the end faces."""
+    """The sides without the end faces, which are at z = low and high."""
 
-    def face(side: MeridianSide) -> bool:
+    def is_end_face(side: MeridianSide) -> bool:
         z0, z1 = side.start[1], side.end[1]
         flat = side.centre is None and abs(z0 - z1) <= near
         return flat and (abs(z0 - low) <= near or abs(z0 - high) <= near)
 
-    return [side for side in sides if not face(side)]
+    return [side for side in sides if not is_end_face(side)]
 
 
 def _blind(
@@ -284,9 +302,9 @@ def _blind(
     high: float,
     near: float,
 ) -> list[Bend]:
-    """Bores that end on the axis, from the start face and from the end face."""
-    first = _inside(before, low, high, near)
-    last = _back(_inside(after, low, high, near))
+    """The corners of bores that end on the axis, from the start face and from the end face."""
+    first = _without_end_faces(before, low, high, near)
+    last = _reversed(_without_end_faces(after, low, high, near))
     if not (first or last):
         return []
     start = _bends(first, near) if first else [Bend(low, 0.0)]

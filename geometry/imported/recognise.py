@@ -1,8 +1,8 @@
-"""A CAD body that is turned on a lathe, drilled and milled: profile and cuts.
+"""Recognition of a CAD body as a turned profile with drilled and milled cuts.
 
-Faces of revolution about one axis give straight and round parts of the section's outline; a chain
-of them from end to end is the outline. What is not of revolution must be cuts. That
-the volume comes out is the proof that nothing was overlooked.
+Faces of revolution about one axis give straight and circular parts of the section's outline, which
+is a chain of them from end to end. All other faces must be those of cuts. If the volume of the
+result agrees with that of the body, nothing was overlooked.
 """
 
 from __future__ import annotations
@@ -26,29 +26,32 @@ from geometry.shape.pin import GeometryError, Pin
 from geometry.shape.polyline import Bend, pin_of_polyline
 from pinbase.arrays import Floats
 
-VOLUME_TOLERANCE = 1e-5
+VOLUME_TOLERANCE = 1e-5  # relative difference of the volumes
 MAX_FACES = 400
-DIMENSION_DIGITS = 7  # of the size, to which dimensions are rounded
+DIMENSION_DIGITS = 7  # decimals, relative to the body's size, to which dimensions are rounded
 
 
 class NotTurnedError(GeometryError):
-    """The body is not one of revolution, nor one with cuts that are known; `why` says what of it is
-    not.
-    """
+    """The body is not a turned part with known cuts; `why` names the reason."""
 
     def __init__(self, pin: str, file: str, why: str) -> None:
         super().__init__(f"pin {pin}: {file}: {why}", "not-turned")
-        self.why, self._made_of = why, (pin, file, why)
+        self.why, self._arguments = why, (pin, file, why)
 
     def __reduce__(self) -> tuple[type[NotTurnedError], tuple[str, str, str]]:
-        return NotTurnedError, self._made_of
+        return NotTurnedError, self._arguments
 
 
 @dataclass(frozen=True)
 class RecognisedProfile:
-    """A recognised body, m. start: z of its start face along the axis, in the file's unit, from the
-    point of the axis nearest to the file's origin. along: direction of the axis in the file. x:
-    that from which angles count. surfaces: z of cylinders from the start face, by their names.
+    """A body that was recognised, m.
+
+    outside, bore: corners of the outline and of the bore.
+    cuts: in the axes of the profile.
+    start: position of its start face along the axis, from the point of the axis nearest to the
+    file's origin, in the file's unit.
+    along, x: directions of the axis, and of angle zero, in the file.
+    surfaces: two z of each cylinder with a name, from the start face, m.
     """
 
     outside: tuple[Bend, ...]
@@ -60,13 +63,14 @@ class RecognisedProfile:
     surfaces: dict[str, tuple[float, float]]
 
     def pin(self, name: str) -> Pin:
-        """Its profile. Raises: GeometryError."""
+        """Its profile, without cuts. Raises: GeometryError."""
         return pin_of_polyline(name, self.outside, self.bore)
 
 
 def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfile:
-    """The profile and cuts of the body in a file. upright: only if the file's z-axis is its
-    axis.
+    """The profile and cuts of the body in a file.
+
+    upright: whether its axis must be the file's z-axis.
 
     Raises: NotTurnedError; GeometryError, MeshError as cad_mesh.
     """
@@ -74,7 +78,7 @@ def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfil
         solids = solids_of(gmsh, file)
         tags = [tag for _, tag in gmsh.model.getEntities(2)]
         if len(tags) > MAX_FACES:
-            raise _not(file, f"it has {len(tags)} faces")
+            raise _not_turned(file, f"it has {len(tags)} faces")
         faces = sampled_faces(gmsh, face_names(file, tags))
         x0, y0, z0, x1, y1, z1 = gmsh.model.getBoundingBox(-1, -1)
         centre = np.array([x0 + x1, y0 + y1, z0 + z1]) / 2.0
@@ -82,12 +86,13 @@ def recognised_profile(file: BodyFile, upright: bool = True) -> RecognisedProfil
         axis = _axis(file, faces, centre, size, upright)
         inside = _reaches_axis(gmsh, faces, axis)
         volume = float(gmsh.model.occ.getMass(*solids[0])) * file.unit**3
-    found = _turned(file, faces, axis, inside, size)
-    _require_volume(file, found, volume)
-    return found
+    profile = _recognised(file, faces, axis, inside, size)
+    _require_volume(file, profile, volume)
+    return profile
 
 
-def _not(file: BodyFile, why: str) -> NotTurnedError:
+def _not_turned(file: BodyFile, why: str) -> NotTurnedError:
+    """The error of a file whose body is not a turned part, with the reason."""
     return NotTurnedError(file.name, file.path.name, why)
 
 
@@ -96,21 +101,23 @@ def _axis(
 ) -> Axis:
     """The axis about which most of the surface is of revolution."""
     z_axis = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
-    found = [z_axis, *(a for face in faces if (a := face.axis(centre, size)) is not None)]
+    candidates = [z_axis, *(a for face in faces if (a := face.axis(centre, size)) is not None)]
 
-    def turned_area(axis: Axis) -> float:
-        round_ones = (f for f in faces if not f.plane and f.revolved(axis, size))
-        return sum(f.area for f in round_ones)
+    def revolved_area(axis: Axis) -> float:
+        revolved = (f for f in faces if not f.plane and f.revolved(axis, size))
+        return sum(f.area for f in revolved)
 
-    areas = [turned_area(axis) for axis in found]
-    best = int(np.argmax(np.array(areas) * [1.0 + FACE_TOLERANCE, *[1.0] * (len(found) - 1)]))
+    # The file's z-axis is preferred to an equal axis of a face.
+    areas = [revolved_area(axis) for axis in candidates]
+    preference = [1.0 + FACE_TOLERANCE, *[1.0] * (len(candidates) - 1)]
+    best = int(np.argmax(np.array(areas) * preference))
     if not areas[best]:
-        raise _not(file, "none of its faces is of revolution")
+        raise _not_turned(file, "none of its faces is of revolution")
     if best and upright:
-        raise _not(
+        raise _not_turned(
             file, "its axis is not the file's z-axis; `pinstress import` writes it as a profile"
         )
-    axis = found[best]
+    axis = candidates[best]
     along = axis.along * math.copysign(1.0, axis.along[int(np.argmax(np.abs(axis.along)))])
     along = np.where(np.abs(along) < FACE_TOLERANCE, 0.0, along)
     along /= np.linalg.norm(along)
@@ -118,20 +125,24 @@ def _axis(
 
 
 def _reaches_axis(gmsh: Any, faces: Sequence[SampledFace], axis: Axis) -> set[int]:
-    """Tags of the plane faces that the axis goes through."""
-    found = set()
+    """Tags of the plane faces through which the axis passes."""
+    tags = set()
     for face in faces:
         normal = face.normals[0]
         if face.plane and abs(abs(normal @ axis.along) - 1.0) < FACE_TOLERANCE:
             at = axis.point + ((face.points[0] - axis.point) @ axis.along) * axis.along
             if gmsh.model.isInside(2, face.tag, at.tolist()):
-                found.add(face.tag)
-    return found
+                tags.add(face.tag)
+    return tags
 
 
-def _turned(
+def _recognised(
     file: BodyFile, faces: Sequence[SampledFace], axis: Axis, inside: set[int], size: float
 ) -> RecognisedProfile:
+    """The profile and cuts from the faces of a body. inside: tags of faces that reach the axis.
+
+    Raises: NotTurnedError.
+    """
     frame = axis.frame()
     local = [_in_frame(face, axis.point, frame) for face in faces]
     upright = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
@@ -142,14 +153,14 @@ def _turned(
             continue
         side = MeridianSide.of(face, face.tag in inside, size)
         if side is None:
-            raise _not(
-                file, f"{face.name} is curved otherwise than cylinder, cone, torus or sphere"
+            raise _not_turned(
+                file, f"{face.name} is neither plane, cylinder, cone, torus nor sphere"
             )
         sides.append(side)
     try:
         outside, bore = outlines(sides, FACE_TOLERANCE * size)
     except ValueError as error:
-        raise _not(file, str(error)) from None
+        raise _not_turned(file, str(error)) from None
     start = min(bend.z for bend in outside)
     down = np.array([0.0, 0.0, start])
     surfaces = _surfaces(sides, start, size, file.unit)
@@ -171,6 +182,7 @@ def _turned(
 
 
 def _in_frame(face: SampledFace, origin: Floats, frame: Floats) -> SampledFace:
+    """A face in a frame at an origin (3,), with unit vectors as rows (3, 3)."""
     return replace(
         face,
         points=(face.points - origin) @ frame.T,
@@ -180,11 +192,13 @@ def _in_frame(face: SampledFace, origin: Floats, frame: Floats) -> SampledFace:
 
 
 def _plain(vector: Floats) -> tuple[float, float, float]:
+    """A vector as numbers, without round-off."""
     x, y, z = (round(float(v), 12) + 0.0 for v in vector)
     return x, y, z
 
 
 def _rounded(bend: Bend, start: float, digits: int, unit: float) -> Bend:
+    """A corner with z from the start face, rounded to so many digits and converted to a unit."""
     z, r, radius = (round(x, digits) * unit for x in (bend.z - start, bend.r, bend.radius))
     return Bend(z, r, radius)
 
@@ -192,20 +206,23 @@ def _rounded(bend: Bend, start: float, digits: int, unit: float) -> Bend:
 def _cuts(
     file: BodyFile, rest: Sequence[SampledFace], profile: Sequence[tuple[Bend, ...]], size: float
 ) -> tuple[Cut, ...]:
-    """The faces that are not of revolution as cuts, in the file's unit."""
+    """The cuts of the faces that are not of revolution, in the file's unit.
+
+    Raises: NotTurnedError.
+    """
     try:
         return CutFaces(rest, size).cuts(pin_of_polyline(file.name, *profile))
     except ValueError as error:
         if isinstance(error, GeometryError):
-            raise _not(file, str(error)) from None
+            raise _not_turned(file, str(error)) from None
         why = f"{error} is neither of revolution nor of a hole, flat, slot or passage"
-        raise _not(file, why) from None
+        raise _not_turned(file, why) from None
 
 
 def _surfaces(
     sides: Sequence[MeridianSide], start: float, size: float, unit: float
 ) -> dict[str, tuple[float, float]]:
-    """z (m from the start face) of the cylinders whose whole surface has one name."""
+    """Two z of each cylinder whose whole surface has one name, by name, from the start face, m."""
     names: dict[tuple[int, ...], set[str]] = {}
     ends: dict[tuple[int, ...], tuple[float, float]] = {}
     for side in (side for side in sides if side.cylinder):
@@ -216,15 +233,17 @@ def _surfaces(
     return {name: ends[key] for key, (name, *more) in names.items() if not more}
 
 
-def _require_volume(file: BodyFile, found: RecognisedProfile, volume: float) -> None:
+def _require_volume(file: BodyFile, profile: RecognisedProfile, volume: float) -> None:
+    """Raises: NotTurnedError unless the recognised body has the volume (m^3) of the file's."""
     try:
-        profile = found.pin(file.name)
-        made = profile.volume
-        if found.cuts:
-            made = CutPin.of(profile, found.cuts).volume
+        pin = profile.pin(file.name)
+        recognised = pin.volume
+        if profile.cuts:
+            recognised = CutPin.of(pin, profile.cuts).volume
     except (GeometryError, MeshError) as error:
-        raise _not(file, f"as a profile with cuts it is impossible ({error})") from None
-    if abs(made / volume - 1.0) > VOLUME_TOLERANCE:
-        raise _not(
-            file, f"a profile of its faces of revolution has {made / volume:.6g} times its volume"
+        raise _not_turned(file, f"as a profile with cuts it is impossible ({error})") from None
+    if abs(recognised / volume - 1.0) > VOLUME_TOLERANCE:
+        raise _not_turned(
+            file,
+            f"a profile of its faces of revolution has {recognised / volume:.6g} times its volume",
         )

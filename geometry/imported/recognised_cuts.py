@@ -1,9 +1,8 @@
-"""The faces of a CAD body that are not of revolution about its axis, as holes, flats, slots and
-passages.
+"""Recognition of cuts from the faces of a CAD body that are not of revolution about its axis.
 
-Cylinders across the axis are holes, or ends of slots where planes beside them go on; cylinders
+Cylinders across the axis are holes, or ends of slots where planes continue beside them; cylinders
 along it are passages. Cones, tori and planes belong to the cylinder about whose axis they are of
-revolution. Planes that are left are flats.
+revolution. All other planes are flats.
 """
 
 from __future__ import annotations
@@ -28,8 +27,11 @@ Z_AXIS = np.array([0.0, 0.0, 1.0])
 
 @dataclass
 class _Drilled:
-    """A cylinder: its axis, radius, and between which t along the axis, from the point of it that
-    is nearest to the pin's, it reaches. faces: with it of revolution about the axis.
+    """A cylinder that a drill left, and the other faces of its hole.
+
+    axis: of the cylinder, from its point nearest to the pin's axis.
+    low, high: its ends along the axis, from that point.
+    faces: those of revolution about its axis.
     """
 
     axis: Axis
@@ -39,25 +41,27 @@ class _Drilled:
     faces: list[SampledFace] = field(default_factory=list)
 
     def local(self, x: Floats) -> tuple[Floats, Floats]:
-        """Distances from the axis, and t, of points (P, 3)."""
-        away = x - self.axis.point
-        t = away @ self.axis.along
-        return np.linalg.norm(away - t[:, None] * self.axis.along, axis=1), t
+        """Distance from the axis and position along it, (P,) each, of points x (P, 3)."""
+        arm = x - self.axis.point
+        t = arm @ self.axis.along
+        return np.linalg.norm(arm - t[:, None] * self.axis.along, axis=1), t
 
 
 @dataclass(frozen=True)
 class CutFaces:
-    """Those faces in a frame whose z-axis is the pin's; size: of the body; all in the file's unit.
+    """The faces of cuts, in a frame whose z-axis is the pin's. Lengths are in the file's unit.
 
-    Raises: ValueError with the name of a face that belongs to nothing.
+    size: of the body.
     """
 
     faces: Sequence[SampledFace]
     size: float
 
     def cuts(self, pin: Pin) -> tuple[Cut, ...]:
-        """Of a profile."""
+        """The cuts in a profile. Raises: ValueError with the name of a face of no known cut."""
         planes = [f for f in self.faces if f.plane]
+        # Cylinders first; then slots, which use some of them; then each remaining face belongs to a
+        # cylinder, and what still remains must be flats with their fillets.
         across, along, bent = self._cylinders([f for f in self.faces if not f.plane])
         slots, used = self._slots(pin, planes, across, along)
         planes = [f for f in planes if f.tag not in used]
@@ -78,13 +82,13 @@ class CutFaces:
 
     @property
     def near(self) -> float:
-        """Within which two places are one."""
+        """Distance within which two points are one."""
         return 10.0 * FACE_TOLERANCE * self.size
 
     def _cylinders(
         self, faces: Sequence[SampledFace]
     ) -> tuple[list[_Drilled], list[_Drilled], list[SampledFace]]:
-        """Across the pin's axis and through it, along it, and the faces that are neither."""
+        """Cylinders across the pin's axis and through it, those along it, and all other faces."""
         across: list[_Drilled] = []
         along: list[_Drilled] = []
         bent = []
@@ -95,44 +99,49 @@ class CutFaces:
                 bent.append(face)
                 continue
             line, group = place, across if abs(place.along[2]) < 0.5 else along
-            made = _Drilled(line, 0.0, 0.0, 0.0, [face])
-            s, _ = made.local(face.points)
+            drilled = _Drilled(line, 0.0, 0.0, 0.0, [face])
+            s, _ = drilled.local(face.points)
             if np.ptp(s) > FACE_TOLERANCE * self.size:
                 bent.append(face)
                 continue
-            t = made.local(face.rim)[1]
-            made.radius, made.low, made.high = float(s.mean()), float(t.min()), float(t.max())
-            self._joined(group, made)
+            t = drilled.local(face.rim)[1]
+            drilled.radius = float(s.mean())
+            drilled.low, drilled.high = float(t.min()), float(t.max())
+            self._join(group, drilled)
         return across, along, bent
 
     def _placed(self, axis: Axis) -> Axis | None:
-        """An axis along the pin's or across it and through it, from the point nearest to that."""
-        way = axis.along / np.linalg.norm(axis.along)
-        if abs(abs(way[2]) - 1.0) < FACE_TOLERANCE:
+        """An axis from its point nearest to the pin's axis; None unless along or across that.
+
+        An axis across the pin's must pass through it; it points to positive x, or y.
+        """
+        along = axis.along / np.linalg.norm(axis.along)
+        if abs(abs(along[2]) - 1.0) < FACE_TOLERANCE:
             return Axis(axis.point * [1.0, 1.0, 0.0], Z_AXIS)
-        if abs(way[2]) > FACE_TOLERANCE:
+        if abs(along[2]) > FACE_TOLERANCE:
             return None
-        if abs(way[0] * axis.point[1] - way[1] * axis.point[0]) > FACE_TOLERANCE * self.size:
+        if abs(along[0] * axis.point[1] - along[1] * axis.point[0]) > FACE_TOLERANCE * self.size:
             return None
-        way = way * (
+        along = along * (
             1.0
-            if way[0] > FACE_TOLERANCE or (abs(way[0]) <= FACE_TOLERANCE and way[1] > 0.0)
+            if along[0] > FACE_TOLERANCE or (abs(along[0]) <= FACE_TOLERANCE and along[1] > 0.0)
             else -1.0
         )
-        return Axis(axis.point * [0.0, 0.0, 1.0], way)
+        return Axis(axis.point * [0.0, 0.0, 1.0], along)
 
-    def _joined(self, group: list[_Drilled], made: _Drilled) -> None:
+    def _join(self, group: list[_Drilled], drilled: _Drilled) -> None:
+        """Add a cylinder to a group, or to another part of the same cylinder in it."""
         for other in group:
-            same = np.abs(other.axis.point - made.axis.point).max() < self.near
-            same &= np.abs(other.axis.along - made.axis.along).max() < FACE_TOLERANCE
-            if same and abs(other.radius - made.radius) < self.near:
-                other.low, other.high = min(other.low, made.low), max(other.high, made.high)
-                other.faces += made.faces
+            same = np.abs(other.axis.point - drilled.axis.point).max() < self.near
+            same &= np.abs(other.axis.along - drilled.axis.along).max() < FACE_TOLERANCE
+            if same and abs(other.radius - drilled.radius) < self.near:
+                other.low, other.high = min(other.low, drilled.low), max(other.high, drilled.high)
+                other.faces += drilled.faces
                 return
-        group.append(made)
+        group.append(drilled)
 
     def _owner(self, face: SampledFace, drilled: Sequence[_Drilled]) -> _Drilled | None:
-        """The cylinder about whose axis a face is of revolution, and near which it lies."""
+        """The cylinder near a face about whose axis the face is of revolution, or None."""
         for c in drilled:
             s, _ = c.local(face.rim)
             normal_along = (
@@ -152,7 +161,7 @@ class CutFaces:
         across: Sequence[_Drilled],
         along: Sequence[_Drilled],
     ) -> tuple[list[Slot], set[int]]:
-        """Slots between parallel planes on both sides of the axis, with ends or a floor."""
+        """Slots, between parallel planes on both sides of the axis, and the tags of their faces."""
         out, used = [], set()
         for i, one in enumerate(planes):
             for other in planes[i + 1 :]:
@@ -162,10 +171,10 @@ class CutFaces:
                     continue
                 if abs(float(other.points[0] @ m) + h) > self.near:
                     continue
-                found = self._slot(pin, (one, other), abs(h), planes, across, along)
-                if found is not None:
-                    out.append(found[0])
-                    used |= found[1]
+                slot = self._slot(pin, (one, other), abs(h), planes, across, along)
+                if slot is not None:
+                    out.append(slot[0])
+                    used |= slot[1]
         return out, used
 
     def _slot(
@@ -177,10 +186,16 @@ class CutFaces:
         across: Sequence[_Drilled],
         along: Sequence[_Drilled],
     ) -> tuple[Slot, set[int]] | None:
+        """The slot between two walls, with the tags of its faces; None without ends or a floor.
+
+        h: half of its width.
+        """
         k = np.cross(walls[0].normals[0], Z_AXIS)
         rim = np.concatenate([wall.rim for wall in walls])
         k = k * math.copysign(1.0, float((rim @ k).mean()))
         z0, z1 = float(rim[:, 2].min()), float(rim[:, 2].max())
+        # Round ends are half cylinders of the slot's width at the ends of its walls; its floor is a
+        # plane between the walls.
         ends = [
             c
             for c in across
@@ -224,7 +239,10 @@ class CutFaces:
     def _flats(
         self, planes: Sequence[SampledFace], bent: Sequence[SampledFace]
     ) -> tuple[list[Flat], set[int]]:
-        """Planes along the axis, with the cylinders that round the corners at their ends."""
+        """Flats, and the tags of the cylinders that round the corners at their ends.
+
+        Raises: ValueError with the name of a plane that is not parallel to the axis.
+        """
         out, used = [], set()
         for face in planes:
             normal = face.normals[0]
@@ -250,17 +268,18 @@ class CutFaces:
             out.append(Flat(z0, z1, abs(distance), angle, radius))
         return out, used
 
-    def _beyond_wall(self, c: _Drilled) -> list[SampledFace]:
-        """Faces at the bottom of a hole."""
-        found = [(face, c.local(face.points)[0]) for face in c.faces]
-        return [f for f, s in found if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
+    def _bottom_faces(self, c: _Drilled) -> list[SampledFace]:
+        """The faces at the bottom of a hole."""
+        faces = [(face, c.local(face.points)[0]) for face in c.faces]
+        return [f for f, s in faces if np.ptp(s) >= self.near and s.max() <= c.radius + self.near]
 
-    def _bottom(self, c: _Drilled, end: float, way: float) -> tuple[float, Bottom]:
-        """Where the full diameter ends, before its corner is rounded, and what follows; end: t of
-        the wall there; way: of t, out of the hole.
+    def _bottom(self, c: _Drilled, end: float, outward: float) -> tuple[float, Bottom]:
+        """The position at which the full diameter ends, without rounding, and the bottom.
+
+        end: end of the wall along the axis. outward: direction out of the hole, 1 or -1.
         """
         tip, top, curved = FLAT_TIP_ANGLE, end, False
-        for face in self._beyond_wall(c):
+        for face in self._bottom_faces(c):
             s, t = c.local(face.points)
             if face.plane:
                 top = float(t.mean())
@@ -268,18 +287,19 @@ class CutFaces:
             slope = np.abs(face.normals @ c.axis.along)
             if np.ptp(slope) < 10.0 * FACE_TOLERANCE:
                 tip = 2.0 * math.asin(min(1.0, float(slope.mean())))
-                apex = t - way * s / math.tan(tip / 2.0)
-                top = float(apex.mean()) + way * c.radius / math.tan(tip / 2.0)
+                apex = t - outward * s / math.tan(tip / 2.0)
+                top = float(apex.mean()) + outward * c.radius / math.tan(tip / 2.0)
             else:
                 curved = True
         if curved and tip == FLAT_TIP_ANGLE:
-            rims = [way * c.local(face.rim)[1].min() for face in self._beyond_wall(c)]
-            ends = [way * c.local(face.rim)[1].max() for face in self._beyond_wall(c)]
-            top = way * min(*rims, *ends)
+            rims = [outward * c.local(face.rim)[1].min() for face in self._bottom_faces(c)]
+            ends = [outward * c.local(face.rim)[1].max() for face in self._bottom_faces(c)]
+            top = outward * min(*rims, *ends)
         radius = abs(end - top) / math.tan(tip / 4.0) if curved else 0.0
         return top, Bottom(tip, radius)
 
     def _hole(self, pin: Pin, c: _Drilled) -> Hole:
+        """The hole of a cylinder across the pin."""
         z = float(c.axis.point[2])
         outer, angle = outer_radius(pin, z), math.atan2(c.axis.along[1], c.axis.along[0])
         chamfer = 0.0
@@ -287,18 +307,21 @@ class CutFaces:
             s, t = c.local(face.points)
             if s.max() > c.radius + self.near:
                 chamfer = float((s + outer - np.abs(t)).mean()) - c.radius
-        blind = bool(self._beyond_wall(c))
+        blind = bool(self._bottom_faces(c))
         if c.low < 0.0 < c.high and not blind:
             angle = 0.0 if math.pi - angle % math.pi < FACE_TOLERANCE else angle % math.pi
             return Hole(z, 2.0 * c.radius, angle, chamfer=chamfer)
-        way = 1.0 if c.high > -c.low else -1.0
-        end = c.low if way > 0.0 else c.high
-        floor, bottom = self._bottom(c, end, way) if blind else (end / 2.0, Bottom())  # in a bore
-        angle = angle if way > 0.0 else angle + math.pi
+        outward = 1.0 if c.high > -c.low else -1.0
+        end = c.low if outward > 0.0 else c.high
+        floor, bottom = (
+            self._bottom(c, end, outward) if blind else (end / 2.0, Bottom())
+        )  # in a bore
+        angle = angle if outward > 0.0 else angle + math.pi
         angle = math.atan2(math.sin(angle), math.cos(angle))
-        return Hole(z, 2.0 * c.radius, angle, outer - way * floor, bottom, chamfer)
+        return Hole(z, 2.0 * c.radius, angle, outer - outward * floor, bottom, chamfer)
 
     def _passage(self, pin: Pin, c: _Drilled) -> Passage:
+        """The passage of a cylinder along the pin."""
         x, y, _ = c.axis.point
         place = 2.0 * c.radius, math.hypot(x, y), math.atan2(y, x)
         first, last = c.low < self.near, c.high > pin.length - self.near
@@ -312,7 +335,7 @@ class CutFaces:
 
 
 def _once(cuts: Sequence[Cut]) -> tuple[Cut, ...]:
-    """Without those that come twice."""
+    """The cuts, each once."""
     out: list[Cut] = []
     for cut in cuts:
         if not any(cut.like(other, 1e-6 * max(1e-300, abs(cut.extent[1]))) for other in out):

@@ -1,11 +1,11 @@
-"""Faces of a CAD body by points and normals on them.
+"""Faces of a CAD body, described by points and normals on them.
 
-So it does not matter how a program writes them: a cylinder may come whole, in halves, or as a
-spline.
+In this way it does not matter how a program writes a face: a cylinder may come whole, in halves, or
+as a spline.
 
-A surface is one of revolution about an axis if all its normals meet that axis. With velocities
-v = a + w x p of a rigid motion that leaves the surface in itself, n . v = 0 at all points p: the
-motions are the null space of the rows (n, p x n).
+A surface is one of revolution about an axis if all its normals meet that axis. A rigid motion with
+velocities v = a + w x p maps the surface to itself if n . v = 0 at all its points p: such motions
+are the null space of the rows (n, p x n).
 
 Source: H. Pottmann & J. Wallner, Computational Line Geometry, Springer 2001, ch. 3.
 """
@@ -19,7 +19,7 @@ import numpy as np
 
 from pinbase.arrays import Floats
 
-FACE_TOLERANCE = 1e-6  # of the body's size: two places; and of 1: two directions
+FACE_TOLERANCE = 1e-6  # difference of equal points, over the body's size, and of equal directions
 FACE_GRID_FRACTIONS = np.linspace(0.0, 1.0, 7)
 EDGE_FRACTIONS = np.linspace(0.0, 1.0, 9)
 
@@ -32,7 +32,7 @@ class Axis:
     along: Floats
 
     def frame(self) -> Floats:
-        """Unit vectors x, y, z (3, 3) by row, z along the axis; the file's own where that is z."""
+        """Unit vectors x, y, z as rows (3, 3), z along the axis; the file's axes if that is z."""
         z = self.along
         first = (
             np.eye(3)[int(np.argmin(np.abs(z)))]
@@ -46,8 +46,11 @@ class Axis:
 
 @dataclass(frozen=True)
 class SampledFace:
-    """points, normals (P, 3) on it; rim (R, 3): points on its edges;
-    area: in the file's unit, squared.
+    """A face of a CAD body, sampled. Lengths are in the file's unit.
+
+    tag, name: gmsh's tag, and its name in the file.
+    points, normals: (P, 3) on it.
+    rim: (R, 3) points on its edges.
     """
 
     tag: int
@@ -63,8 +66,9 @@ class SampledFace:
         return bool(np.ptp(self.normals, axis=0).max() < FACE_TOLERANCE)
 
     def motions(self, centre: Floats, size: float) -> Floats:
-        """A basis (K, 6) of the motions (a, w) that leave it in itself; lengths over `size`, from
-        `centre`.
+        """A basis (K, 6) of the motions (a, w) that map it to itself.
+
+        Lengths are divided by `size` and measured from `centre` (3,).
         """
         p = (self.points - centre) / size
         rows = np.hstack([self.normals, np.cross(p, self.normals)])
@@ -72,7 +76,7 @@ class SampledFace:
         return np.asarray(basis[values < FACE_TOLERANCE * np.sqrt(len(rows))])
 
     def axis(self, centre: Floats, size: float) -> Axis | None:
-        """The one line about which it is of revolution; None of planes, spheres and others."""
+        """The only line about which it is of revolution; None for planes, spheres and others."""
         if self.plane:
             return None
         motions = self.motions(centre, size)
@@ -81,7 +85,7 @@ class SampledFace:
         left, values, _ = np.linalg.svd(motions[:, 3:])
         turn = left[:, 0] @ motions / values[0]
         w, a = turn[3:], turn[:3]
-        if abs(w @ a) > FACE_TOLERANCE and len(motions) == 1:  # a screw
+        if abs(w @ a) > FACE_TOLERANCE and len(motions) == 1:  # a helical surface
             return None
         return Axis(centre + size * np.cross(w, a), w)
 
@@ -90,16 +94,17 @@ class SampledFace:
         p = self.points - axis.point
         across = np.cross(axis.along, p)
         r = np.linalg.norm(across, axis=1)
-        about = np.abs(np.sum(across * self.normals, axis=1))
-        return bool((about <= FACE_TOLERANCE * np.maximum(r, size)).all())
+        tangential = np.abs(np.sum(across * self.normals, axis=1))
+        return bool((tangential <= FACE_TOLERANCE * np.maximum(r, size)).all())
 
 
 def sampled_faces(gmsh: Any, names: dict[int, str]) -> list[SampledFace]:
-    """The faces of the body in gmsh's model."""
+    """The faces of the body in gmsh's model. names: by tag."""
     return [_sampled(gmsh, tag, name) for tag, name in names.items()]
 
 
 def _sampled(gmsh: Any, tag: int, name: str) -> SampledFace:
+    """A face of the body in gmsh's model, by points on a grid of parameters and on its edges."""
     model = gmsh.model
     low, high = model.getParametrizationBounds(2, tag)
     u, v = (a + FACE_GRID_FRACTIONS * (b - a) for a, b in zip(low, high, strict=True))
@@ -116,6 +121,6 @@ def _sampled(gmsh: Any, tag: int, name: str) -> SampledFace:
         rim.append(np.reshape(model.getValue(1, curve, along), (-1, 3)))
     area = float(model.occ.getMass(2, tag))
     face = SampledFace(tag, name, points[good], normals[good], np.concatenate(rim), area)
-    if face.plane:  # the parameters of which extend beyond it
+    if face.plane:  # the parameters of a plane extend beyond the face
         return face
     return replace(face, rim=np.concatenate([face.rim, points[~good]]))

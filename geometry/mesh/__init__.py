@@ -1,1 +1,1 @@
-"""Meshes of sections and solids by gmsh, and how fine they are where."""
+"""Meshes of sections and solids by gmsh, with their element sizes."""

@@ -20,8 +20,9 @@ from geometry.shape.pin import Band, GeometryError, Pin
 
 @dataclass(frozen=True)
 class CutPin:
-    """A profile with cuts; its bands keep their names and positions, less what is cut. Ends of
-    flats and slots within the profile's tolerance of a band's lie there.
+    """A profile with cuts, whose bands keep their names and positions.
+
+    Ends of flats and slots within the profile's tolerance of the end of a band are moved there.
 
     Raises: GeometryError when a cut does not cut the pin, or cuts it in two.
     """
@@ -35,9 +36,9 @@ class CutPin:
     meshed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        marks, near = marks_of(self.profile), self.profile.tolerance
-        flats = tuple(flat.snapped(marks, near) for flat in self.flats)
-        slots = tuple(slot.snapped(marks, near) for slot in self.slots)
+        marks, tolerance = marks_of(self.profile), self.profile.tolerance
+        flats = tuple(flat.snapped(marks, tolerance) for flat in self.flats)
+        slots = tuple(slot.snapped(marks, tolerance) for slot in self.slots)
         for name, cut in _named((*self.holes, *flats, *slots, *self.passages)).items():
             what, i = name.split()
             cut.check(self.profile, f"{what} {i}", (what, int(i)))
@@ -45,12 +46,12 @@ class CutPin:
             if (a.z, a.angle) != (b.z, b.angle):
                 b.check_beside(a, (f"hole {n}", f"hole {k}"), self.profile, ("hole", n))
         length = self.length
-        object.__setattr__(self, "flats", tuple(cut.past(length, near) for cut in flats))
-        object.__setattr__(self, "slots", tuple(cut.past(length, near) for cut in slots))
+        object.__setattr__(self, "flats", tuple(cut.past(length, tolerance) for cut in flats))
+        object.__setattr__(self, "slots", tuple(cut.past(length, tolerance) for cut in slots))
 
     @staticmethod
     def of(profile: Pin, cuts: Iterable[Cut]) -> CutPin:
-        """With cuts of all kinds; each kind keeps its order."""
+        """The pin with cuts of all kinds; each kind keeps its order."""
         every = tuple(cuts)
         return CutPin(
             profile,
@@ -62,17 +63,17 @@ class CutPin:
 
     @cached_property
     def cuts(self) -> dict[str, Cut]:
-        """All of them by their names, "hole 1"."""
+        """All cuts by their names, such as "hole 1"."""
         return _named((*self.holes, *self.flats, *self.slots, *self.passages))
 
     @property
     def name(self) -> str:
-        """The profile's."""
+        """Name of the profile."""
         return self.profile.name
 
     @property
     def source(self) -> str:
-        """The profile's."""
+        """Source of the profile's shape, for people."""
         return self.profile.source
 
     @property
@@ -87,22 +88,22 @@ class CutPin:
 
     @property
     def revolved(self) -> bool:
-        """Whether nothing is cut."""
+        """Whether it is a body of revolution, without cuts."""
         return not self.cuts
 
     @property
     def connections(self) -> tuple[str, ...]:
-        """Connections that bear on it, in the order of the profile."""
+        """Connections that bear on this pin, in the order of the profile."""
         return self.profile.connections
 
     def band(self, name: str) -> Band:
-        """The outer surface called `name` before it is cut."""
+        """The outer surface called `name`, before it is cut."""
         return self.profile.band(name)
 
     def surface(self, name: str) -> str:
-        """The mesh boundary for a name in a study: also "hole 1", "flat 1" and so on.
+        """The mesh boundary for a name in a study, also "hole 1", "flat 1" and so on.
 
-        Raises: GeometryError listing the names there are.
+        Raises: GeometryError that lists the names there are.
         """
         if name in self.cuts:
             return name
@@ -113,10 +114,10 @@ class CutPin:
 
     @cached_property
     def volume(self) -> float:
-        """Volume, m^3, of the solid that OpenCASCADE cuts.
+        """Volume of the solid that OpenCASCADE cuts, m^3.
 
-        Raises: GeometryError where the cuts leave several pieces, or nothing of a band or of each
-        other; MeshError.
+        Raises: GeometryError where the cuts leave several pieces, or remove all of a band or of
+        another cut; MeshError.
         """
         if self.revolved:
             return self.profile.volume
@@ -128,17 +129,17 @@ class CutPin:
             return float(gmsh.model.occ.getMass(*solid)) * unit**3
 
     def require_whole(self) -> None:
-        """Raises: as `volume`, which is found on the way."""
+        """Raises: as `volume`, which is computed here."""
         assert self.volume > 0.0
 
     def scaled(self, factor: float) -> CutPin:
-        """The same pin in another unit."""
+        """The same pin in another unit of length: all lengths times `factor`."""
         cuts = (cut.scaled(factor) for cut in self.cuts.values())
         return CutPin.of(self.profile.scaled(factor), cuts)
 
 
 def _named(cuts: tuple[Cut, ...]) -> dict[str, Cut]:
-    """By kind and number."""
+    """The cuts by their names, kind and number."""
     named: dict[str, Cut] = {}
     count = dict.fromkeys((cut.what for cut in cuts), 0)
     for cut in cuts:

@@ -1,4 +1,4 @@
-"""Cuts taken from the revolved body by OpenCASCADE, surfaces named, edges graded."""
+"""The solid of a cut pin by OpenCASCADE: its cuts, the names of its faces, and sizes at edges."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ from geometry.shape.pin import END_FACES, GeometryError, Pin
 from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 from pinbase.arrays import Floats
 
-Cuts = Mapping[str, Cut]  # by their names, "hole 1"
+Cuts = Mapping[str, Cut]  # by their names, such as "hole 1"
 Entity = tuple[int, int]
 
-MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # planes by the component that vanishes on them
-MAX_CURVE_DEVIATION = (
-    1e-4  # of the pin's size: OpenCASCADE's curves lie as far as 1e-5 off both their surfaces
-)
-CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve on two surfaces
-EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of an edge of a face
+MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # the coordinate that vanishes on each plane
+# Of the pin's size: OpenCASCADE's curves lie up to 1e-5 off both their surfaces.
+MAX_CURVE_DEVIATION = 1e-4
+CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve this close to a surface lies on it
+EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of the length of a curve
 
 
 def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) -> Entity:
-    """Make the solid in gmsh's model, or a sector (rad, from x on) of it; its entity.
+    """Make the solid of a pin with cuts, or a sector of it, in gmsh's model; returns its entity.
+
+    sector: rad, from x on.
 
     Raises: GeometryError when the cuts leave several pieces or none.
     """
     occ, reach = gmsh.model.occ, 2.0 * pin.largest_diameter
     rounded = [c for c in cuts.values() if isinstance(c, Hole) and c.mouth_radius]
     body = revolve(gmsh, meridian(pin), sector)
-    if (
-        rounded and sector == 2.0 * math.pi
-    ):  # OpenCASCADE rounds whole edges only, which the body's seam must not cross
+    # OpenCASCADE can only round whole edges, so the body's seam must not cross a rounded mouth.
+    if rounded and sector == 2.0 * math.pi:
         seams = np.linspace(0.0, math.pi, 13)
-        off = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
-        occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(off))]))
+        distances = [min(abs(math.sin(seam - hole.angle)) for hole in rounded) for seam in seams]
+        occ.rotate([body], 0, 0, 0, 0, 0, 1, float(seams[int(np.argmax(distances))]))
     tools = [tool for cut in cuts.values() for tool in _tool(gmsh, pin, cut, reach)]
     left, _ = occ.cut([body], tools)
     occ.synchronize()
@@ -52,7 +52,7 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
             left = _round_mouths(gmsh, left, hole, pin)
     if len(left) != 1:
         raise GeometryError(
-            f"pin {pin.name}: the cuts part the pin into {len(left)} pieces; move them or make "
+            f"pin {pin.name}: the cuts split the pin into {len(left)} pieces; move them or make "
             "them smaller",
             "cut-apart",
         )
@@ -60,6 +60,7 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
 
 
 def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
+    """The volume that a cut removes, beyond the pin's surface by up to `reach`."""
     occ = gmsh.model.occ
     if isinstance(cut, Hole) and cut.plain:
         x, y = reach * math.cos(cut.angle), reach * math.sin(cut.angle)
@@ -78,6 +79,7 @@ def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
 
 
 def _turned(gmsh: Any, placed: Placed) -> Entity:
+    """The body of revolution of a drill's outline, at its place."""
     occ = gmsh.model.occ
     tool = revolve(gmsh, placed.outline)
     x, y, z = placed.direction
@@ -90,7 +92,10 @@ def _turned(gmsh: Any, placed: Placed) -> Entity:
 def _prism(
     gmsh: Any, z: tuple[float, float], u: tuple[float, float], half: float, rounded: bool
 ) -> Entity:
-    """Between two z and two distances u from the axis along x, `half` of its width aside."""
+    """A prism between two z and two distances u from the axis along x, with round or square ends.
+
+    half: half of its width along y.
+    """
     occ, (z0, z1), (floor, top) = gmsh.model.occ, z, u
     if not rounded:
         return 3, occ.addBox(floor, -half, z0, top - floor, 2 * half, z1 - z0)
@@ -111,41 +116,42 @@ def _prism(
     if b - a > CURVE_TOLERANCE * half:
         curves.append(occ.addLine(high[2], low[0]))
     face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    made = occ.extrude([(2, face)], top - floor, 0.0, 0.0)
-    return next((int(d), int(tag)) for d, tag in made if d == 3)
+    entities = occ.extrude([(2, face)], top - floor, 0.0, 0.0)
+    return next((int(d), int(tag)) for d, tag in entities if d == 3)
 
 
 def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> Entity:
-    """With the edges of its floor rounded, of a flat those across."""
+    """The tool of a cut with the edges of its floor rounded; for a flat, only those across."""
     gmsh.model.occ.synchronize()
-    near = CURVE_TOLERANCE * (cut.z1 - cut.z0)
+    tolerance = CURVE_TOLERANCE * (cut.z1 - cut.z0)
     edges = []
     for _, curve in gmsh.model.getBoundary([tool], recursive=False, oriented=False):
         for _, edge in gmsh.model.getBoundary([(2, curve)], oriented=False):
             x = _along(gmsh, edge)
-            across = np.ptp(x[:, 2]) < near or isinstance(cut, Slot)
-            if np.abs(x[:, 0] - floor).max() < near and across:
+            across = np.ptp(x[:, 2]) < tolerance or isinstance(cut, Slot)
+            if np.abs(x[:, 0] - floor).max() < tolerance and across:
                 edges.append(edge)
-    made = gmsh.model.occ.fillet([tool[1]], sorted(set(edges)), [cut.radius])
-    return next((int(d), int(tag)) for d, tag in made if d == 3)
+    entities = gmsh.model.occ.fillet([tool[1]], sorted(set(edges)), [cut.radius])
+    return next((int(d), int(tag)) for d, tag in entities if d == 3)
 
 
 def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[Entity]:
-    """With the edges rounded at which a hole meets the outer surface."""
-    near, r = CURVE_TOLERANCE * pin.largest_diameter, outer_radius(pin, hole.z)
+    """The body with the edges rounded at which a hole meets the outer surface."""
+    tolerance, r = 10.0 * CURVE_TOLERANCE * pin.largest_diameter, outer_radius(pin, hole.z)
     placed, edges = hole.placed(pin, 4.0 * r), set()
     for _, face in gmsh.model.getBoundary(body, oriented=False):
         for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False):
             x = _along(gmsh, edge)
-            off = np.abs(placed.local(x)[0] - hole.diameter / 2.0).max()
-            if off < near * 10.0 and np.abs(np.hypot(x[:, 0], x[:, 1]) - r).max() < near * 10.0:
+            on_wall = np.abs(placed.local(x)[0] - hole.diameter / 2.0).max() < tolerance
+            if on_wall and np.abs(np.hypot(x[:, 0], x[:, 1]) - r).max() < tolerance:
                 edges.add(int(edge))
-    made = gmsh.model.occ.fillet([body[0][1]], sorted(edges), [hole.mouth_radius])
+    entities = gmsh.model.occ.fillet([body[0][1]], sorted(edges), [hole.mouth_radius])
     gmsh.model.occ.synchronize()
-    return [(d, tag) for d, tag in made if d == 3]
+    return [(d, tag) for d, tag in entities if d == 3]
 
 
 def _along(gmsh: Any, curve: int) -> Floats:
+    """Points on a curve, (P, 3)."""
     low, high = gmsh.model.getParametrizationBounds(1, curve)
     at = [float(low[0] + s * (high[0] - low[0])) for s in EDGE_SAMPLE_FRACTIONS]
     return np.reshape(gmsh.model.getValue(1, curve, at), (-1, 3))
@@ -154,8 +160,11 @@ def _along(gmsh: Any, curve: int) -> Floats:
 def named_parts(
     gmsh: Any, pin: Pin, cuts: Cuts, planes: Collection[str] = (), whole: bool = True
 ) -> dict[tuple[str, str], list[int]]:
-    """Face tags by name and part: the profile's edges (part ""), "hole 1" and its "wall"; of a
-    sector also its `planes`, MIRROR_COMPONENTS by name. whole: whether all must be there.
+    """Face tags of the solid by name and part, such as ("hole 1", "wall").
+
+    Faces of the profile's edges have the part "".
+    planes: the mirror planes of a sector, keys of MIRROR_COMPONENTS.
+    whole: whether all cuts, end faces and bands that bear must be there.
 
     Raises: GeometryError when a feature is cut away by others; MeshError.
     """
@@ -165,14 +174,18 @@ def named_parts(
         if e.name:
             known.append(((e.name, ""), kind_of(e), _off_edge(e)))
     known += [((plane, ""), "Plane", _off_mirror(MIRROR_COMPONENTS[plane])) for plane in planes]
-    for name, cut in cuts.items():  # a shoulder before the end of a flat in the same plane
+    # Cuts come last: the first of equal matches is chosen, and a shoulder in the plane of a flat's
+    # end is the shoulder.
+    for name, cut in cuts.items():
         known += [((name, s.part), s.kind, s.off) for s in cut.surfaces(pin)]
     named: dict[tuple[str, str], list[int]] = {}
     for _, face in gmsh.model.getBoundary(gmsh.model.getEntities(3), oriented=False):
         points, kind = _points(gmsh, face), gmsh.model.getType(2, face)
-        off = [float(np.abs(f(points)).max()) if k in ("", kind) else math.inf for _, k, f in known]
-        best = int(np.argmin(off))
-        if off[best] > MAX_CURVE_DEVIATION * size:
+        deviations = [
+            float(np.abs(f(points)).max()) if k in ("", kind) else math.inf for _, k, f in known
+        ]
+        best = int(np.argmin(deviations))
+        if deviations[best] > MAX_CURVE_DEVIATION * size:
             raise MeshError(
                 f"pin {pin.name}: face {face} of gmsh's solid matches no surface of the pin; look "
                 "for surfaces that just touch",
@@ -185,79 +198,90 @@ def named_parts(
 
 
 def name_faces(gmsh: Any, pin: Pin, cuts: Cuts) -> dict[str, list[int]]:
-    """Face tags by name: the profile's edges, "hole 1", "flat 1", and "flat 1 end" for the steps at
-    a flat's ends.
+    """Face tags of the solid by name: the profile's edges, "hole 1", "flat 1" and so on.
+
+    The steps at a flat's ends are "flat 1 end".
 
     Raises: as named_parts.
     """
     named: dict[str, list[int]] = {}
     for (name, part), tags in named_parts(gmsh, pin, cuts).items():
-        aside = isinstance(cuts.get(name), Flat) and part != "floor"
-        named.setdefault(f"{name} end" if aside else name, []).extend(tags)
+        is_end = isinstance(cuts.get(name), Flat) and part != "floor"
+        named.setdefault(f"{name} end" if is_end else name, []).extend(tags)
     return named
 
 
-def _require_all(pin: Pin, cuts: Cuts, found: Collection[str]) -> None:
-    """Raises: GeometryError where a cut, a band that bears, or an end face is gone."""
-    wanted = (*END_FACES, *pin.connections, *cuts)
-    if gone := [name for name in wanted if name not in found]:
-        own = next((name for name in gone if name in cuts), "").split()
+def _require_all(pin: Pin, cuts: Cuts, names: Collection[str]) -> None:
+    """Raises: GeometryError where a cut, a band that bears, or an end face is not among `names`."""
+    required = (*END_FACES, *pin.connections, *cuts)
+    if missing := [name for name in required if name not in names]:
+        cut = next((name for name in missing if name in cuts), "").split()
         raise GeometryError(
-            f"pin {pin.name}: the cuts remove all of {', '.join(gone)}; move or shrink them",
+            f"pin {pin.name}: the cuts remove all of {', '.join(missing)}; move or shrink them",
             "cut-away",
-            (own[0], int(own[1])) if own else (),
+            (cut[0], int(cut[1])) if cut else (),
         )
 
 
 def _points(gmsh: Any, face: int) -> Floats:
-    """Points on the edges of a face and, on a cylinder, between them: (P, 3)."""
+    """Points on the edges of a face and, on a cylinder, between them, (P, 3)."""
     model = gmsh.model
     curves = model.getBoundary([(2, face)], combined=False, oriented=False)
-    found = [_along(gmsh, curve) for _, curve in curves]
-    if model.getType(2, face) == "Cylinder":  # whose edges may all lie on another one, too
+    points = [_along(gmsh, curve) for _, curve in curves]
+    if model.getType(2, face) == "Cylinder":  # its edges may all lie on another cylinder, too
         low, high = model.getParametrizationBounds(2, face)
         u, v = np.meshgrid(
             *(a + np.array(EDGE_SAMPLE_FRACTIONS) * (b - a) for a, b in zip(low, high, strict=True))
         )
         at = np.stack([u, v], axis=-1).ravel().tolist()
-        found.append(np.reshape(model.getValue(2, face, at), (-1, 3)))
-    return np.concatenate(found)
+        points.append(np.reshape(model.getValue(2, face, at), (-1, 3)))
+    return np.concatenate(points)
 
 
 def _off_edge(edge: Edge) -> Off:
+    """Distance of points from the surface of revolution of an edge."""
     return lambda x: off_edge(edge)(np.hypot(x[:, 0], x[:, 1]), x[:, 2])
 
 
 def _off_mirror(axis: int) -> Off:
+    """Distance of points from the plane across an axis (0 for x, 1 for y)."""
     return lambda x: np.asarray(x[:, axis])
 
 
 def grade(
     gmsh: Any, cuts: Cuts, faces: dict[str, list[int]], far: float, finer: float, growth: float
 ) -> list[int]:
-    """Size fields: holes in `finer` times 4 elements around, their edges twice as fine; edges of
-    flats in half of `far` (m), which nothing exceeds.
+    """Size fields at cuts.
+
+    Holes have 4 `finer` elements around, their edges twice as many; edges of flats have half of the
+    size `far`.
+    faces: tags by name. far: largest element size, m. growth: increase of the size per distance.
     """
     tags = []
     for name, cut in cuts.items():
-        own = faces[name]
+        surfaces = faces[name]
         if isinstance(cut, Flat):
             h = min(far / 2, math.pi * cut.radius / 2.0 / finer) if cut.radius else far / 2
-            tags.append(near(gmsh, "CurvesList", _edges(gmsh, own), h, growth))
+            tags.append(near(gmsh, "CurvesList", _edges(gmsh, surfaces), h, growth))
             continue
         h = min(far, math.pi * cut.size / (4.0 * finer))
-        tags.append(near(gmsh, "SurfacesList", own, h, growth))
-        tags.append(near(gmsh, "CurvesList", _edges(gmsh, own), h / 2, growth))
+        tags.append(near(gmsh, "SurfacesList", surfaces, h, growth))
+        tags.append(near(gmsh, "CurvesList", _edges(gmsh, surfaces), h / 2, growth))
     return tags
 
 
 def _edges(gmsh: Any, faces: list[int]) -> list[int]:
+    """Tags of the curves that bound faces, in order."""
     around = gmsh.model.getBoundary([(2, f) for f in faces], combined=False, oriented=False)
     return sorted({int(curve) for _, curve in around})
 
 
 def near(gmsh: Any, what: str, tags: list[int], h: float, growth: float) -> int:
-    """A size that is h on the entities and grows with the distance from them."""
+    """A size field that is h on entities and grows with the distance from them.
+
+    what: gmsh's name for the list of entities, "CurvesList" or "SurfacesList". tags: the entities.
+    growth: increase of the size per distance.
+    """
     field = gmsh.model.mesh.field
     distance = field.add("Distance")
     field.setNumbers(distance, what, tags)

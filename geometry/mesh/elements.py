@@ -1,4 +1,4 @@
-"""Kinds of tetrahedra: what their sides follow and how many nodes they have."""
+"""Kinds of tetrahedra, which differ in the number of nodes and the shape of their sides."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from typing import Literal
 
 from skfem import MeshTet1, MeshTet2
 
-Element = Literal["linear", "straight", "curved"]  # 4 nodes; 10, of which 6 amid straight sides; 10
+# 4 nodes; 10 nodes, 6 of them midway along straight sides; 10 nodes on curved sides.
+Element = Literal["linear", "straight", "curved"]
 
 
 def with_element(mesh: MeshTet2, element: Element) -> MeshTet1:
-    """The same vertices and named boundaries with elements of another kind."""
+    """The mesh with elements of another kind; vertices and named boundaries are the same."""
     if element == "curved":
         return mesh
     n = mesh.nvertices

@@ -1,4 +1,4 @@
-"""gmsh, quiet and deterministic: one model at a time."""
+"""Sessions of gmsh, quiet and deterministic, with one model at a time."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from typing import Any
 from pinbase.errors import CodedError
 from pinbase.platform import portable
 
-# For gmsh, which has one state for all threads of a process, and for whatever else draws random
-# numbers from the C library, whose rand() has one state too: else meshes differ from run to run.
+# gmsh has one state for all threads of a process. So has the C library's rand(): whatever else
+# draws from it takes this lock, too, or meshes would differ from run to run.
 GMSH_LOCK = threading.RLock()
 
 _open = False
@@ -32,11 +32,12 @@ class MeshError(CodedError, ArithmeticError):
 
 @contextmanager
 def gmsh_model(name: str) -> Iterator[Any]:
-    """The gmsh module with an empty model, for the pin `name`; finalised on the way out. Other
-    threads wait for that.
+    """The gmsh module with an empty model for the pin `name`, finalised at the end of the block.
 
-    Raises: MeshError for whatever gmsh or OpenCASCADE cannot do; RuntimeError within another
-    session of the same thread, which it would end.
+    Other threads wait until then.
+
+    Raises: MeshError for everything that gmsh or OpenCASCADE cannot do; RuntimeError inside another
+    session of the same thread, which would end with this one.
     """
     import gmsh
 
@@ -55,7 +56,7 @@ def gmsh_model(name: str) -> Iterator[Any]:
             gmsh.model.add(name)
             yield gmsh
         except Exception as error:
-            if type(error) is not Exception:  # gmsh raises bare ones
+            if type(error) is not Exception:  # gmsh raises Exception itself
                 raise
             raise MeshError(
                 f"pin {name}: gmsh could not build or mesh the shape (its message: "
@@ -68,20 +69,20 @@ def gmsh_model(name: str) -> Iterator[Any]:
             gmsh.finalize()
 
 
-def failure(said: str, otherwise: str = "gmsh-failed") -> str:
-    """The code for an error of gmsh, which has only a message."""
-    return "out-of-memory" if "bad_alloc" in said else otherwise
+def failure(message: str, otherwise: str = "gmsh-failed") -> str:
+    """The code of an error of gmsh, which has only a message."""
+    return "out-of-memory" if "bad_alloc" in message else otherwise
 
 
 def formula_size(gmsh: Any, formula: str) -> int:
-    """A field of element size by a formula of x, y, z and other fields."""
+    """Tag of a size field by a formula of x, y, z and other fields."""
     size = gmsh.model.mesh.field.add("MathEval")
     gmsh.model.mesh.field.setString(size, "F", formula)
     return int(size)
 
 
 def set_size(gmsh: Any, fields: list[int]) -> None:
-    """Element size as the least of fields, and by nothing else."""
+    """Set the element size to the minimum of fields, and to nothing else."""
     field = gmsh.model.mesh.field
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", fields)
@@ -93,16 +94,16 @@ def set_size(gmsh: Any, fields: list[int]) -> None:
 
 @contextmanager
 def silence() -> Iterator[None]:
-    """Nothing on standard output, to which OpenCASCADE writes what it makes of a file."""
+    """Suppresses standard output, on which OpenCASCADE reports what it reads from a file."""
     sys.stdout.flush()
-    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    stdout, null = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(nowhere, 1)
+        os.dup2(null, 1)
         yield
     finally:
-        os.dup2(kept, 1)
-        os.close(kept)
-        os.close(nowhere)
+        os.dup2(stdout, 1)
+        os.close(stdout)
+        os.close(null)
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""gmsh's tetrahedra: bad ones repaired, all of them collected with their named surfaces."""
+"""Tetrahedra of gmsh: repair of distorted ones, and conversion with their named surfaces."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
 
-MIN_JACOBIAN_RATIO = 0.1  # min / max of det J that every element must exceed
-MAX_REPAIRS = 8  # halvings of an edge's curvature
+MIN_JACOBIAN_RATIO = 0.1  # min / max det J, which every element must exceed
+MAX_REPAIRS = 8  # times that an edge's curvature is halved
 TETRA10, TRIANGLE6 = 11, 9  # gmsh's element types
 TETRA4, TRIANGLE3 = 4, 2
 GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
@@ -21,7 +21,7 @@ GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of its nodes 4 
 
 
 def _jacobians(gmsh: Any) -> Floats:
-    """min/max det J of every tetrahedron (gmsh bounds them by Bezier coefficients)."""
+    """Ratio min/max det J of every tetrahedron (gmsh bounds them by Bezier coefficients)."""
     tags = gmsh.model.mesh.getElementsByType(TETRA10)[0]
     low = np.asarray(gmsh.model.mesh.getElementQualities(tags, "minDetJac"))
     high = np.asarray(gmsh.model.mesh.getElementQualities(tags, "maxDetJac"))
@@ -30,38 +30,41 @@ def _jacobians(gmsh: Any) -> Floats:
 
 
 def repair(gmsh: Any) -> tuple[float, int]:
-    """Straighten the edges of bad elements, half-way at a time, until all are good.
+    """Straighten the edges of distorted elements, half-way at a time, until all are good.
 
-    Returns the smallest min/max Jacobian and how many elements were touched. gmsh's own optimiser
-    for curved elements is not used: it can abort the whole process.
+    Returns the smallest ratio min/max det J and the number of elements changed. gmsh's optimiser
+    for curved elements is not used, since it can abort the whole process.
 
-    Raises: MeshError where there are none, by walls that are too thin for the mesh.
+    Raises: MeshError where there are no elements, for walls that are too thin for the mesh.
     """
-    touched: set[int] = set()
+    changed: set[int] = set()
     ratios = _jacobians(gmsh)
     if not len(ratios):
         raise MeshError(
-            f"pin {gmsh.model.getCurrent()}: gmsh made no elements; look for walls that are far "
-            "thinner than the pin",
+            f"pin {gmsh.model.getCurrent()}: gmsh produced no elements; look for walls that are "
+            "far thinner than the pin",
             "no-elements",
         )
     for _ in range(MAX_REPAIRS):
         bad = np.flatnonzero(ratios <= MIN_JACOBIAN_RATIO)
         if not len(bad):
             break
-        touched.update(bad.tolist())
+        changed.update(bad.tolist())
         nodes = gmsh.model.mesh.getElementsByType(TETRA10)[1].reshape(-1, 10)[bad]
         for (a, b), middle in zip(GMSH_EDGES, range(4, 10), strict=True):
             for i, k, m in np.unique(nodes[:, [a, b, middle]], axis=0):
                 ends = [np.asarray(gmsh.model.mesh.getNode(n)[0]) for n in (i, k)]
-                now = np.asarray(gmsh.model.mesh.getNode(m)[0])
-                gmsh.model.mesh.setNode(m, list((now + (ends[0] + ends[1]) / 2.0) / 2.0), [])
+                at = np.asarray(gmsh.model.mesh.getNode(m)[0])
+                gmsh.model.mesh.setNode(m, list((at + (ends[0] + ends[1]) / 2.0) / 2.0), [])
         ratios = _jacobians(gmsh)
-    return float(ratios.min()), len(touched)
+    return float(ratios.min()), len(changed)
 
 
 def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet1:
-    """gmsh's mesh of either order, the named surfaces as its boundaries."""
+    """The mesh in gmsh's model, linear or quadratic, with named surfaces as boundaries.
+
+    surfaces: face tags by name.
+    """
     mesh = gmsh.model.mesh
     tags, coordinates, _ = mesh.getNodes()
     row = np.zeros(int(tags.max()) + 1, dtype=np.int64)
@@ -70,11 +73,12 @@ def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet1:
     linear = TETRA4 in mesh.getElementTypes(3)
     tetra, triangle, sides = (TETRA4, TRIANGLE3, 3) if linear else (TETRA10, TRIANGLE6, 6)
     cells = row[mesh.getElementsByType(tetra)[1]].reshape(-1, 4 if linear else 10)
-    made = quadratic(points, cells if linear else cells[:, GMSH_TO_VTK_TETRA10])
-    corners = np.flatnonzero(made.vertex >= 0)
-    made.mesh.doflocs[:, : len(corners)] = points[corners].T  # to the last digit
+    tetrahedra = quadratic(points, cells if linear else cells[:, GMSH_TO_VTK_TETRA10])
+    corners = np.flatnonzero(tetrahedra.vertex >= 0)
+    tetrahedra.mesh.doflocs[:, : len(corners)] = points[corners].T  # to the last digit
     named = {}
     for name, faces in surfaces.items():
         nodes = np.concatenate([mesh.getElementsByType(triangle, face)[1] for face in faces])
-        named[name] = find_facets(made, row[nodes].reshape(-1, sides)[:, :3])
-    return with_element(made.mesh.with_boundaries(named), "linear" if linear else "curved")
+        named[name] = find_facets(tetrahedra, row[nodes].reshape(-1, sides)[:, :3])
+    mesh_with_names = tetrahedra.mesh.with_boundaries(named)
+    return with_element(mesh_with_names, "linear" if linear else "curved")

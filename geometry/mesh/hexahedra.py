@@ -1,8 +1,8 @@
-"""A body of revolution as quadratic hexahedra of 20 nodes, structured, all of it or a sector.
+"""A structured mesh of a body of revolution, or a sector of it, by 20-node hexahedra.
 
 The disc of the smallest radius is a square surrounded by a fan; rings between the radii of the
-segments follow. Each layer along the axis has the cells that its segment fills. At a fillet the
-nodes about the sharp corner move out along the diagonal, until those on its sides are on the arc.
+segments follow. Each layer along the axis has the cells that its segment fills. At a fillet, nodes
+around the sharp corner move outwards along the diagonal, until those on its sides lie on the arc.
 """
 
 from __future__ import annotations
@@ -17,24 +17,21 @@ from skfem import ElementHexS2
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats, Ints
 
-SIDE_BULGE = 0.2  # by which the sides of the square are bent outwards, of its size
-SQUARE_SIZE_RATIO = 0.55  # its size over the radius of the disc
-MIN_FILLET_DEPTH = (
-    0.6  # of a fillet's radius, the least room behind its corner; without it that stays sharp
-)
-FACE_CORNER_ORDER = (
-    (0.0, 0.0),
-    (1.0, 0.0),
-    (1.0, 1.0),
-    (0.0, 1.0),
-)  # corners of a face, in their order
-NODE_TOLERANCE = 1e-7  # of the length: nodes closer than this are one
+SIDE_BULGE = 0.2  # outward bend of the square's sides, over its size
+SQUARE_SIZE_RATIO = 0.55  # size of the square over the radius of the disc
+# Depth of material behind a corner over the fillet's radius; with less, the corner stays sharp.
+MIN_FILLET_DEPTH = 0.6
+FACE_CORNER_ORDER = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+NODE_TOLERANCE = 1e-7  # of the smallest diameter: nodes closer than this are one
 
 
 @dataclass(frozen=True)
 class HexSize:
-    """around: cells in a quarter turn, even. along: length of a layer over the diameter, at most;
-    half of that next to corners and ends of bands that are further apart.
+    """The fineness of a mesh of hexahedra.
+
+    around: number of cells in a quarter turn, even.
+    along: largest length of a layer over the diameter; next to corners and ends of bands, layers
+    have half of the length unless a single one fills the space.
     """
 
     around: int = 4
@@ -43,10 +40,14 @@ class HexSize:
 
 @dataclass(frozen=True)
 class HexMesh:
-    """nodes: (N, 3) m. elements: (M, 20) in the order of skfem's ElementHexS2, whose first axis is
-    radial outside the square, the second runs around and the third along. outside: cells (by
-    segment) whose far side along the first axis is on its outer surface. quarters: of a turn, from
-    x towards y.
+    """A mesh of hexahedra.
+
+    nodes: (N, 3) m.
+    elements: (M, 20) node numbers in the order of skfem's ElementHexS2; its first axis is radial
+    outside the square, the second runs around and the third along the pin.
+    outside: for each segment, the cells whose far side along the first axis lies on its outer
+    surface.
+    quarters: number of quarter turns meshed, from x towards y.
     """
 
     nodes: Floats
@@ -57,7 +58,10 @@ class HexMesh:
 
 @dataclass(frozen=True)
 class _Patch:
-    """Cells of a quarter disc, (P, 20, 2) positions of their nodes, between two radii (m)."""
+    """Cells of a quarter disc between two radii.
+
+    position: (P, 20, 2) x and y of their nodes, m. inner, outer: radii, m.
+    """
 
     position: Floats
     inner: float
@@ -65,7 +69,7 @@ class _Patch:
 
 
 def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
-    """Mesh a pin, or as many quarters of it."""
+    """The mesh of a pin, or of some quarters of it."""
     patches = _patches(pin, fineness)
     layers = _layers(pin, fineness)
     segment = np.searchsorted(pin.stations[1:-1], layers.mean(axis=1), side="right")
@@ -94,22 +98,24 @@ def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
 
 
 def twenty() -> Ints:
-    """Which of skfem's nodes are those of other programs (VTK, CalculiX), in their order: corners,
-    middles of edges below, above and between.
+    """Numbers (20,) of skfem's nodes in the order of other programs (VTK, CalculiX).
+
+    Theirs is: corners, then midside nodes of the edges below, above and between.
     """
-    ours = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
+    skfem_nodes = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
     edges = zip(FACE_CORNER_ORDER, (*FACE_CORNER_ORDER[1:], FACE_CORNER_ORDER[0]), strict=True)
     middles = [((a + c) / 2, (b + d) / 2) for (a, b), (c, d) in edges]
-    theirs = [(*xy, z) for z in (0.0, 1.0) for xy in FACE_CORNER_ORDER]
-    theirs += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
-    theirs += [(*xy, 0.5) for xy in FACE_CORNER_ORDER]
-    return np.array([ours.index(x) for x in theirs])
+    order = [(*xy, z) for z in (0.0, 1.0) for xy in FACE_CORNER_ORDER]
+    order += [(*xy, z) for z in (0.0, 1.0) for xy in middles]
+    order += [(*xy, 0.5) for xy in FACE_CORNER_ORDER]
+    return np.array([skfem_nodes.index(x) for x in order])
 
 
 def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
+    """Nodes (N, 3) and elements (M, 20), from nodes (M, 20, 3) of each cell."""
     flat = points.reshape(-1, 3)
     key = np.round(flat / tolerance).astype(np.int64)
-    for axis in range(3):  # so that no two of one node round differently
+    for axis in range(3):  # so that equal coordinates have equal keys although they round apart
         order = np.argsort(key[:, axis], kind="stable")
         jump = np.diff(key[order, axis], prepend=key[order[0], axis]) > 2
         key[order, axis] = np.cumsum(jump)
@@ -119,58 +125,64 @@ def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
 
 @dataclass(frozen=True)
 class _Fillet:
-    """About a corner at radius r and z, of a shaft that goes along `way` (1 or -1) from it. depth:
-    behind the corner, to which nodes move, m.
+    """A fillet at the corner of a shaft and a shoulder.
+
+    r, z: of the corner, m.
+    direction: of the shaft from the corner, 1 or -1 along z.
+    radius: m.
+    depth: distance behind the corner within which nodes move, m.
     """
 
     r: float
     z: float
-    way: int
+    direction: int
     radius: float
     depth: float
 
     def moved(self, r: Floats, z: Floats) -> Floats:
-        """By how much nodes move along both axes, m.
+        """Displacement of nodes at r and z, equal along both axes, m.
 
-        With a and b the distances from the corner along shaft and face, b - a stays the same and
-        tells the place on the arc, from one tangent point (-radius) to the other (radius). Behind
-        the sides nodes move less, by how deep they are.
+        With a and b the distances from the corner along shaft and face, b - a does not change and
+        gives the place on the arc, from one tangent point (-radius) to the other (radius). Behind
+        the sides the displacement decreases linearly with depth.
         """
-        a, b = (z - self.z) * self.way, r - self.r
+        a, b = (z - self.z) * self.direction, r - self.r
         place = np.clip((b - a) / self.radius, -1.0, 1.0)
         reach = 1.0 - np.abs(place) / 2.0 - np.sqrt(0.5 - place**2 / 4.0)
-        deep = -np.minimum(a, b) / self.depth
-        left = np.where(deep > -NODE_TOLERANCE, np.clip(1.0 - deep, 0.0, 1.0), 0.0)
-        return np.asarray(self.radius * reach * left)
+        depth = -np.minimum(a, b) / self.depth
+        weight = np.where(depth > -NODE_TOLERANCE, np.clip(1.0 - depth, 0.0, 1.0), 0.0)
+        return np.asarray(self.radius * reach * weight)
 
 
 def _fillets(pin: Pin) -> list[_Fillet]:
-    """Those with room for them."""
-    found = []
+    """The fillets of a pin behind whose corners there is enough material."""
+    fillets = []
     for i, (left, right) in enumerate(pairwise(pin.segments)):
         radius = pin.fillet_at(i)
-        thin, thick, way = (left, right, -1) if left.diameter < right.diameter else (right, left, 1)
+        thin, thick, direction = (
+            (left, right, -1) if left.diameter < right.diameter else (right, left, 1)
+        )
         wall = (thin.diameter - max(thin.bore, thick.bore)) / 2.0
         depth = min(radius, wall, thick.length)
         if radius and depth >= MIN_FILLET_DEPTH * radius:
             at = thin.diameter / 2.0, pin.stations[i + 1]
-            found.append(_Fillet(*at, way, radius, depth))
-    return found
+            fillets.append(_Fillet(*at, direction, radius, depth))
+    return fillets
 
 
 def _filleted(pin: Pin, points: Floats) -> Floats:
-    """Nodes (..., 3) of cells with sharp corners where those with fillets have them."""
+    """Nodes (..., 3) of cells with fillets, from those with sharp corners."""
     r, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
     outwards, along = np.zeros_like(r), np.zeros_like(z)
     for fillet in _fillets(pin):
         move = fillet.moved(r, z)
-        outwards, along = outwards + move, along + fillet.way * move
+        outwards, along = outwards + move, along + fillet.direction * move
     stretch = 1.0 + np.divide(outwards, r, out=np.zeros_like(r), where=r > 0.0)
     return np.stack([points[..., 0] * stretch, points[..., 1] * stretch, z + along], axis=-1)
 
 
 def _layers(pin: Pin, fineness: HexSize) -> Floats:
-    """Bottom and top (L, 2) of the layers, m."""
+    """Bottom and top of the layers, (L, 2) m."""
     ends = {*pin.stations, *(e for band in pin.bands for e in (band.z0, band.z1))}
     z: list[float] = []
     for low, high in pairwise(sorted(ends)):
@@ -185,6 +197,7 @@ def _layers(pin: Pin, fineness: HexSize) -> Floats:
 
 
 def _patches(pin: Pin, fineness: HexSize) -> list[_Patch]:
+    """Square, fan and rings of a quarter disc, between all radii that occur."""
     ends = [fillet.r + fillet.radius for fillet in _fillets(pin)]
     every = sorted({*ends, *(x / 2.0 for s in pin.segments for x in (s.diameter, s.bore) if x)})
     radii = [r for below, r in pairwise([0.0, *every]) if r - below > pin.tolerance]
@@ -204,6 +217,8 @@ def _patches(pin: Pin, fineness: HexSize) -> list[_Patch]:
 
 
 def _ring(low: float, high: float, around: int, a: float, b: float) -> _Patch:
+    """A ring of cells between radii low and high, part of the patch from a to b."""
+
     def polar(u: Floats, v: Floats) -> Floats:
         radius, angle = low + u * (high - low), v * math.pi / 2.0 / around
         return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
@@ -212,6 +227,7 @@ def _ring(low: float, high: float, around: int, a: float, b: float) -> _Patch:
 
 
 def _grid(rows: int, columns: int, position: object, inner: float, outer: float) -> _Patch:
+    """A grid of cells; `position` maps u and v, counted in cells, to x and y."""
     local = np.asarray(ElementHexS2().doflocs)
     i, j = np.divmod(np.arange(rows * columns), columns)
     u, v = i[:, None] + local[:, 0], j[:, None] + local[:, 1]

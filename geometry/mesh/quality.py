@@ -1,6 +1,7 @@
-"""Validity of elements: inverted ones, and ones folded over their neighbours.
+"""Validity of elements: detection of inverted ones, and of ones folded over their neighbours.
 
-An assembly takes the size of det J, not its sign, so such a mesh gives a number all the same.
+Assembly uses the magnitude of det J, not its sign, so that an invalid mesh would yield numbers all
+the same.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from skfem import MeshTet2
 from geometry.mesh.tet10 import Quadratic
 from pinbase.arrays import Floats, Ints
 
-JACOBIAN_DEGREE = 3  # degree of det J of a quadratic tetrahedron
-DENSE_EDGE_POINTS = 12  # points along an edge where Bernstein's coefficients leave it open
+JACOBIAN_DEGREE = 3  # of det J as a polynomial, for a quadratic tetrahedron
+DENSE_EDGE_POINTS = 12  # intervals along an edge, where Bernstein coefficients are inconclusive
 
 
 def _lattice(order: int) -> Ints:
@@ -25,44 +26,45 @@ def _lattice(order: int) -> Ints:
 
 
 def _bernstein(at: Floats) -> Floats:
-    """The cubic polynomials of Bernstein at barycentric points (Q, 4): (Q, 20)."""
+    """Values (Q, 20) of the cubic Bernstein polynomials at barycentric points (Q, 4)."""
     powers = _lattice(JACOBIAN_DEGREE)
     times = [factorial(JACOBIAN_DEGREE) / prod(map(factorial, p)) for p in powers.tolist()]
     return np.asarray(np.prod(at[:, None, :] ** powers, axis=2) * np.array(times))
 
 
-def distortion(made: Quadratic) -> Floats:
-    """Least over largest det J of every element, (M,), at most 0 where it is bent inside out.
+def distortion(tetrahedra: Quadratic) -> Floats:
+    """Smallest over largest det J of every element, (M,), at most 0 where it is inverted.
 
-    Positive coefficients of Bernstein prove that det J is positive throughout; where they are not,
-    it is looked at closely. (Ten nodes are not enough: of bent elements with det J positive there
-    one in thirty was inside out elsewhere.)
+    Positive Bernstein coefficients prove that det J is positive throughout; where one is not, det J
+    is evaluated on a dense lattice. (The ten nodes are not enough: of curved elements with det J
+    positive there, one in thirty was inverted elsewhere.)
     """
     points = _lattice(JACOBIAN_DEGREE) / JACOBIAN_DEGREE
-    det = made.determinants(points[:, 1:])
+    det = tetrahedra.determinants(points[:, 1:])
     sign = np.sign(det.mean(axis=1, keepdims=True))
     det = det * sign
     coefficients = np.linalg.solve(_bernstein(points), det.T)
-    found = _ratio(det)
+    ratio = _ratio(det)
     open_ = np.flatnonzero(~(coefficients.min(axis=0) > 0.0))
     if len(open_):
         dense = (
-            made.determinants(_lattice(DENSE_EDGE_POINTS)[:, 1:] / DENSE_EDGE_POINTS, open_)
+            tetrahedra.determinants(_lattice(DENSE_EDGE_POINTS)[:, 1:] / DENSE_EDGE_POINTS, open_)
             * sign[open_]
         )
-        found[open_] = _ratio(dense)
-    return found
+        ratio[open_] = _ratio(dense)
+    return ratio
 
 
 def _ratio(det: Floats) -> Floats:
-    """Least over largest of each row; NaN of a flat element, whose det J is zero."""
+    """Smallest over largest value of each row; NaN for a flat element, whose det J is zero."""
     with np.errstate(invalid="ignore"):
         return np.asarray(det.min(axis=1) / det.max(axis=1))
 
 
 def folded(mesh: MeshTet2) -> int:
-    """How many facets have both their elements on one side: there one lies over the other, in
-    whichever sense its nodes are numbered. Of elements with plane sides.
+    """Number of inner facets whose two elements lie on the same side, so that they overlap.
+
+    Sides are taken as plane; the numbering of an element's nodes does not matter.
     """
     inner = np.flatnonzero(mesh.f2t[1] >= 0)
     facets, x = mesh.facets[:, inner], mesh.p.T

@@ -1,4 +1,4 @@
-"""An outline in gmsh's model, and its body of revolution."""
+"""Drawing of an outline in gmsh's model, and its body of revolution."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ def draw(
     add_point: Callable[[RZ], int],
     cuts: Callable[[Edge], list[RZ]] = lambda _: [],
 ) -> list[list[int]]:
-    """Curves of every edge in a kernel of gmsh; straight edges are cut at the points `cuts`."""
+    """Tags of the curves of every edge, drawn in a geometry kernel of gmsh.
+
+    cuts: gives the points at which a straight edge is divided.
+    """
     points: dict[RZ, int] = {}
 
     def point(rz: RZ) -> int:
@@ -36,11 +39,14 @@ def draw(
 
 
 def revolve(gmsh: Any, outline: tuple[Edge, ...], angle: float = 2.0 * math.pi) -> tuple[int, int]:
-    """Turn a closed outline about the z-axis, from the plane of x and z on; the solid's entity."""
+    """Make the body of revolution of a closed outline about the z-axis; returns its entity.
+
+    angle: of revolution, from the plane of x and z on, rad.
+    """
     occ = gmsh.model.occ
     curves = draw(occ, outline, lambda rz: occ.addPoint(rz[0], 0.0, rz[1]))
     face = occ.addPlaneSurface([occ.addCurveLoop([curve for (curve,) in curves])])
-    made = occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, angle)
+    entities = occ.revolve([(2, face)], 0, 0, 0, 0, 0, 1, angle)
     occ.remove([(2, face)])
     occ.synchronize()
-    return next((int(d), int(tag)) for d, tag in made if d == 3)
+    return next((int(d), int(tag)) for d, tag in entities if d == 3)

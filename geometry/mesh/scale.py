@@ -1,7 +1,7 @@
-"""The unit of length in which gmsh and OpenCASCADE get a pin, since their tolerances are lengths.
+"""The unit of length of a pin in gmsh and OpenCASCADE, whose tolerances are lengths.
 
-They take what is closer than 1e-7 for one, whatever the unit: of a pin of a micrometre they would
-see nothing. A power of two changes no digit of any dimension.
+They merge points closer than 1e-7, whatever the unit: nothing would be left of a pin of one
+micrometre. The unit is a power of two, which changes no digit of any dimension.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from itertools import pairwise
 
 from geometry.shape.pin import Pin
 
-MIN_DIMENSION = 1e-4  # a dimension that their tolerances leave alone
-MAX_DIAMETER = 100.0  # a diameter of which they find the volume to 1e-6
+MIN_DIMENSION = 1e-4  # m; far enough above their tolerances
+MAX_DIAMETER = 100.0  # m; up to which they compute volumes to 1e-6
 
 
 def unit_of(pin: Pin) -> float:
@@ -21,7 +21,7 @@ def unit_of(pin: Pin) -> float:
 
 
 def unit_of_solid(pin: Pin) -> float:
-    """The same where anything of the pin is too small in metres, or it too large; otherwise 1."""
+    """The unit (m) for the solid of a pin: 1 where its dimensions suit metres, else `unit_of`."""
     small = [x for s in pin.segments for x in (s.length, *s.bores, *(w / 2 for w in s.walls))]
     small += [rounding.radius for rounding in pin.roundings]
     for left, right in pairwise(pin.segments):

@@ -1,4 +1,4 @@
-"""The meridian section of a pin as second-order curved triangles, by gmsh, its outline named."""
+"""The mesh of a pin's meridian section by quadratic curved triangles, with its outline named."""
 
 from __future__ import annotations
 
@@ -35,15 +35,18 @@ __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
 TRIANGLE3, LINE2 = 2, 1  # gmsh's element types
 MAX_TRIANGLES = 2e5
-UNBOUNDED_LENGTH = 1e9  # beyond any pin, whose smallest diameter is 1
-MIN_FILLET_RATIO = 1e-8  # of the adjacent diameter: gmsh hangs at 1e-13
+UNBOUNDED_LENGTH = 1e9  # longer than any pin in a unit in which its smallest diameter is 1
+MIN_FILLET_RATIO = 1e-8  # over the adjacent diameter: gmsh hangs at 1e-13
 
 
 @dataclass(frozen=True)
 class MeridianMesh:
-    """Quadratic triangles. nodes: (N, 2) r and z, m, first those at corners, then those amid sides.
-    elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02. edges: by surface
-    name, the edges there in no order, (E, 3) node numbers: ends, then middle. axis: nodes at r = 0.
+    """A mesh of the meridian section by quadratic triangles.
+
+    nodes: (N, 2) r and z, m; corner nodes, then midside nodes.
+    elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02.
+    edges: by surface name, (E, 3) node numbers of the edges there, in no order: ends, then middle.
+    axis: numbers of the nodes at r = 0.
     """
 
     nodes: Floats
@@ -53,22 +56,23 @@ class MeridianMesh:
 
     @classmethod
     def of(cls, mesh: MeshTri2, edges: dict[str, Ints], axis: Ints) -> MeridianMesh:
-        """Of a mesh of scikit-fem, whose numbers of nodes edges and axis have."""
+        """The mesh from one of scikit-fem. edges, axis: with its node numbers."""
         nodes = np.ascontiguousarray(mesh.doflocs.T)
         elements = np.ascontiguousarray(mesh.dofs.element_dofs.T).astype(np.int64)
         return cls(nodes, elements, edges, axis)
 
     @cached_property
     def mesh(self) -> MeshTri2:
-        """As scikit-fem has it, with the same numbers of nodes; making it takes a while."""
+        """The mesh for scikit-fem, with the same node numbers; its construction takes a while."""
         from skfem import MeshTri2
 
         return MeshTri2(np.ascontiguousarray(self.nodes.T), np.ascontiguousarray(self.elements.T))
 
 
 def triangle_shapes(at: Floats) -> tuple[Floats, Floats]:
-    """Quadratic shape functions (6, Q) at points (2, Q) of the triangle with corners at 0, x = 1
-    and y = 1, and their derivatives (2, 6, Q) by x and y.
+    """Quadratic shape functions (6, Q) and their derivatives (2, 6, Q) by x and y.
+
+    at: (2, Q) points x, y of the triangle with corners at 0, x = 1 and y = 1.
     """
     x, y = at
     corner = np.stack([1.0 - x - y, x, y])
@@ -86,10 +90,14 @@ def meridian_mesh(
     finer: Iterable[Grade] = (),
     quiet: Collection[int] = (),
 ) -> MeridianMesh:
-    """Mesh a pin's section, finer at spots and where gradings say so; coarser at the fillets of
-    quiet corners.
+    """The mesh of a pin's section.
 
-    Raises: MeshError when the section cannot be meshed within reason.
+    size: fineness away from spots.
+    spots: points of the outline at which the mesh is finer.
+    finer: further gradings.
+    quiet: numbers of corners at whose fillets stress is low, so that they may be meshed coarsely.
+
+    Raises: MeshError when the mesh would be too large or a fillet is too small.
     """
     _require_reasonable(pin, size)
     unit = unit_of(pin)
@@ -99,13 +107,14 @@ def meridian_mesh(
     with gmsh_model(pin.name) as gmsh:
         _draw(gmsh, outline, spots)
         more = (grade.scaled(1.0 / unit) for grade in finer)
-        parts = _stretch(gmsh, stretches(pin, size), size.growth)
-        _set_sizes(gmsh, parts, [*grades(pin, size, spots, quiet), *more])
+        largest = _stretch_sizes(gmsh, stretches(pin, size), size.growth)
+        _set_sizes(gmsh, largest, [*grades(pin, size, spots, quiet), *more])
         gmsh.model.mesh.generate(2)
         return _collect(gmsh, unit, outline)
 
 
 def _require_reasonable(pin: Pin, size: SectionSize) -> None:
+    """Raises: MeshError when the mesh would be too large or a fillet is too small."""
     if (count := triangles(pin, size)) > MAX_TRIANGLES:
         raise MeshError(
             f"pin {pin.name}: the mesh would need {count:.1e} elements, because the thinnest part "
@@ -125,31 +134,32 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
 
 
 def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> None:
-    """Curves of every edge in turn, which is cut at the reach of spots at its ends."""
+    """Draw the outline, its edges divided at the reach of spots at their ends."""
     geo = gmsh.model.geo
     curves = draw(geo, outline, lambda rz: geo.addPoint(*rz, 0.0), lambda e: _cuts(e, spots))
-    geo.addPlaneSurface([geo.addCurveLoop([c for found in curves for c in found])])
+    geo.addPlaneSurface([geo.addCurveLoop([curve for edge in curves for curve in edge])])
     geo.synchronize()
 
 
 def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
+    """Points at which a straight edge is divided."""
     length = math.dist(edge.start, edge.end)
     reaches = {(s.r, s.z): s.reach for s in spots}
-    parts = {
+    fractions = {
         reach / length if end is edge.start else 1.0 - reach / length
         for end in (edge.start, edge.end)
         if (reach := reaches.get(end))
     }
     (r, z), (to_r, to_z) = edge.start, edge.end
-    apart = [0.0]
-    for x in sorted(parts):
-        if apart[-1] + 0.001 < x < 0.999:  # two cuts in one place leave an edge without length
-            apart.append(x)
-    return [(r + x * (to_r - r), z + x * (to_z - z)) for x in apart[1:]]
+    distinct = [0.0]
+    for x in sorted(fractions):
+        if distinct[-1] + 0.001 < x < 0.999:  # coincident points would leave an edge of no length
+            distinct.append(x)
+    return [(r + x * (to_r - r), z + x * (to_z - z)) for x in distinct[1:]]
 
 
-def _stretch(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, list[int]]:
-    """The largest size, and fields for the stretches that have a smaller one."""
+def _stretch_sizes(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, list[int]]:
+    """The largest element size, and size fields for the stretches that have a smaller one."""
     far = max(part.near for part in parts)
     fields: list[int] = []
     for part in parts:
@@ -161,17 +171,21 @@ def _stretch(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, lis
 
 
 def _field(gmsh: Any, kind: str, numbers: dict[str, float]) -> int:
+    """Tag of a size field with these parameters."""
     tag = gmsh.model.mesh.field.add(kind)
     for key, value in numbers.items():
         gmsh.model.mesh.field.setNumber(tag, key, value)
     return int(tag)
 
 
-def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]) -> None:
-    """Element size as the least of gradings and of what is set already."""
+def _set_sizes(gmsh: Any, largest: tuple[float, list[int]], gradings: Iterable[Grade]) -> None:
+    """Set the element size to the minimum of gradings and of the fields of stretches.
+
+    largest: the largest element size, and the fields, as of `_stretch_sizes`.
+    """
     field, geo = gmsh.model.mesh.field, gmsh.model.geo
-    far, fields = parts
-    for grade in found:
+    far, fields = largest
+    for grade in gradings:
         if grade.near >= far:
             continue
         distance = field.add("Distance")
@@ -182,13 +196,15 @@ def _set_sizes(gmsh: Any, parts: tuple[float, list[int]], found: Iterable[Grade]
     geo.synchronize()
     set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
-    # Of the size along curves; gmsh's own 1e-9 takes half of the time for nodes in the same places.
+    # Precision of the size along curves: gmsh's default of 1e-9 takes as long as all the rest, and
+    # gives the same nodes.
     gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
 
 
 def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
-    """Of gmsh's straight triangles, the middles of whose sides are added here: on arcs half-way
-    along these. Lines are in the order in which curves were drawn, once round the outline.
+    """The mesh from gmsh's straight triangles, with midside nodes added, on arcs where these are.
+
+    gmsh's lines are in the order in which curves were drawn, once around the outline.
     """
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     triangles = gmsh.model.mesh.getElementsByType(TRIANGLE3)[1].astype(np.int64)
@@ -203,33 +219,35 @@ def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
     points[tags] = coordinates.reshape(-1, 3)[:, :2]
     points = points[used]
     corners, lines = row[triangles].reshape(-1, 3), row[lines]
+    # Number the sides of all triangles once, and put a node in the middle of each.
     key = _sides(corners[:, [[0, 1], [1, 2], [0, 2]]], count)
     sides = np.unique(key)
     low, high = np.divmod(sides, count)
     middles = (points[low] + points[high]) / 2.0
     elements = np.hstack([corners, count + np.searchsorted(sides, key)])
     halves = count + np.searchsorted(sides, _sides(lines, count))
+    # The lines of each edge of the outline run from its start to the start of the next.
     at = {(r, z): k for k, (r, z) in enumerate(points[lines[:, 0]].tolist())}
     ends = [*(at[e.start] for e in outline), len(lines)]
     edges: dict[str, list[Ints]] = {}
     axis: list[Ints] = [np.zeros(0, dtype=np.int64)]
     for e, (first, last) in zip(outline, pairwise(ends), strict=True):
-        here = halves[first:last] - count
+        sides_of_edge = halves[first:last] - count
         if isinstance(e, Arc):
-            off = middles[here] - e.centre
-            middles[here] = e.centre + off * (e.radius / np.hypot(*off.T))[:, None]
-        found = np.column_stack([lines[first:last], halves[first:last]])
+            arm = middles[sides_of_edge] - e.centre
+            middles[sides_of_edge] = e.centre + arm * (e.radius / np.hypot(*arm.T))[:, None]
+        numbers = np.column_stack([lines[first:last], halves[first:last]])
         if e.name:
-            edges.setdefault(e.name, []).append(found)
+            edges.setdefault(e.name, []).append(numbers)
         else:
-            axis.append(found.ravel())
+            axis.append(numbers.ravel())
     on_axis = np.unique(np.concatenate(axis))
     nodes = np.concatenate([points, middles]) * unit
     nodes[on_axis, 0] = 0.0
-    named = {name: np.concatenate(found) for name, found in edges.items()}
+    named = {name: np.concatenate(blocks) for name, blocks in edges.items()}
     return MeridianMesh(nodes, elements, named, on_axis)
 
 
 def _sides(ends: Ints, count: int) -> Ints:
-    """A number for each pair (.., 2) of nodes, of which there are `count`, in whichever order."""
+    """A number for each pair (.., 2) of nodes, whatever their order. count: number of nodes."""
     return np.asarray(ends.min(axis=-1) * count + ends.max(axis=-1))

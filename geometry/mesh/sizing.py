@@ -1,4 +1,4 @@
-"""How large the elements of a section are, and where: the least of several gradings."""
+"""Element sizes of a section's mesh, by position: the minimum of several gradings."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from dataclasses import dataclass
 from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ
 
-LOW_STRESS_ARC, LOW_STRESS_GROWTH = (
-    1.5,
-    1.0,
-)  # as of SectionSize, of fillets where nothing is looked for
-ROUNDED_EDGE_ARC_RATIO = (
-    0.4  # elements along a rounded edge, where stress is low, over those along a fillet
-)
+# `arc` and `growth` as of SectionSize, at fillets where stress is low.
+LOW_STRESS_ARC, LOW_STRESS_GROWTH = 1.5, 1.0
+# Elements along a rounded edge, where stress is low, over those along a fillet.
+ROUNDED_EDGE_ARC_RATIO = 0.4
 TRIANGLE_AREA_RATIO = 0.43  # area of a triangle over its side squared
-MAX_UNIFORM_TRIANGLES = 1e4  # triangles of a first mesh
-SPOT_GROWTH = 0.6  # growth of elements next to a spot, on all meshes
+MAX_UNIFORM_TRIANGLES = 1e4  # of a first mesh with one size for all parts
+SPOT_GROWTH = 0.6  # increase of the element size per distance from a spot, on all meshes
 
 
 @dataclass(frozen=True)
 class SectionSize:
-    """How fine. across: elements over the thinnest shaft or wall. arc: elements along a fillet's
-    quarter circle. growth: increase of the element size per distance from where it is small.
+    """The fineness of a section's mesh.
+
+    across: number of elements over the thinnest shaft or wall.
+    arc: number of elements along a fillet's quarter circle.
+    growth: increase of the element size per distance from where it is small.
     """
 
     across: float = 2.0
@@ -39,8 +39,11 @@ class SectionSize:
 
 @dataclass(frozen=True, order=True)
 class Spot:
-    """A point of the outline where the elements are `size` (m) small; within `reach` (m) of it they
-    grow as fast as on the coarsest mesh.
+    """A point of the outline at which elements are small.
+
+    r, z: m.
+    size: element size there, m.
+    reach: distance within which elements grow as fast as on the coarsest mesh, m.
     """
 
     r: float
@@ -49,14 +52,17 @@ class Spot:
     reach: float
 
     def scaled(self, factor: float) -> Spot:
-        """The same in another unit."""
+        """The same spot in another unit of length: all lengths times `factor`."""
         return Spot(*(x * factor for x in (self.r, self.z, self.size, self.reach)))
 
 
 @dataclass(frozen=True)
 class Grade:
-    """Elements of size `near` (m) within the distance `flat` (m) of points, larger from there on by
-    `growth` per distance.
+    """A grading of element size around points.
+
+    points: r and z, m.
+    near: element size within the distance `flat` of a point, both in m.
+    growth: increase of the element size per distance from there.
     """
 
     points: tuple[RZ, ...]
@@ -65,19 +71,19 @@ class Grade:
     growth: float
 
     def scaled(self, factor: float) -> Grade:
-        """The same in another unit."""
+        """The same grading in another unit of length: all lengths times `factor`."""
         points = tuple((r * factor, z * factor) for r, z in self.points)
         return Grade(points, self.near * factor, self.flat * factor, self.growth)
 
     def at(self, place: RZ) -> float:
-        """Element size there, m."""
+        """Element size at a place (r, z), m."""
         distance = min(math.dist(place, point) for point in self.points)
         return self.near + self.growth * max(distance - self.flat, 0.0)
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """Elements of size `near` (m) between two z (m), larger from there on."""
+    """A part of the pin between two z (m) with elements of size `near` (m), larger outside."""
 
     z0: float
     z1: float
@@ -85,15 +91,17 @@ class Stretch:
 
 
 def stretches(pin: Pin, size: SectionSize) -> list[Stretch]:
-    """Element sizes by the thickness of each part, if a pin would have too many elements by that of
-    its thinnest; otherwise that one all over.
+    """Element sizes along a pin.
+
+    They follow the thinnest part of the pin, unless that takes too many elements; then each part
+    has the size that follows from its own thickness.
     """
     parts: list[Stretch] = []
     triangles, first = 0.0, largest(pin, SectionSize())
-    for (diameters, bores), found in itertools.groupby(
+    for (diameters, bores), group in itertools.groupby(
         zip(pin.segments, pin.stations, strict=False), lambda at: (at[0].diameters, at[0].bores)
     ):
-        ends = [(z, z + s.length) for s, z in found]
+        ends = [(z, z + s.length) for s, z in group]
         z0, z1 = ends[0][0], ends[-1][1]
         walls = [d - b for d, b in zip(diameters, bores, strict=True)]
         parts.append(Stretch(z0, z1, min(*walls, z1 - z0) / size.across))
@@ -106,7 +114,7 @@ def stretches(pin: Pin, size: SectionSize) -> list[Stretch]:
 
 
 def triangles(pin: Pin, size: SectionSize) -> float:
-    """How many it takes where nothing is small, roughly."""
+    """Approximate number of triangles of a mesh without small features."""
     total = 0.0
     for part in stretches(pin, size):
         for s, z in zip(pin.segments, pin.stations, strict=False):
@@ -116,34 +124,38 @@ def triangles(pin: Pin, size: SectionSize) -> float:
 
 
 def largest(pin: Pin, size: SectionSize) -> float:
-    """Element size (m) away from all that is small: by the thinnest wall, or half a shaft."""
+    """Element size away from small features, by the smallest diameter less bore, m."""
     return min(min(s.walls) for s in pin.segments) / size.across
 
 
 def grades(
     pin: Pin, size: SectionSize, spots: Iterable[Spot], quiet: Collection[int] = ()
 ) -> list[Grade]:
-    """About all roundings and spots. quiet: numbers of corners whose fillets may be coarse."""
+    """Gradings around all roundings and spots.
+
+    quiet: numbers of corners whose fillets may be meshed coarsely.
+    """
     out = []
     arcs: dict[tuple[float, float], list[RZ]] = {}
     coarse: dict[tuple[float, float], list[RZ]] = {}
     edges: dict[tuple[float, float], list[RZ]] = {}
-    calm = {f"fillet {i + 1}" for i in quiet}
+    quiet_fillets = {f"fillet {i + 1}" for i in quiet}
     for rounding in pin.roundings:
-        kind = edges if not rounding.inner else coarse if rounding.name in calm else arcs
+        kind = edges if not rounding.inner else coarse if rounding.name in quiet_fillets else arcs
         kind.setdefault((rounding.radius, rounding.reach), []).append(rounding.at)
-    for found, arc, growth in (
+    for group, arc, growth in (
         (arcs, size.arc, size.growth),
         (coarse, LOW_STRESS_ARC, LOW_STRESS_GROWTH),
         (edges, ROUNDED_EDGE_ARC_RATIO * size.arc, size.growth),
     ):
-        for (rho, reach), corners in found.items():
+        for (rho, reach), corners in group.items():
             out.append(Grade(tuple(corners), rho * math.pi / 2.0 / arc, 1.3 * reach, growth))
-    close: dict[tuple[float, float], list[RZ]] = {}
+    by_size: dict[tuple[float, float], list[RZ]] = {}
     for s in dict.fromkeys(spots):
-        close.setdefault((s.size, s.reach), []).append((s.r, s.z))
-    for (near, reach), places in close.items():
+        by_size.setdefault((s.size, s.reach), []).append((s.r, s.z))
+    for (near, reach), places in by_size.items():
         points = tuple(places)
+        # A very small spot grows as on the coarsest mesh up to its reach, and from there as usual.
         steep = near < size.growth * reach
         out.append(Grade(points, near, 0.0, SPOT_GROWTH if steep else size.growth))
         if steep:
@@ -152,5 +164,5 @@ def grades(
 
 
 def size_at(pin: Pin, size: SectionSize, spots: Iterable[Spot], place: RZ) -> float:
-    """Element size (m) at a place (r, z)."""
+    """Element size at a place (r, z), m."""
     return min([largest(pin, size), *(g.at(place) for g in grades(pin, size, spots))])

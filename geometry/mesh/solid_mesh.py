@@ -1,4 +1,4 @@
-"""The solid of a pin as tetrahedra, by gmsh, with every surface named."""
+"""The mesh of a pin's solid by tetrahedra of gmsh, with every surface named."""
 
 from __future__ import annotations
 
@@ -27,9 +27,12 @@ MAX_ELEMENTS = 1e6
 
 @dataclass(frozen=True)
 class MeshSize:
-    """How fine. across: elements over the smallest diameter. corner: how many times finer at sharp
-    corners and edges of bands. arc: elements along a fillet's quarter circle. growth: increase of
-    the element size per distance from there.
+    """The fineness of a solid's mesh.
+
+    across: number of elements over the smallest diameter.
+    corner: fineness at sharp corners and edges of bands, relative to that.
+    arc: number of elements along a fillet's quarter circle.
+    growth: increase of the element size per distance from there.
     """
 
     across: float = 4.0
@@ -44,11 +47,12 @@ class MeshSize:
 
 @dataclass(frozen=True)
 class SolidMesh:
-    """mesh: tetrahedra, m, quadratic unless others were requested (geometry.mesh.elements); its
-    `boundaries` map surface names to facets.
+    """A mesh of tetrahedra, and its quality.
 
-    jacobian: smallest min/max det J of all elements. repaired: number of elements whose edges were
-    straightened to get there.
+    mesh: coordinates in m, quadratic unless others were requested (geometry.mesh.elements); its
+    `boundaries` map surface names to facets.
+    jacobian: smallest ratio min/max det J of all elements.
+    repaired: number of elements whose edges were straightened to reach it.
     """
 
     mesh: MeshTet1
@@ -57,7 +61,7 @@ class SolidMesh:
 
     @property
     def nodes(self) -> Floats:
-        """Coordinates of all nodes, (N, 3), m."""
+        """Coordinates of all nodes, (N, 3) m."""
         points: Floats = self.mesh.doflocs.T
         return points
 
@@ -65,32 +69,37 @@ class SolidMesh:
 def solid_mesh(
     pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...] = (), element: Element = "curved"
 ) -> SolidMesh:
-    """Mesh a pin; `edges` are z (m) of further circles on the surface to refine at.
+    """The mesh of a pin.
+
+    edges: z of further circles on the surface at which it is refined, m.
+    element: kind of tetrahedra.
 
     Raises: MeshError when elements are still inverted or slivers after repair and on finer meshes.
     """
-    small = "a fillet or bore that is very small compared with its neighbours"
-    return sound_mesh(lambda finer: _mesh(pin, finer, edges, element), size, pin.name, small)
+    cause = "a fillet or bore that is very small compared with its neighbours"
+    return sound_mesh(lambda finer: _mesh(pin, finer, edges, element), size, pin.name, cause)
 
 
 def sound_mesh(
-    make: Callable[[MeshSize], SolidMesh], size: MeshSize, pin: str, small: str
+    make: Callable[[MeshSize], SolidMesh], size: MeshSize, pin: str, cause: str
 ) -> SolidMesh:
-    """The first mesh, of this size and two finer ones, without inverted or sliver elements. small:
-    what may be the cause, as text.
+    """The first mesh without inverted or sliver elements, of this size and two finer ones.
+
+    make: generates a mesh of a size.
+    pin, cause: name of the pin and possible cause, for the message.
 
     Raises: MeshError if there is none.
     """
-    tried = []
+    jacobians = []
     for factor in (1.0, 1.15, 1.35):
         mesh = make(size.finer(factor))
         if mesh.jacobian > MIN_JACOBIAN_RATIO:
             return mesh
-        tried.append(mesh.jacobian)
+        jacobians.append(mesh.jacobian)
     raise MeshError(
         f"pin {pin}: gmsh produced inverted or sliver elements at three mesh sizes (min/max "
-        f"Jacobian {', '.join(f'{j:.2g}' for j in tried)}; at least {MIN_JACOBIAN_RATIO} is "
-        f"required), and straightening their edges did not help; look for {small}",
+        f"Jacobian {', '.join(f'{j:.2g}' for j in jacobians)}; at least {MIN_JACOBIAN_RATIO} is "
+        f"required), and straightening their edges did not help; look for {cause}",
         "bad-elements",
     )
 
@@ -98,6 +107,7 @@ def sound_mesh(
 def _mesh(
     pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element
 ) -> SolidMesh:
+    """A mesh of a pin of this size, after repair; arguments as of `solid_mesh`."""
     profile = pin.profile if isinstance(pin, CutPin) else pin
     _require_reasonable(profile, size)
     unit = unit_of_solid(profile)
@@ -125,7 +135,7 @@ def _mesh(
 
 
 def _require_reasonable(pin: Pin, size: MeshSize) -> None:
-    """Raises: MeshError when even the coarse part of the mesh would be too large to make."""
+    """Raises: MeshError when even the coarse part of the mesh would be too large."""
     elements = pin.volume / (0.12 * _far(pin, size) ** 3)  # 0.12 h^3: a regular tetrahedron
     if elements > MAX_ELEMENTS:
         raise MeshError(
@@ -136,13 +146,13 @@ def _require_reasonable(pin: Pin, size: MeshSize) -> None:
 
 
 def _far(pin: Pin, size: MeshSize) -> float:
-    """Element size (m) away from all features: by the thinnest shaft or wall."""
+    """Element size away from all features, by the thinnest shaft or wall, m."""
     walls = [wall / 2 for s in pin.segments if any(s.bores) for wall in s.walls]
     return min([pin.smallest_diameter / size.across, *walls])
 
 
 def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, list[int]]:
-    """Surface tags by name, distinguished by the end points of the edge that made them."""
+    """Surface tags by name, identified by the end points of the edge that was revolved."""
     named: dict[str, list[int]] = {}
     digits = round(6 - math.log10(pin.smallest_diameter))
 
@@ -172,7 +182,10 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
 def set_sizes(
     gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], more: list[int]
 ) -> None:
-    """Element size as the least of graded fields about every feature circle, and `more` fields."""
+    """Set the element size to the minimum of gradings around all features, and of `more` fields.
+
+    Features are sharp corners, circles at z = `edges` (m), roundings and bores.
+    """
     far = _far(pin, size)
     near = far / size.corner
     circles = [(c.r, c.z, near, 0.0) for c in sharp_corners(pin)]
@@ -182,6 +195,7 @@ def set_sizes(
     for rounding in pin.roundings:
         arc = min(far, rounding.radius * math.pi / 2 / size.arc)
         circles.append((*rounding.at, arc, 1.3 * rounding.reach))
+    # Around a circle: h within the distance `flat`, then growing; d + |d| is zero inside.
     tags = list(more)
     for r, z, h, flat in dict.fromkeys(circles):
         d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"

@@ -1,1 +1,1 @@
-"""The shape of a pin: segments, bands, fillets, holes and flats; its outline and corners."""
+"""The shape of a pin: its segments, bands, fillets, cuts, outline and corners."""

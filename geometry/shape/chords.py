@@ -1,4 +1,4 @@
-"""Which points of a curve its chords need."""
+"""Selection of the points of a curve that its polyline needs."""
 
 from __future__ import annotations
 
@@ -9,14 +9,16 @@ import numpy as np
 from pinbase.arrays import Floats, Mask
 
 
-def needed(at: Floats, values: Floats, allowed: Floats, kept: Mask) -> Mask:
-    """Which of N points to keep so that straight lines between them miss no value (N, V) at the
-    others by more than is `allowed` (the same shape). at: (N,) along the curve. kept: (N,) points
-    that are kept in any case, with the first and the last.
+def needed(at: Floats, values: Floats, allowed: Floats, fixed: Mask) -> Mask:
+    """Mask (N,) of the points to keep, so that straight lines between them approximate the curve.
 
-    After Ramer (1972), Douglas and Peucker (1973).
+    at: (N,) position along the curve.
+    values, allowed: (N, V) values at the points, and the deviation that is allowed of each.
+    fixed: (N,) points that are kept in any case, in addition to the first and the last.
+
+    Source: Ramer (1972), Douglas and Peucker (1973).
     """
-    keep = kept.copy()
+    keep = fixed.copy()
     keep[[0, -1]] = True
     open_ = list(pairwise(np.flatnonzero(keep).tolist()))
     while open_:
@@ -24,8 +26,8 @@ def needed(at: Floats, values: Floats, allowed: Floats, kept: Mask) -> Mask:
         if last - first < 2:
             continue
         inner = slice(first + 1, last)
-        part = (at[inner] - at[first]) / ((at[last] - at[first]) or 1.0)
-        line = values[first] + part[:, None] * (values[last] - values[first])
+        fraction = (at[inner] - at[first]) / ((at[last] - at[first]) or 1.0)
+        line = values[first] + fraction[:, None] * (values[last] - values[first])
         excess = (np.abs(values[inner] - line) / allowed[inner]).max(axis=1)
         worst = first + 1 + int(excess.argmax())
         if excess[worst - first - 1] > 1.0:

@@ -1,4 +1,4 @@
-"""Where two surfaces of a pin meet: the vertices of its outline and their angles."""
+"""The vertices of a pin's outline, at which two surfaces meet, and their angles."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from geometry.shape.pin import Pin
 from geometry.shape.polygon import RZ, cross
 from geometry.shape.profile import Arc, Edge, meridian
 
-MIN_SHAFT_LENGTH = (
-    1e-9  # of the smallest diameter: what rounding leaves of a shaft that fillets take whole
-)
+# Of the smallest diameter: round-off leaves less than this of a shaft that fillets take whole.
+MIN_SHAFT_LENGTH = 1e-9
 
 
 @dataclass(frozen=True)
 class Vertex:
     """A circle at (r, z), m, where two surfaces meet.
 
-    angle: of the material between them, rad: below pi at a rim, pi where they go on smoothly, above
-    at an inner corner. between: the surfaces' names, counter-clockwise in (r, z).
+    angle: of the material between them, rad; below pi at a rim, pi where they join smoothly, above
+    pi at an inner corner.
+    between: names of the two surfaces, counter-clockwise in (r, z).
     """
 
     r: float
@@ -31,28 +31,28 @@ class Vertex:
 
 @lru_cache(64)
 def vertices(pin: Pin) -> tuple[Vertex, ...]:
-    """All vertices off the axis, counter-clockwise in (r, z), from the start face's outer rim on.
+    """All vertices off the axis, counter-clockwise in (r, z) from the start face's outer rim on.
 
-    Angles are those between the tangents there: pi where a fillet runs into its shaft.
+    Angles are those between tangents: pi where a fillet joins its shaft.
     """
     short = MIN_SHAFT_LENGTH * pin.smallest_diameter
     edges = [e for e in meridian(pin) if math.dist(e.start, e.end) > short]
-    found = []
+    corners = []
     for before, after in zip(edges, (*edges[1:], edges[0]), strict=True):
         if before.name and after.name and after.start[0] > 0.0:
             turn = _turn(_tangent(before, before.end), _tangent(after, after.start))
             between = (before.name, after.name)
-            found.append(Vertex(*after.start, math.pi - turn, between))
-    return tuple(found)
+            corners.append(Vertex(*after.start, math.pi - turn, between))
+    return tuple(corners)
 
 
 def _tangent(edge: Edge, at: RZ) -> RZ:
-    """A vector along the edge, as it is walked."""
+    """A vector along an edge in its direction, at one of its ends."""
     if isinstance(edge, Arc):
         return edge.along[0] if at == edge.start else edge.along[1]
     return edge.end[0] - edge.start[0], edge.end[1] - edge.start[1]
 
 
 def _turn(before: RZ, after: RZ) -> float:
-    """Angle to the left from one vector to the other, -pi to pi."""
+    """Angle from one vector to the other, positive to the left, -pi to pi."""
     return math.atan2(cross(before, after), before[0] * after[0] + before[1] * after[1])

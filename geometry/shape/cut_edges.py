@@ -1,7 +1,7 @@
-"""Edges of cuts as a drawing shows them: in the view on a pin from y, x upwards and z to the right.
+"""Edges of cuts in a drawing: the view of a pin from y, with x upwards and z to the right.
 
-What lies on the side of y is seen, what is inside or behind is hidden. Notches are where the
-silhouette of the pin, or its section with the plane y = 0, is cut back.
+Edges on the side of y are visible, those inside or behind are hidden. Notches are the rectangles by
+which the pin's silhouette, or its section with the plane y = 0, is cut back.
 """
 
 from __future__ import annotations
@@ -21,14 +21,17 @@ from geometry.shape.pin import Pin
 from pinbase.arrays import Floats
 
 CIRCLE_ANGLES = np.linspace(0.0, 2.0 * np.pi, 73)
-UPRIGHT_TOLERANCE = 1e-3  # rad: how far off x a cut may be milled from that is seen from aside
-FRONT_TOLERANCE = 1e-9  # of the pin's radius
+UPRIGHT_TOLERANCE = 1e-3  # rad: a cut milled from this close to x is seen from its side
+FRONT_TOLERANCE = 1e-9  # of the pin's radius: points this little behind y = 0 are in front
 
 
 @dataclass(frozen=True)
 class DrawnCut:
-    """lines: points (P, 2), z and x in m, and whether a line is hidden. notches: z and x (m) of two
-    opposite corners of rectangles, the second on the silhouette; their edges are among the lines.
+    """The edges of a cut in a drawing.
+
+    lines: points (P, 2), z and x in m, and whether the line is hidden.
+    notches: z and x of two opposite corners of rectangles, the second on the silhouette, m; their
+    edges are among the lines.
     """
 
     lines: tuple[tuple[Floats, bool], ...]
@@ -36,7 +39,7 @@ class DrawnCut:
 
 
 def drawn(cut: Cut, pin: Pin) -> DrawnCut:
-    """Of a cut of a profile."""
+    """The edges of a cut in a profile."""
     if isinstance(cut, Hole):
         return DrawnCut(tuple(_hole(cut, pin)))
     if isinstance(cut, Passage):
@@ -47,45 +50,49 @@ def drawn(cut: Cut, pin: Pin) -> DrawnCut:
 
 
 def _bore(pin: Pin, z: float) -> float:
+    """Radius of the bore at z, m; 0 beyond the pin."""
     return pin.radii(z)[0] if 0.0 <= z <= pin.length else 0.0
 
 
 def _placed(angle: float, u: Floats, aside: Floats, z: Floats) -> Floats:
-    """Points (P, 3) at distances u along a direction across the pin and aside from it."""
+    """Points (P, 3) at distances u along a direction across the pin, and `aside` of it."""
     c, s = math.cos(angle), math.sin(angle)
     u, aside, z = np.broadcast_arrays(u, aside, z)
     return np.stack([c * u - s * aside, s * u + c * aside, z], axis=1)
 
 
 def _seen(points: Floats) -> list[tuple[Floats, bool]]:
-    """A line on the outside of a pin, its parts in front and behind."""
+    """A line on the outside of a pin as its visible and hidden parts. points: (P, 3)."""
     front = points[:, 1] >= -FRONT_TOLERANCE * np.abs(points[:, :2]).max()
     changes = np.flatnonzero(front[1:] != front[:-1]) + 1
     out = []
-    for part in np.split(np.arange(len(points)), changes):
-        if part[0] > 0:
-            part = np.concatenate([[part[0] - 1], part])
-        out.append((_flat_view(points[part]), not bool(front[part[-1]])))
+    for rows in np.split(np.arange(len(points)), changes):
+        if rows[0] > 0:  # parts share their end points
+            rows = np.concatenate([[rows[0] - 1], rows])
+        out.append((_flat_view(points[rows]), not bool(front[rows[-1]])))
     return [(x, hidden) for x, hidden in out if len(x) > 1]
 
 
 def _flat_view(points: Floats) -> Floats:
+    """Points (P, 2), z and x, of points (P, 3)."""
     return np.asarray(points[:, [2, 0]])
 
 
 def _inside(points: Floats) -> list[tuple[Floats, bool]]:
-    """A line inside of a pin, unless it is seen as a point."""
+    """A hidden line inside a pin, or none where it appears as a point. points: (P, 3)."""
     x = _flat_view(points)
     return [(x, True)] if np.ptp(x, axis=0).max() > 1e-6 * np.abs(points).max() else []
 
 
 def _mouth(angle: float, a: float, z: float, r: float, side: float) -> Floats:
+    """The mouth of a hole of radius a on a cylinder of radius r, on either side, (P, 3)."""
     aside, along = a * np.cos(CIRCLE_ANGLES), a * np.sin(CIRCLE_ANGLES)
     u = side * np.sqrt(np.maximum(r**2 - aside**2, 0.0))
     return _placed(angle, u, aside, z + along)
 
 
 def _hole(hole: Hole, pin: Pin) -> list[tuple[Floats, bool]]:
+    """The edges of a hole across the pin: mouths, walls and bottom."""
     r, a, out = outer_radius(pin, hole.z), hole.diameter / 2.0, []
     bore, wide = _bore(pin, hole.z), hole.chamfer + hole.mouth_radius
     sides = (1.0, -1.0) if hole.depth is None else (1.0,)
@@ -94,15 +101,17 @@ def _hole(hole: Hole, pin: Pin) -> list[tuple[Floats, bool]]:
     for side in sides:
         for radius in dict.fromkeys((a, a + wide)):
             out += _seen(_mouth(hole.angle, min(radius, r), hole.z, r, side))
-        for way in (-1.0, 1.0):
+        for direction in (-1.0, 1.0):
             walls = [(a, low, r - wide), (a + wide, r - wide, r)] if wide else [(a, low, r)]
             line = [(w, u) for w, first, last in walls for u in (first, last)]
             w, u = np.array(line).T
-            out += _inside(_placed(hole.angle, side * u, np.zeros(len(u)), hole.z + way * w))
+            out += _inside(_placed(hole.angle, side * u, np.zeros(len(u)), hole.z + direction * w))
     if hole.depth is not None and floor <= -bore and bore:  # through the bore into the other wall
         ends = np.array([-bore, floor])
-        for way in (-1.0, 1.0):
-            out += _inside(_placed(hole.angle, ends, np.zeros(2), np.full(2, hole.z + way * a)))
+        for direction in (-1.0, 1.0):
+            out += _inside(
+                _placed(hole.angle, ends, np.zeros(2), np.full(2, hole.z + direction * a))
+            )
     if hole.depth is not None and not -bore < floor < bore:
         tip = floor - hole.bottom.height(hole.diameter)
         out += _bottom(hole.angle, hole.z, a, floor, tip)
@@ -112,7 +121,7 @@ def _hole(hole: Hole, pin: Pin) -> list[tuple[Floats, bool]]:
 def _bottom(
     angle: float, z: float, a: float, floor: float, tip: float
 ) -> list[tuple[Floats, bool]]:
-    """Of a blind hole across the pin: its edge, and the cone below it."""
+    """The bottom of a blind hole across the pin: its edge, and the cone below it."""
     edge = _placed(
         angle,
         np.full(len(CIRCLE_ANGLES), floor),
@@ -124,6 +133,7 @@ def _bottom(
 
 
 def _passage(passage: Passage, pin: Pin) -> list[tuple[Floats, bool]]:
+    """The edges of a hole along the pin: its walls and bottom."""
     x, a = passage.offset * math.cos(passage.angle), passage.diameter / 2.0
     z0, z1 = max(passage.z0, 0.0), min(passage.z1, pin.length)
     out = [(np.array([[z0, x + w], [z1, x + w]]), True) for w in (-a, a)]
@@ -137,12 +147,13 @@ def _passage(passage: Passage, pin: Pin) -> list[tuple[Floats, bool]]:
 
 
 def _steps(pin: Pin, z0: float, z1: float) -> list[tuple[float, float, float]]:
-    """Parts of a pin between two z, and their outer radii, m; of cones the largest."""
+    """Parts of a pin between two z and their outer radii, (z, z, r) in m; the largest of a cone."""
     marks = [z0, *(z for z in pin.stations if z0 < z < z1), z1]
     return [(a, b, radii(pin, a, b)[1]) for a, b in pairwise(marks)]
 
 
 def _flat(flat: Flat, pin: Pin, z0: float, z1: float) -> DrawnCut:
+    """The edges of a flat between z0 and z1."""
     lines: list[tuple[Floats, bool]] = []
     notches = []
     cut = [(a, b, r) for a, b, r in _steps(pin, z0, z1) if r > flat.distance]
@@ -173,22 +184,26 @@ def _flat(flat: Flat, pin: Pin, z0: float, z1: float) -> DrawnCut:
 def _notch(
     pin: Pin, z0: float, low: float, z1: float, high: float, on: bool = False, goes_on: bool = False
 ) -> list[tuple[Floats, bool]]:
-    """The edges of a notch, that may go on beyond its ends: its bottom, and its ends in the pin."""
+    """The edges of a notch: its bottom, and its ends within the pin.
+
+    on, goes_on: whether the cut continues before z0 and beyond z1.
+    """
     out = [(np.array([[z0, low], [z1, low]]), False)]
     ends = ((z0, not on and z0 > 0.0), (z1, not goes_on and z1 < pin.length))
-    return out + [(np.array([[z, low], [z, high]]), False) for z, there in ends if there]
+    return out + [(np.array([[z, low], [z, high]]), False) for z, is_end in ends if is_end]
 
 
 def _rims(
     first: Sequence[tuple[float, float]], last: Sequence[tuple[float, float]],
     z0: float, z1: float, length: float,
 ) -> list[tuple[float, float]]:  # fmt: skip
-    """z and radius where a cut ends before the pin does."""
+    """Positions z and radii at which a cut ends before the pin does, m."""
     ends = [(z, r) for z, r in first if z == z0 and z > 0.0]
     return ends + [(z, r) for z, r in last if z == z1 and z < length]
 
 
 def _slot(slot: Slot, pin: Pin, z0: float, z1: float) -> DrawnCut:
+    """The edges of a slot between z0 and z1."""
     r = radii(pin, z0, z1)[1]
     floor = slot.floor(pin)
     through = slot.depth is None
@@ -215,7 +230,7 @@ def _slot(slot: Slot, pin: Pin, z0: float, z1: float) -> DrawnCut:
 
 
 def _plan(slot: Slot, z0: float, z1: float) -> tuple[Floats, Floats]:
-    """The outline of a slot in plan: how far aside, and z, m."""
+    """The outline of a slot in plan: distance aside and z of its points, (P,) m each."""
     half = slot.width / 2.0
     if not slot.round_ends:
         side = np.linspace(-half, half, 25)

@@ -1,4 +1,4 @@
-"""The dimensions of a profile: each by a key, and the pin in which it has another value."""
+"""The dimensions of a profile by their keys, and the pin with another value of one."""
 
 from __future__ import annotations
 
@@ -15,7 +15,12 @@ _RADIUS_KEYS = (("edge_radius", "edge_radii"), ("bore_radius", "bore_radii"))
 
 @dataclass(frozen=True)
 class Dimension:
-    """A dimension by its key in the pin's table, m; changed: the pin with another value of it."""
+    """A dimension of a pin.
+
+    key: in the pin's table of a study.
+    value: m.
+    changed: gives the pin with another value of the dimension.
+    """
 
     key: str
     value: float
@@ -23,7 +28,7 @@ class Dimension:
 
 
 def dimensions(pin: Pin) -> Iterator[Dimension]:
-    """Those that are not zero; the diameter or bore of neighbours where it is equal is one."""
+    """All dimensions that are not zero; equal diameters or bores of neighbours are one."""
     ends = [(k, end) for k in range(len(pin.segments)) for end in (0, 1)]
     for key, pairs in (
         ("diameter", [s.diameters for s in pin.segments]),
@@ -49,7 +54,7 @@ def dimensions(pin: Pin) -> Iterator[Dimension]:
 
 
 def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> Dimension:
-    """Of the ends of segments, (segment, end) from 0, that have it in common."""
+    """The diameter or bore that some ends of segments, (segment, end) from 0, have in common."""
 
     def changed(new: float) -> Pin:
         segments = list(pin.segments)
@@ -72,7 +77,7 @@ def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> 
 def _of_segment(
     pin: Pin, key: str, value: float, k: int, change: Callable[[Any, float], dict[str, Any]]
 ) -> Dimension:
-    """Of segment k from 0."""
+    """A dimension of segment k (from 0). change: gives its changed fields by the new value."""
 
     def changed(new: float) -> Pin:
         segments = list(pin.segments)
@@ -83,10 +88,13 @@ def _of_segment(
 
 
 def _field(name: str) -> Callable[[Any, float], dict[str, Any]]:
+    """The change of a field."""
     return lambda _, new: {name: new}
 
 
 def _end(name: str, end: int) -> Callable[[Any, float], dict[str, Any]]:
+    """The change of a field that has a value at both ends, at one of these."""
+
     def change(segment: Any, new: float) -> dict[str, Pair]:
         first, last = getattr(segment, name)
         return {name: (first, new) if end else (new, last)}

@@ -1,4 +1,4 @@
-"""What a drill takes away, as a body of revolution, and the bottoms of blind holes."""
+"""The volume that a drill removes, as a body of revolution, and the bottoms of blind holes."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from pinbase.arrays import Floats
 from pinbase.errors import Place
 
 FLAT_TIP_ANGLE = math.pi
-MIN_TIP_ANGLE = math.pi / 6.0  # rad: the least angle of a tip
+MIN_TIP_ANGLE = math.pi / 6.0  # rad
 
 
 @dataclass(frozen=True)
 class Placed:
-    """Outline (s, t), m, of a body of revolution that is taken away, s from its axis and t along
-    it; the axis passes through `origin` along `direction`.
+    """A body of revolution that is removed, at its place in the pin.
+
+    outline: in (s, t), m; s is the distance from the body's axis and t the position along it.
+    origin, direction: point on the axis at t = 0, m, and unit vector along it.
     """
 
     outline: tuple[Edge, ...]
@@ -28,59 +30,65 @@ class Placed:
     direction: tuple[float, float, float]
 
     def local(self, x: Floats) -> tuple[Floats, Floats]:
-        """s and t of points (P, 3)."""
-        away = x - self.origin
-        t = away @ np.array(self.direction)
-        return np.linalg.norm(away - t[:, None] * self.direction, axis=1), t
+        """Coordinates s and t, (P,) m each, of points x (P, 3)."""
+        arm = x - self.origin
+        t = arm @ np.array(self.direction)
+        return np.linalg.norm(arm - t[:, None] * self.direction, axis=1), t
 
 
 @dataclass(frozen=True)
 class Bottom:
-    """Of a blind hole. tip: angle of the cone that the drill leaves, rad, pi for none; radius: to
-    which the corners there are rounded, m.
+    """The bottom of a blind hole.
+
+    tip: angle of the cone that the drill leaves, rad; pi for a flat bottom.
+    radius: of the rounded corners there, m.
     """
 
     tip: float = FLAT_TIP_ANGLE
     radius: float = 0.0
 
     def rounded(self, digits: int) -> Bottom:
-        """With its radius rounded to so many digits, and its angle."""
+        """The bottom with its radius rounded to so many digits, and its angle to nine."""
         tip = round(self.tip, 9)
         return Bottom(
             FLAT_TIP_ANGLE if tip >= round(FLAT_TIP_ANGLE, 9) else tip, round(self.radius, digits)
         )
 
     def scaled(self, factor: float) -> Bottom:
-        """The same in another unit."""
+        """The same bottom in another unit of length: all lengths times `factor`."""
         return replace(self, radius=self.radius * factor)
 
     def height(self, diameter: float) -> float:
-        """Of the cone below the full diameter, m."""
+        """Height of the cone below the full diameter (m), m."""
         return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP_ANGLE else 0.0
 
     def check(self, diameter: float, what: str, at: Place) -> None:
-        """Raises: GeometryError where the radius does not fit."""
+        """Raises: GeometryError where the angle or the radius is not possible."""
         in_range = MIN_TIP_ANGLE <= self.tip <= FLAT_TIP_ANGLE + 1e-12
         require(
             in_range,
-            f"{what}: the tip's angle is {math.degrees(self.tip):.4g} deg and must be from 30 deg "
-            "to 180 deg, which is flat",
+            f"{what}: the tip angle is {math.degrees(self.tip):.4g} deg; it must be between 30 deg "
+            "and 180 deg (flat)",
             "tip-angle",
             at,
         )
         half = self.tip / 2.0
+        # Length of the cone's side that roundings at its ends take, per radius.
         taken = math.tan(half / 2.0) + (1.0 / math.tan(half) if self.tip < FLAT_TIP_ANGLE else 0.0)
-        most = 0.98 * diameter / 2.0 / math.sin(half) / taken
+        max_radius = 0.98 * diameter / 2.0 / math.sin(half) / taken
         require(
-            self.radius <= most,
-            f"{what}: the radius of its bottom is {self.radius / most:.4g} times the most that "
-            "fits; reduce it",
+            self.radius <= max_radius,
+            f"{what}: the radius of its bottom is {self.radius / max_radius:.4g} times the largest "
+            "that fits; reduce it",
             "radius-too-large",
             at,
         )
 
     def edges(self, a: float, floor: float) -> tuple[Edge, ...]:
-        """From the axis to the wall (s = a), whose straight part begins at t >= floor, m."""
+        """The outline of the bottom in (s, t), from the axis to the wall at s = a, m.
+
+        floor: t at which the full diameter ends; with rounded corners the wall begins above it.
+        """
         half, rho = self.tip / 2.0, self.radius
         s, c = math.sin(half), math.cos(half) if self.tip < FLAT_TIP_ANGLE else 0.0
         apex = (0.0, floor - self.height(2.0 * a))
@@ -100,33 +108,40 @@ class Bottom:
         return tuple(out)
 
 
-SQUARE_BOTTOM = Bottom()  # flat, its corner sharp
+SQUARE_BOTTOM = Bottom()  # flat, with a sharp corner
 
 
 class Drilled(Cut):
-    """A cut of a drill's diameter (m), with a bottom where it is blind."""
+    """A cut by a drill.
+
+    diameter: m. bottom: of a blind hole.
+    """
 
     diameter: float
     bottom: Bottom
 
     @property
     def size(self) -> float:
-        """The diameter."""
+        """The diameter, m."""
         return self.diameter
 
     def scaled(self, factor: float) -> Self:
-        """The same in another unit."""
+        """The same cut in another unit of length: all lengths times `factor`."""
         return super().scaled(factor)._with({"bottom": self.bottom.scaled(factor)})
 
     def rounded(self, digits: int) -> Self:
-        """The same, its bottom as well."""
+        """The same cut with its lengths rounded to so many digits, also those of its bottom."""
         return super().rounded(digits)._with({"bottom": self.bottom.rounded(digits)})
 
 
 def drill_outline(
     a: float, bottom: Bottom, floor: float, top: float, chamfer: tuple[float, float] | None
 ) -> tuple[Edge, ...]:
-    """A blind tool up to t = top; chamfer: its width and t of the mouth."""
+    """The closed outline of a blind tool of radius a.
+
+    floor: t at which the full diameter ends, m. top: t at which the tool ends, m.
+    chamfer: its width and t of the mouth, m; or None.
+    """
     edges = list(bottom.edges(a, floor))
     return closed_outline(edges, wall_edges(a, top, chamfer))
 
@@ -134,7 +149,7 @@ def drill_outline(
 def wall_edges(
     a: float, top: float, chamfer: tuple[float, float] | None
 ) -> list[tuple[str | None, float, float]]:
-    """Names and ends (s, t) of edges along the wall and what widens it."""
+    """Names and ends (s, t) of the edges along the wall and its chamfer, m; as `drill_outline`."""
     if chamfer is None:
         return [("wall", a, top)]
     wide, mouth = chamfer
@@ -144,7 +159,7 @@ def wall_edges(
 def closed_outline(
     edges: list[Edge], rest: list[tuple[str | None, float, float]]
 ) -> tuple[Edge, ...]:
-    """With edges to the given ends (s, t), and back along the axis."""
+    """The closed outline: edges, further edges by names and ends (s, t), and back on the axis."""
     for name, s, t in rest:
         edges.append(Edge(name, edges[-1].end, (s, t)))
     low, high = edges[0].start, (0.0, edges[-1].end[1])
@@ -152,14 +167,16 @@ def closed_outline(
 
 
 def _off(placed: Placed, edge: Edge) -> Off:
+    """Distance of points from the surface of an edge of a placed body."""
     return lambda x: off_edge(edge)(*placed.local(x))
 
 
 def turned_surfaces(placed: Placed) -> tuple[SmoothPart, ...]:
+    """The smooth parts of the surface that a drill leaves."""
     out = []
     for e in placed.outline:
         if e.name:
-            # a torus without a hole is none to OpenCASCADE
+            # OpenCASCADE does not call a torus without a hole a torus: match any kind.
             kind, radius = ("", e.radius) if isinstance(e, Arc) else (kind_of(e), 0.0)
             out.append(SmoothPart(e.name, kind, _off(placed, e), radius))
     return tuple(out)

@@ -25,20 +25,23 @@ from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-MIN_SAME_SIDE_COSINE = 0.9  # cosine of the angle between holes drilled from the same side
-MIN_WALL_RATIO = 0.02  # of a diameter: walls that nobody makes, and of which meshes have no end
-MAX_MOUTH_REACH = 1.5  # of its radius: how far a rounded mouth reaches at most
+MIN_SAME_SIDE_COSINE = 0.9  # of the angle between holes that are drilled from the same side
+MIN_WALL_RATIO = 0.02  # of a diameter: thinner walls cannot be made, and take excessive meshes
+MAX_MOUTH_REACH = 1.5  # largest extent of a rounded mouth over its radius
 
 
 @dataclass(frozen=True)
 class Hole(Drilled):
-    """A round hole across the pin: its axis crosses the pin's at z (m), at `angle` (rad) from x;
-    diameter in m.
+    """A round hole across the pin, whose axis crosses that of the pin.
 
-    depth: from the surface to where the full diameter ends, m, for one that is drilled from the
-    direction `angle` and ends there with a `bottom`; None through the pin. chamfer: width of a
-    countersink of 90 degrees at its mouths, measured at the generator of the pin that it meets;
-    mouth_radius: to which the edges of its mouths are rounded; m.
+    z: of its axis, m.
+    diameter: m.
+    angle: direction of its axis, rad from x; a blind hole is drilled from there.
+    depth: from the surface to the end of the full diameter, m; None: through the pin.
+    bottom: of a blind hole.
+    chamfer: width of a 90 degree countersink at its mouths, measured at the generator of the pin
+    that it meets, m.
+    mouth_radius: radius to which the edges of its mouths are rounded, m.
     """
 
     z: float
@@ -53,67 +56,69 @@ class Hole(Drilled):
 
     @property
     def extent(self) -> tuple[float, float]:
-        """With what is taken from its mouth."""
+        """Least and greatest z, with chamfer or rounded mouth, m."""
         half = self.diameter / 2.0 + self.chamfer + self.mouth_radius
         return self.z - half, self.z + half
 
     @property
     def half_turn(self) -> bool:
-        """If it goes through."""
+        """Whether half a turn maps it to itself: if it goes through the pin."""
         return self.depth is None
 
     @property
     def undivided(self) -> bool:
-        """With rounded mouths."""
+        """Whether no plane may divide it: if its mouths are rounded."""
         return self.mouth_radius > 0.0
 
     @property
     def plain(self) -> bool:
-        """Whether it is a cylinder through the pin and no more."""
+        """Whether it is a plain cylinder through the pin."""
         return self.depth is None and not self.chamfer and not self.mouth_radius
 
     def lengths(self) -> tuple[str, ...]:
-        """All but angles."""
+        """Names of the fields that are lengths."""
         return "z", "diameter", "depth", "chamfer", "mouth_radius"
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Hole:
-        """With its middle amid other ends."""
+        """The same hole midway between changed ends in z."""
         a, b = change(self.z, self.z)
         return replace(self, z=0.5 * (a + b))
 
     def placed(self, pin: Pin, top: float) -> Placed:
-        """What is taken away of a profile, as far as t = top (m) from its axis."""
+        """The volume that it removes from a profile, up to t = top (m) from its axis."""
         a, outer = self.diameter / 2.0, outer_radius(pin, self.z)
         chamfer = (self.chamfer, outer) if self.chamfer else None
         if self.depth is not None:
             outline = drill_outline(a, self.bottom, outer - self.depth, top, chamfer)
         else:
-            far = wall_edges(a, top, chamfer)
-            down = [(0.0, -top), *((s, -t) for _, s, t in reversed(far))]
-            names = [None, *(n for n, _, _ in reversed(far[1:]))]
-            edges = [Edge(n, p, q) for n, p, q in zip(names, down, down[1:], strict=False)]
-            outline = closed_outline(edges, far)
+            # Through the pin: the edges at the far side are those at the near side, mirrored.
+            upper = wall_edges(a, top, chamfer)
+            lower = [(0.0, -top), *((s, -t) for _, s, t in reversed(upper))]
+            names = [None, *(n for n, _, _ in reversed(upper[1:]))]
+            edges = [Edge(n, p, q) for n, p, q in zip(names, lower, lower[1:], strict=False)]
+            outline = closed_outline(edges, upper)
         c, s = math.cos(self.angle), math.sin(self.angle)
         return Placed(outline, (0.0, 0.0, self.z), (c, s, 0.0))
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Its mouths, with what is countersunk; of rounded ones all that is rounded."""
+        """Mask (P,) of the points x (P, 3) in its mouths, with their chamfers or roundings."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         u, aside = c * x[:, 0] + s * x[:, 1], c * x[:, 1] - s * x[:, 0]
-        far = np.hypot(aside, x[:, 2] - self.z)
-        sunk = np.maximum(self.chamfer - (radius - np.abs(u)), self.mouth_radius)
-        return np.asarray((far < self.diameter / 2.0 + sunk) & ((u > 0.0) | (self.depth is None)))
+        distance = np.hypot(aside, x[:, 2] - self.z)
+        width = np.maximum(self.chamfer - (radius - np.abs(u)), self.mouth_radius)
+        on_side = (u > 0.0) | (self.depth is None)
+        return np.asarray((distance < self.diameter / 2.0 + width) & on_side)
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """Wall, bottom, mouths."""
+        """The smooth parts of its surface: wall, bottom, chamfers or mouths."""
         top = 4.0 * pin.largest_diameter
-        found = turned_surfaces(self.placed(pin, top))
+        parts = turned_surfaces(self.placed(pin, top))
         if self.mouth_radius:
-            found = (*found, SmoothPart("mouth", "", self._off_mouth(pin), self.mouth_radius))
-        return found
+            parts = (*parts, SmoothPart("mouth", "", self._off_mouth(pin), self.mouth_radius))
+        return parts
 
     def _off_mouth(self, pin: Pin) -> Off:
-        """Beyond the ring in which its rounded edge lies."""
+        """Distance of points from the ring in which the rounded edge of a mouth lies."""
         a, rho, outer = self.diameter / 2.0, self.mouth_radius, outer_radius(pin, self.z)
         placed = self.placed(pin, 4.0 * pin.largest_diameter)
 
@@ -126,7 +131,7 @@ class Hole(Drilled):
         return off
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when it is no hole of this pin."""
+        """Raises: GeometryError when this pin cannot have the hole. name, at: for the message."""
         what, r = f"pin {pin.name}, {name}", self.diameter / 2
         require(positive(r), f"{what}: the diameter must be positive", "not-positive", at)
         low, high = self.extent
@@ -161,8 +166,7 @@ class Hole(Drilled):
         require(
             left >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
             f"{what}: its bottom is less than {MIN_WALL_RATIO:g} times its diameter from the "
-            f"surface of the "
-            "bore; deepen it into the bore, or reduce its depth",
+            "surface of the bore; deepen it into the bore, or reduce its depth",
             "thin-wall",
             at,
         )
@@ -188,26 +192,29 @@ class Hole(Drilled):
         )
 
     def check_beside(self, other: Hole, names: tuple[str, str], pin: Pin, at: Place) -> None:
-        """Raises: GeometryError where two holes just touch, or leave a wall that is far too thin
-        between them; of blind ones that are drilled from the same side.
+        """Raises: GeometryError where two holes almost touch.
+
+        Blind holes are compared only if they are drilled from the same side.
         """
         both_through = self.depth is None and other.depth is None
         if not both_through and math.cos(self.angle - other.angle) < MIN_SAME_SIDE_COSINE:
             return
-        apart = abs(self.z - other.z)
-        wall = apart - 0.5 * (self.diameter + other.diameter)
+        wall = abs(self.z - other.z) - 0.5 * (self.diameter + other.diameter)
         least = min(self.diameter, other.diameter)
         require(
             abs(wall) >= MIN_WALL_RATIO * least,
-            f"pin {pin.name}: {names[0]} and {names[1]} all but touch: between them a wall of at "
-            f"least {MIN_WALL_RATIO:g} times the smaller diameter must be left; move them apart, "
-            f"or well "
+            f"pin {pin.name}: {names[0]} and {names[1]} almost touch: the wall between them must "
+            f"be at least {MIN_WALL_RATIO:g} times the smaller diameter; move them apart, or well "
             "into each other",
             "thin-wall",
             at,
         )
 
     def _check_mouth(self, pin: Pin, least: float, what: str, at: Place) -> None:
+        """Raises: GeometryError for a chamfer or rounding that does not fit.
+
+        least: smallest outer radius of the pin at the hole, m.
+        """
         r = self.diameter / 2.0
         if self.chamfer and self.mouth_radius:
             require(False, f"{what}: give either chamfer or mouth_radius", "key-not-applicable", at)
@@ -215,8 +222,8 @@ class Hole(Drilled):
         if self.chamfer:
             require(
                 self.chamfer > 1.05 * sagitta,
-                f"{what}: the chamfer is {self.chamfer / sagitta:.4g} times as deep as the "
-                "mouth's edge falls off round the pin and must be more, to reach all of it",
+                f"{what}: the chamfer is {self.chamfer / sagitta:.4g} times the drop of the "
+                "mouth's edge around the pin; it must be larger to reach the whole edge",
                 "chamfer-too-small",
                 at,
             )
@@ -224,7 +231,7 @@ class Hole(Drilled):
             low, high = self.extent
             require(
                 math.isclose(*radii(pin, low, high), rel_tol=1e-12),
-                f"{what}: a mouth can only be rounded where the pin is a cylinder",
+                f"{what}: a mouth can only be rounded on a cylindrical part of the pin",
                 "mouth-not-on-cylinder",
                 at,
             )

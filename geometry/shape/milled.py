@@ -1,4 +1,4 @@
-"""Flats, keyways and slots."""
+"""Milled cuts: flats, keyways and slots."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from geometry.shape.tolerance import snapped
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-MAX_BOTTOM_RADIUS_RATIO = 0.45  # of the width of a slot: the radius of its bottom
+MAX_BOTTOM_RADIUS_RATIO = 0.45  # largest radius at the bottom of a slot over its width
 
 
 class Milled(Cut):
-    """A cut from z0 to z1, m, whose bottom is rounded to a `radius`, m."""
+    """A milled cut from z0 to z1 (m), with a radius (m) at its bottom."""
 
     z0: float
     z1: float
@@ -27,20 +27,22 @@ class Milled(Cut):
 
     @property
     def extent(self) -> tuple[float, float]:
-        """From end to end."""
+        """Least and greatest z, m."""
         return self.z0, self.z1
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
-        """With other ends."""
+        """The same cut with its two ends in z changed."""
         return self._with(dict(zip(("z0", "z1"), change(self.z0, self.z1), strict=True)))
 
     def snapped(self, marks: Collection[float], tolerance: float) -> Self:
-        """The same with its ends at marks (z, m) that are within the tolerance (m)."""
+        """The same cut with its ends moved to marks (z, m) within the tolerance (m)."""
         return self.along(lambda a, b: (snapped(a, marks, tolerance), snapped(b, marks, tolerance)))
 
     def past(self, length: float, near: float) -> Self:
-        """The same, ends that are near the pin's or beyond them so far that none of what is rounded
-        there is left (m).
+        """The same cut, extended where it ends at an end of the pin or beyond.
+
+        Its rounded ends are then outside the pin.
+        length: of the pin, m. near: tolerance, m.
         """
         far = 2.0 * self.radius + (self.size if math.isfinite(self.size) else 0.0)
         if not far:
@@ -52,8 +54,12 @@ class Milled(Cut):
 
 @dataclass(frozen=True)
 class Flat(Milled):
-    """What lies beyond `distance` (m) from the axis in the direction `angle` (rad from x) is taken
-    away from z0 to z1 (m); radius: to which the inner corners at its ends are rounded.
+    """A flat, which removes everything beyond a distance from the axis on one side.
+
+    z0, z1: its ends, m.
+    distance: from the axis, m.
+    angle: direction of its normal, rad from x.
+    radius: of the inner corners at its ends, m.
     """
 
     z0: float
@@ -66,26 +72,26 @@ class Flat(Milled):
 
     @property
     def size(self) -> float:
-        """As wide as the pin is; that it has no size of its own."""
+        """Infinity: a flat has no width of its own."""
         return math.inf
 
     @property
     def half_turn(self) -> bool:
-        """Never."""
+        """Whether half a turn maps it to itself: never."""
         return False
 
     def lengths(self) -> tuple[str, ...]:
-        """All but the angle."""
+        """Names of the fields that are lengths."""
         return "z0", "z1", "distance", "radius"
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """What lies beyond the distance, between its ends."""
+        """Mask (P,) of the points x (P, 3) beyond the distance, between its ends."""
         del radius
         u = math.cos(self.angle) * x[:, 0] + math.sin(self.angle) * x[:, 1]
         return np.asarray((u > self.distance) & (x[:, 2] > self.z0) & (x[:, 2] < self.z1))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """Floor, ends, and what rounds their corner."""
+        """The smooth parts of its surface: floor, ends, and fillets between them."""
         del pin
         below, beyond, both = _rounded(self, lambda x: np.full(len(x), -math.inf), self.distance)
         return _parts(below, beyond, both, self.radius, "end")
@@ -100,10 +106,10 @@ class Flat(Milled):
             "not-positive",
             at,
         )
-        most = radii(pin, self.z0, self.z1)[1]
+        outer = radii(pin, self.z0, self.z1)[1]
         require(
-            self.distance < most - pin.tolerance,
-            f"{what}: its distance from the axis is {self.distance / most:.4g} times the pin's "
+            self.distance < outer - pin.tolerance,
+            f"{what}: its distance from the axis is {self.distance / outer:.4g} times the pin's "
             "radius there, so it cuts nothing; reduce the distance",
             "cuts-nothing",
             at,
@@ -119,9 +125,14 @@ class Flat(Milled):
 
 @dataclass(frozen=True)
 class Slot(Milled):
-    """A slot along the pin from z0 to z1 (m), of a width (m), as a cutter leaves it that moves
-    along: milled from the direction `angle` (rad from x) `depth` (m) deep from the surface, None
-    through the whole pin. round_ends: half circles in plan, or square. radius: at its bottom.
+    """A slot or keyway along the pin.
+
+    z0, z1: its ends, m.
+    width: m.
+    depth: from the surface, m; None: through the whole pin.
+    angle: direction from which it is milled, rad from x.
+    radius: of the corners at its bottom, m.
+    round_ends: whether its ends are half circles in plan; otherwise they are square.
     """
 
     z0: float
@@ -136,21 +147,21 @@ class Slot(Milled):
 
     @property
     def size(self) -> float:
-        """The width."""
+        """The width, m."""
         return self.width
 
     @property
     def half_turn(self) -> bool:
-        """If it goes through."""
+        """Whether half a turn maps it to itself: if it goes through the pin."""
         return self.depth is None
 
     @property
     def middle(self) -> float:
-        """z, m."""
+        """Position z of its middle, m."""
         return 0.5 * (self.z0 + self.z1)
 
     def lengths(self) -> tuple[str, ...]:
-        """All but the angle."""
+        """Names of the fields that are lengths."""
         return "z0", "z1", "width", "depth", "radius"
 
     def floor(self, pin: Pin) -> float:
@@ -160,24 +171,24 @@ class Slot(Milled):
         return radii(pin, self.z0, self.z1)[1] - self.depth
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """What lies inside its outline in plan, on the side from which it is milled."""
+        """Mask (P,) of the points x (P, 3) in its outline, on the side from which it is milled."""
         del radius
         u = math.cos(self.angle) * x[:, 0] + math.sin(self.angle) * x[:, 1]
         between = (x[:, 2] > self.z0) & (x[:, 2] < self.z1)
         return np.asarray(between & (self._aside(x) < 0.0) & ((u > 0.0) | (self.depth is None)))
 
     def _aside(self, x: Floats) -> Floats:
-        """How far points (P, 3) are outside of its walls in plan, m."""
+        """Distance of points (P, 3) outside its walls in plan, (P,) m, negative inside."""
         half, radius = self.width / 2.0, self.width / 2.0 if self.round_ends else 0.0
-        long = 0.5 * (self.z1 - self.z0) - radius
+        half_length = 0.5 * (self.z1 - self.z0) - radius
         y = np.abs(math.cos(self.angle) * x[:, 1] - math.sin(self.angle) * x[:, 0])
         if not self.round_ends:
             return np.asarray(y - half)
-        past = np.maximum(np.abs(x[:, 2] - self.middle) - long, 0.0)
+        past = np.maximum(np.abs(x[:, 2] - self.middle) - half_length, 0.0)
         return np.asarray(np.hypot(y, past) - half)
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """Bottom, walls, and what rounds their corner."""
+        """The smooth parts of its surface: bottom, walls, ends, and fillets between them."""
         aside = self._aside
         floor = self.floor(pin)
         below, beyond, both = _rounded(self, aside, floor)
@@ -193,22 +204,23 @@ class Slot(Milled):
         return tuple(out)
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when it is no slot of this pin."""
-        what, long = f"pin {pin.name}, {name}", self.z1 - self.z0
+        """Raises: GeometryError when this pin cannot have the slot. name, at: for the message."""
+        what, length = f"pin {pin.name}, {name}", self.z1 - self.z0
         _check_ends(self, pin, what, at)
         require(positive(self.width), f"{what}: the width must be positive", "not-positive", at)
-        near = pin.tolerance
+        tolerance = pin.tolerance
         if self.depth is None:
-            inside = self.z0 > near and self.z1 < pin.length - near
+            inside = self.z0 > tolerance and self.z1 < pin.length - tolerance
             require(
                 inside,
-                f"{what}: a slot through the pin must end before the pin does, or it parts it",
+                f"{what}: a slot through the pin must end before the pin does, or it would split "
+                "the pin",
                 "beyond-end",
                 at,
             )
         least, most = radii(pin, self.z0, self.z1)
         require(
-            self.width / 2.0 < least - near,
+            self.width / 2.0 < least - tolerance,
             f"{what}: its width is {self.width / (2.0 * least):.4g} times the pin's diameter there "
             "and would cut the pin in two; reduce it",
             "slot-too-wide",
@@ -216,15 +228,21 @@ class Slot(Milled):
         )
         if self.round_ends:
             require(
-                long >= self.width - near,
-                f"{what}: with round ends its length, {long / self.width:.4g} times the width, "
+                length >= self.width - tolerance,
+                f"{what}: with round ends its length, {length / self.width:.4g} times the width, "
                 'must be at least the width; lengthen it, or drill a hole (or ends = "square")',
                 "slot-too-short",
                 at,
             )
-        self._check_depth(least, most, what, near, at)
+        self._check_depth(least, most, what, tolerance, at)
 
-    def _check_depth(self, least: float, most: float, what: str, near: float, at: Place) -> None:
+    def _check_depth(
+        self, least: float, most: float, what: str, tolerance: float, at: Place
+    ) -> None:
+        """Raises: GeometryError for a depth or radius that does not fit.
+
+        least, most: smallest and largest outer radius of the pin at the slot, m.
+        """
         if self.depth is None:
             require(
                 self.radius == 0.0,
@@ -236,14 +254,14 @@ class Slot(Milled):
         require(positive(self.depth), f"{what}: the depth must be positive", "not-positive", at)
         side = math.sqrt(max(least**2 - (self.width / 2.0) ** 2, 0.0))
         require(
-            most - self.depth < side - near,
+            most - self.depth < side - tolerance,
             f"{what}: a depth of {self.depth / (most - side):.4g} times the sagitta of the surface "
             "over its width leaves no wall; deepen it, or mill a flat",
             "cuts-nothing",
             at,
         )
         require(
-            self.depth < most - near,
+            self.depth < most - tolerance,
             f"{what}: its depth is {self.depth / most:.4g} times the pin's radius, and it must not "
             "reach the axis; reduce it, or leave it out for a slot through the pin",
             "too-deep",
@@ -251,24 +269,27 @@ class Slot(Milled):
         )
         limit = min(MAX_BOTTOM_RADIUS_RATIO * self.width, 0.9 * (self.depth - (most - side)))
         require(
-            self.radius <= limit + near,
+            self.radius <= limit + tolerance,
             f"{what}: the radius of its bottom is {self.radius / limit if limit else 0:.4g} times "
-            f"the most that fits, {MAX_BOTTOM_RADIUS_RATIO:g} of the width and the height of its "
-            f"walls",
+            f"the largest that fits, {MAX_BOTTOM_RADIUS_RATIO:g} of the width and within the "
+            "height of its walls",
             "radius-too-large",
             at,
         )
 
 
 def _check_ends(cut: Flat | Slot, pin: Pin, what: str, at: Place) -> None:
+    """Raises: GeometryError unless the ends are in order and the cut is on the pin."""
     require(cut.z1 - cut.z0 > pin.tolerance, f"{what}: z = [a, b] requires a < b", "z-reversed", at)
     inside = cut.z1 > pin.tolerance and cut.z0 < pin.length - pin.tolerance
     require(inside, f"{what}: it lies entirely beyond an end of the pin", "beyond-end", at)
 
 
 def _rounded(cut: Flat | Slot, aside: Off, floor: float) -> tuple[Off, Off, Off]:
-    """How far points are below the bottom, beyond the walls, and, with rounded corners between the
-    two, outside of what is taken away.
+    """Distances of points below the bottom, beyond the walls, and outside the removed volume.
+
+    The last takes the rounded corners between the two into account.
+    aside: distance of points beyond the side walls. floor: of the bottom from the axis, m.
     """
     c, s, rho = math.cos(cut.angle), math.sin(cut.angle), cut.radius
 
@@ -282,7 +303,7 @@ def _rounded(cut: Flat | Slot, aside: Off, floor: float) -> tuple[Off, Off, Off]
 
 
 def _corner(one: Off, other: Off, rho: float) -> Off:
-    """How far points are outside of where both are negative, the corner rounded."""
+    """Distance of points outside the region in which two distances are negative, corner rounded."""
 
     def off(x: Floats) -> Floats:
         p, q = one(x) + rho, other(x) + rho
@@ -293,7 +314,7 @@ def _corner(one: Off, other: Off, rho: float) -> Off:
 
 
 def _fillet(one: Off, other: Off, rho: float) -> SmoothPart:
-    """What rounds the corner between two sides."""
+    """The fillet of radius rho between two sides."""
     whole = _corner(one, other, rho)
 
     def off(x: Floats) -> Floats:
@@ -304,11 +325,12 @@ def _fillet(one: Off, other: Off, rho: float) -> SmoothPart:
 
 
 def _on(whole: Off, side: Off) -> Off:
-    """How far points are off a side of the whole."""
+    """Distance of points from the part of a side that bounds the whole."""
     return lambda x: np.abs(whole(x)) + np.abs(side(x))
 
 
 def _past_ends(cut: Flat | Slot, x: Floats) -> Floats:
+    """Distance of points (P, 3) beyond the ends of a cut along z, (P,) m, negative between them."""
     middle, half = 0.5 * (cut.z0 + cut.z1), 0.5 * (cut.z1 - cut.z0)
     return np.asarray(np.abs(x[:, 2] - middle) - half)
 
@@ -316,6 +338,7 @@ def _past_ends(cut: Flat | Slot, x: Floats) -> Floats:
 def _parts(
     below: Off, beyond: Off, both: Off, radius: float, wall: str, bottom: bool = True
 ) -> tuple[SmoothPart, ...]:
+    """Floor, wall and fillet, from the three distances of `_rounded`. wall: name of the wall."""
     out = []
     if bottom:
         out.append(SmoothPart("floor", "Plane", _on(both, below)))

@@ -29,9 +29,13 @@ Mouth = Literal["start", "end", "both"]
 
 @dataclass(frozen=True)
 class Passage(Drilled):
-    """A hole along the pin, its axis `offset` (m) from the pin's in the direction `angle` (rad from
-    x): of a diameter (m), between z0 and z1 (m), drilled from a `mouth`: "start", "end", or "both"
-    for one through the pin. bottom: of a blind one, beyond the end of its full diameter.
+    """A round hole along the pin.
+
+    z0, z1: ends of its full diameter, m.
+    diameter: m.
+    offset, angle: of its axis from that of the pin, m, in the direction angle, rad from x.
+    mouth: end face from which it is drilled; "both" for a hole through the pin.
+    bottom: of a blind hole, beyond the end of its full diameter.
     """
 
     z0: float
@@ -46,68 +50,68 @@ class Passage(Drilled):
 
     @property
     def extent(self) -> tuple[float, float]:
-        """With its tip."""
+        """Least and greatest z, with its tip, m."""
         tip = self.bottom.height(self.diameter)
         down, up = (tip if self.mouth == end else 0.0 for end in ("end", "start"))
         return self.z0 - down, self.z1 + up
 
     @property
     def half_turn(self) -> bool:
-        """Never; amid the pin it is round."""
+        """Whether half a turn maps it to itself: never; on the axis it is `round`."""
         return False
 
     @property
     def round(self) -> bool:
-        """On the axis."""
+        """Whether it is a body of revolution about the pin's axis: on the axis."""
         return self.offset == 0.0
 
     @property
     def opens(self) -> tuple[float, float]:
-        """Nowhere on the outer surface."""
+        """An empty interval: it removes nothing of the outer surface."""
         return math.inf, -math.inf
 
     @property
     def faces(self) -> tuple[str, ...]:
-        """With its mouths."""
+        """Names of the end faces on which its mouths are."""
         return END_FACES if self.mouth == "both" else (self.mouth,)
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """None."""
+        """Mask (P,) without any point: it removes nothing of the outer surface."""
         del radius
         return np.zeros(len(x), dtype=bool)
 
     def lengths(self) -> tuple[str, ...]:
-        """All but angles."""
+        """Names of the fields that are lengths."""
         return "z0", "z1", "diameter", "offset"
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Passage:
-        """With other ends; what exchanges them turns it round."""
+        """The same hole with its two ends in z changed; exchanging them reverses it."""
         a, b = change(self.z0, self.z1)
-        turned = change(0.0, 1.0)[0] < change(0.0, 0.0)[0]
+        reverses = change(0.0, 1.0)[0] < change(0.0, 0.0)[0]
         other: dict[Mouth, Mouth] = {"start": "end", "end": "start", "both": "both"}
-        return replace(self, z0=a, z1=b, mouth=other[self.mouth] if turned else self.mouth)
+        return replace(self, z0=a, z1=b, mouth=other[self.mouth] if reverses else self.mouth)
 
     def placed(self, pin: Pin, top: float) -> Placed:
-        """What is taken away, beyond the ends of the profile by `top` (m)."""
+        """The volume that it removes, beyond its mouths by `top` (m)."""
         del pin
         x, y = self.offset * math.cos(self.angle), self.offset * math.sin(self.angle)
-        long, a = self.z1 - self.z0, self.diameter / 2.0
+        length, a = self.z1 - self.z0, self.diameter / 2.0
         if self.mouth == "both":
             first = [Edge(None, (0.0, -top), (a, -top))]
             return Placed(
-                closed_outline(first, [("wall", a, long + top)]), (x, y, self.z0), (0, 0, 1.0)
+                closed_outline(first, [("wall", a, length + top)]), (x, y, self.z0), (0, 0, 1.0)
             )
-        outline = drill_outline(a, self.bottom, 0.0, long + top, None)
+        outline = drill_outline(a, self.bottom, 0.0, length + top, None)
         if self.mouth == "end":
             return Placed(outline, (x, y, self.z0), (0.0, 0.0, 1.0))
         return Placed(outline, (x, y, self.z1), (0.0, 0.0, -1.0))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """Wall and bottom."""
+        """The smooth parts of its surface: wall and bottom."""
         return turned_surfaces(self.placed(pin, 2.0 * pin.largest_diameter))
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when it is no passage of this pin."""
+        """Raises: GeometryError when this pin cannot have the passage. name, at: for messages."""
         what, r, near = f"pin {pin.name}, {name}", self.diameter / 2, pin.tolerance
         require(positive(r), f"{what}: the diameter must be positive", "not-positive", at)
         require(self.offset >= 0.0, f"{what}: the offset must not be negative", "negative", at)

@@ -1,4 +1,4 @@
-"""A pin: segments of a body of revolution along z, the bands on which links bear, exact volume."""
+"""A pin as a body of revolution: its segments along z, bands on which links bear, exact volume."""
 
 from __future__ import annotations
 
@@ -27,8 +27,10 @@ class GeometryError(CodedError, ValueError):
 
 @dataclass(frozen=True)
 class Band:
-    """A cylindrical surface: the part of a segment between its fillets; m. Of a cone `radius` is
-    the mean, and no link can bear on it.
+    """The outer surface of a segment between its fillets.
+
+    z0, z1: m.
+    radius: m; for a cone, on which no link can bear, the mean.
     """
 
     name: str
@@ -48,17 +50,18 @@ class Band:
 
     @property
     def middle(self) -> float:
-        """z of the middle, m."""
+        """Position z of the middle, m."""
         return 0.5 * (self.z0 + self.z1)
 
 
 @dataclass(frozen=True)
 class Pin:
-    """A body of revolution from z = 0 on; `fillet` (m) is the radius at every inner corner. source:
-    where its shape comes from, for people.
+    """A pin as a body of revolution, from z = 0 on.
 
-    Diameters and bores that differ by less than its `tolerance` are made equal; merged: the largest
-    difference (m) that was, 0 where it was no more than round-off.
+    fillet: radius at inner corners without one of their own, m.
+    source: origin of its shape, for people.
+    merged: largest difference between diameters (or bores) that were made equal because they differ
+    by less than `tolerance`, m; 0 where it was no more than round-off.
 
     Raises: GeometryError when a dimension is impossible or a fillet does not fit.
     """
@@ -74,19 +77,19 @@ class Pin:
 
     def __post_init__(self) -> None:
         _check_dimensions(self)
-        segments, apart = _merged(self.segments, self.tolerance)
+        segments, difference = _merged(self.segments, self.tolerance)
         object.__setattr__(self, "segments", segments)
-        object.__setattr__(self, "merged", apart)
+        object.__setattr__(self, "merged", difference)
         _check(self)
 
     @cached_property
     def tolerance(self) -> float:
-        """The length (m) below which two dimensions are one."""
+        """Difference below which two dimensions are equal, m."""
         return LENGTH_TOLERANCE * self.smallest_diameter
 
     @cached_property
     def stations(self) -> tuple[float, ...]:
-        """z of the ends of all segments, m."""
+        """Positions z of the ends of all segments, m."""
         z = [0.0]
         for s in self.segments:
             z.append(z[-1] + s.length)
@@ -104,17 +107,17 @@ class Pin:
 
     @property
     def smallest_diameter(self) -> float:
-        """m."""
+        """Smallest outer diameter, m."""
         return min(d for s in self.segments for d in s.diameters)
 
     @property
     def largest_diameter(self) -> float:
-        """m."""
+        """Largest outer diameter, m."""
         return max(d for s in self.segments for d in s.diameters)
 
     @property
     def stepped(self) -> bool:
-        """Whether it has only cylinders, without rounded edges."""
+        """Whether it consists of cylinders only, without rounded edges."""
         return all(s.cylindrical for s in self.segments)
 
     @cached_property
@@ -125,23 +128,25 @@ class Pin:
         )
 
     def radii(self, z: float) -> tuple[float, float]:
-        """Radius of the bore and of the shaft at z, m, without their roundings; at a station those
-        of the segment before it.
+        """Radius of the bore and of the shaft at z without roundings, m.
+
+        At a station they are those of the segment before it.
         """
         i = min(max(bisect_left(self.stations, z) - 1, 0), len(self.segments) - 1)
         return self.segments[i].radii(z - self.stations[i])
 
     def radii_at(self, z: Floats) -> tuple[Floats, Floats]:
-        """The same at many z (P,), m."""
+        """Radii as of `radii` at many z (P,) m, (P,) m each."""
         i = np.clip(np.searchsorted(self.stations, z) - 1, 0, len(self.segments) - 1)
-        each = [(*s.bores, *s.diameters, s.length) for s in self.segments]
-        b0, b1, d0, d1, length = np.array(each)[i].T
+        dimensions = [(*s.bores, *s.diameters, s.length) for s in self.segments]
+        b0, b1, d0, d1, length = np.array(dimensions)[i].T
         x = (z - np.array(self.stations)[i]) / length
         return (b0 + x * (b1 - b0)) / 2.0, (d0 + x * (d1 - d0)) / 2.0
 
     def fillet_at(self, corner: int) -> float:
-        """Radius (m) of the inner corner between segments `corner` and `corner` + 1 (from 0); 0
-        where they have none.
+        """Radius of the inner corner between segments `corner` and `corner` + 1 (from 0), m.
+
+        It is 0 where there is no inner corner.
         """
         left, right = self.segments[corner], self.segments[corner + 1]
         turn = turn_at(left, right)
@@ -153,7 +158,7 @@ class Pin:
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
-        """The sides of its section, as `geometry.shape.polygon.legs`."""
+        """The sides of its section, from `geometry.shape.polygon.legs`."""
         return legs(corners(self), self.tolerance)
 
     @cached_property
@@ -163,11 +168,11 @@ class Pin:
 
     @cached_property
     def bands(self) -> tuple[Band, ...]:
-        """The outer surface of every segment, without what fillets and rounded edges take."""
-        mine = iter(self.legs[1:])
+        """The outer surface of every segment between fillets and rounded edges."""
+        sides = iter(self.legs[1:])
         bands = []
         for label, s in zip(self.labels, self.segments, strict=True):
-            leg = next(leg for leg in mine if leg.name == label)
+            leg = next(leg for leg in sides if leg.name == label)
             bands.append(Band(label, leg.start[1], leg.end[1], 0.25 * sum(s.diameters)))
         return tuple(bands)
 
@@ -177,8 +182,12 @@ class Pin:
         return tuple(s.connection for s in self.segments if s.connection)
 
     def band(self, name: str) -> Band:
-        """The outer surface called `name` (a segment's connection, name or number), or "bore " and
-        such a name for the inner one.
+        """The surface called `name`.
+
+        An outer surface has its segment's connection, name or number; the inner one this name after
+        "bore ".
+
+        Raises: GeometryError that lists the names there are.
         """
         if name.startswith("bore ") and name[5:] in self.labels:
             i = self.labels.index(name[5:])
@@ -189,7 +198,7 @@ class Pin:
     def surface(self, name: str) -> str:
         """The mesh boundary for a name in a study: "start", "end" or a segment's.
 
-        Raises: GeometryError listing the names there are.
+        Raises: GeometryError that lists the names there are.
         """
         if name in END_FACES and any(
             leg.name == name and leg.start != leg.end for leg in self.legs
@@ -198,6 +207,7 @@ class Pin:
         return self.labels[self._position(name)]
 
     def _position(self, name: str) -> int:
+        """Number (from 0) of the segment with this connection, name or label."""
         for i, s in enumerate(self.segments):
             if name in (s.connection, s.name, self.labels[i]):
                 return i
@@ -212,7 +222,7 @@ class Pin:
         return volume_within(meridian(self))
 
     def scaled(self, factor: float) -> Pin:
-        """The same pin in another unit."""
+        """The same pin in another unit of length: all lengths times `factor`."""
         segments = tuple(s.scaled(factor) for s in self.segments)
         return replace(self, segments=segments, fillet=self.fillet * factor)
 
@@ -225,25 +235,27 @@ class Pin:
 
 
 def _merged(segments: tuple[Segment, ...], tolerance: float) -> tuple[tuple[Segment, ...], float]:
-    """Segments whose diameters and bores are equal or further apart than the tolerance; the largest
-    difference (m) between a dimension and what it became, if more than round-off.
+    """Segments whose diameters and bores are equal or differ by more than the tolerance.
+
+    The second result is the largest change of a dimension, m, 0 if no more than round-off.
     """
     outer = merged((d for s in segments for d in s.diameters), tolerance)
     inner = merged((0.0, *(d for s in segments for d in s.bores)), tolerance)
     changes = [*outer.items(), *inner.items()]
-    apart = max(
+    difference = max(
         (old - new for old, new in changes if old - new > DIMENSION_ROUND_OFF * old), default=0.0
     )
-    one = (
+    unified = (
         s.with_diameters(
             (outer[s.diameters[0]], outer[s.diameters[1]]), (inner[s.bores[0]], inner[s.bores[1]])
         )
         for s in segments
     )
-    return tuple(one), apart
+    return tuple(unified), difference
 
 
 def _check_dimensions(pin: Pin) -> None:
+    """Raises: GeometryError for a dimension that is impossible by itself."""
     where = f"pin {pin.name}"
     if not pin.segments:
         raise GeometryError(f"{where}: the profile has no segments", "no-segments")
@@ -271,18 +283,20 @@ def _check_dimensions(pin: Pin) -> None:
 
 
 def _bore_too_large(what: str, i: int) -> GeometryError:
+    """The error of segment i (from 1), whose bore is not less than its diameter."""
     at = ("segment", i)
     return GeometryError(f"{what}: the bore must be less than the diameter", "bore-too-large", at)
 
 
 def _check(pin: Pin) -> None:
+    """Raises: GeometryError for dimensions that do not fit together, or names used twice."""
     where, least = f"pin {pin.name}", pin.tolerance
     for i, s in enumerate(pin.segments, 1):
         if min(s.walls) <= least:
             raise _bore_too_large(f"{where}, segment {i}", i)
         if s.length <= least:
             raise GeometryError(
-                f"{where}, segment {i}: its length is {s.length / pin.smallest_diameter:.2g} of "
+                f"{where}, segment {i}: its length is {s.length / pin.smallest_diameter:.2g} times "
                 "the pin's smallest diameter, too short to model; lengthen it or leave it out",
                 "segment-too-short",
                 ("segment", i),
@@ -317,7 +331,7 @@ def _check_edges(pin: Pin) -> None:
                 if turns[k] != "edge" and not (turns[k] == "step" and s.diameters[end] > other):
                     raise GeometryError(
                         f"{what}: its outer surface has no edge at its {END_FACES[end]} for "
-                        "edge_radius to round; set that to 0 (the radius of an inner corner is a "
+                        "edge_radius to round; set edge_radius to 0 (an inner corner is rounded by "
                         "fillet)",
                         "no-edge",
                         ("segment", i + 1),
@@ -325,14 +339,14 @@ def _check_edges(pin: Pin) -> None:
             if s.bore_radii[end] and (not s.bores[end] or (within and inside[k] == "smooth")):
                 raise GeometryError(
                     f"{what}: its bore has no corner at its {END_FACES[end]} for bore_radius to "
-                    f"round; "
-                    "set that to 0",
+                    "round; set bore_radius to 0",
                     "no-edge",
                     ("segment", i + 1),
                 )
 
 
 def _check_fillets(pin: Pin) -> None:
+    """Raises: GeometryError for fillets that do not fit their step or their segment."""
     for i, (left, right) in enumerate(pairwise(pin.segments)):
         rho = pin.fillet_at(i)
         step = 0.5 * abs(left.diameters[1] - right.diameter)
@@ -344,24 +358,25 @@ def _check_fillets(pin: Pin) -> None:
                 "fillet-too-large",
                 ("segment", i + 1),
             )
-    borne = {s.connection for s in pin.segments if s.connection}
+    bearing = {s.connection for s in pin.segments if s.connection}
     for leg in pin.legs:
-        if leg.short > pin.tolerance or (leg.name in borne and leg.start == leg.end):
+        if leg.short > pin.tolerance or (leg.name in bearing and leg.start == leg.end):
             raise _overlapping(pin, leg)
 
 
 def _overlapping(pin: Pin, leg: Leg) -> GeometryError:
+    """The error of roundings that take up more than the length of a side."""
     taken, name = sum(leg.taken) / leg.length if leg.length else math.inf, leg.name or "the axis"
     if leg.name in pin.labels:
         i = pin.labels.index(leg.name) + 1
         return GeometryError(
             f"pin {pin.name}, segment {i}: the fillets at its ends take up its whole length "
-            f"({taken:.4g} of it); reduce them or lengthen the segment",
+            f"({taken:.4g} times); reduce them or lengthen the segment",
             "fillets-overlap",
             ("segment", i),
         )
     return GeometryError(
-        f"pin {pin.name}: the radii at the ends of {name} take up more than there is of it "
+        f"pin {pin.name}: the radii at the ends of {name} take up more than its length "
         f"({taken:.4g} times); reduce them",
         "fillets-overlap",
     )

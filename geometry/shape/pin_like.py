@@ -1,4 +1,4 @@
-"""What a model needs to know of a pin, whichever way its shape is given."""
+"""The interface of a pin for models, however its shape is given."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from geometry.shape.pin import Band
 
 
 class PinLike(Protocol):
-    """A pin along z between its `ends` (m), with named surfaces and bands; `volume` in m^3.
+    """A pin along z, with named surfaces and bands.
 
-    source: where its shape comes from, for people, if not from the study.
-    revolved: whether it is a body of revolution. meshed: whether it is given by a mesh, which
-    can only be refined by halving.
+    length, ends, volume: m, least and greatest z in m, m^3.
+    source: origin of its shape, for people, if that is not the study.
+    revolved: whether it is a body of revolution.
+    meshed: whether it is given by a mesh, which can only be refined by halving its elements.
+    connections: names of the links that bear on it.
     """
 
     @property
@@ -32,7 +34,7 @@ class PinLike(Protocol):
     @property
     def connections(self) -> tuple[str, ...]: ...
     def band(self, name: str) -> Band:
-        """A band by name. Raises: GeometryError listing the names there are."""
+        """The band of this name. Raises: GeometryError that lists the names there are."""
         ...
 
     def surface(self, name: str) -> str:

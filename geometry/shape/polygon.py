@@ -1,4 +1,4 @@
-"""The corners of a pin's section before any is rounded, and what rounding takes off their sides."""
+"""The corners of a pin's section before rounding, and the lengths that rounding takes off sides."""
 
 from __future__ import annotations
 
@@ -12,13 +12,12 @@ from geometry.shape.segment import Segment
 RZ = tuple[float, float]
 Turn = Literal["step", "inner", "edge", "smooth"]
 
-SMOOTH_ANGLE_TOLERANCE = (
-    1e-9  # rad: two surfaces that meet at pi within this are one smooth surface
-)
+# rad: two surfaces whose angle differs from pi by no more are one smooth surface.
+SMOOTH_ANGLE_TOLERANCE = 1e-9
 
 
 class Profile(Protocol):
-    """What of a pin its outline follows from."""
+    """The part of a pin from which its outline follows; as of `Pin`."""
 
     @property
     def segments(self) -> tuple[Segment, ...]: ...
@@ -35,8 +34,11 @@ class Profile(Protocol):
 
 @dataclass(frozen=True)
 class Node:
-    """A corner at (r, z), m, to be rounded with `radius` (m) by an arc of that name; `leg`: of the
-    surface from here to the next corner, None on the axis.
+    """A corner of the section.
+
+    r, z, radius: position, and radius to which it is rounded, m.
+    arc: name of the rounding.
+    leg: name of the surface from here to the next corner; None on the axis.
     """
 
     r: float
@@ -47,14 +49,19 @@ class Node:
 
     @property
     def at(self) -> RZ:
-        """(r, z), m."""
+        """Position (r, z), m."""
         return self.r, self.z
 
 
 @dataclass(frozen=True)
 class Leg:
-    """A side between corners: what of it is straight, its ends (r, z) in m, its direction, and what
-    roundings take at its ends, m. `short`: by how much they take more than there is, m.
+    """A side of the section between two corners.
+
+    name: of its surface; None on the axis.
+    start, end: ends (r, z) of its straight part, m.
+    along: its direction, a unit vector.
+    length: between the corners, m.
+    taken: lengths that roundings take at its two ends, m.
     """
 
     name: str | None
@@ -66,25 +73,27 @@ class Leg:
 
     @property
     def short(self) -> float:
-        """m."""
+        """Length by which roundings take more than there is, m."""
         return sum(self.taken) - self.length
 
 
 def turn_at(left: Segment, right: Segment) -> Turn:
-    """How the outer surfaces of two segments meet: in a step, which has an inner corner and an
-    edge, in either of these alone, or smoothly.
+    """The way in which the outer surfaces of two segments meet.
+
+    They meet in a step, which has an inner corner and an edge, in either of these alone, or
+    smoothly.
     """
     return _turn((left.length, *left.diameters), (right.length, *right.diameters))
 
 
 def bore_turn_at(left: Segment, right: Segment) -> Turn:
-    """The same of their bores."""
+    """The way in which the bores of two segments meet, as of `turn_at`."""
     turn = _turn((left.length, *left.bores), (right.length, *right.bores))
     return {"inner": "edge", "edge": "inner"}.get(turn, turn)  # type: ignore[return-value]
 
 
 def _turn(left: tuple[float, float, float], right: tuple[float, float, float]) -> Turn:
-    """Of lengths and diameters at both ends."""
+    """The way in which two surfaces meet. left, right: length, and diameters at both ends, m."""
     (length, a, b), (after, c, d) = left, right
     if b != c:
         return "step"
@@ -93,7 +102,7 @@ def _turn(left: tuple[float, float, float], right: tuple[float, float, float]) -
 
 
 def corners(pin: Profile) -> tuple[Node, ...]:
-    """All, counter-clockwise in (r, z), from the inner end of the start face on."""
+    """All corners, counter-clockwise in (r, z) from the inner end of the start face on."""
     first, last = pin.segments[0], pin.segments[-1]
     z = pin.stations[-1]
     start = Node(first.bores[0] / 2, 0.0, first.bore_radii[0], "bore edge start", "start")
@@ -107,47 +116,52 @@ def corners(pin: Profile) -> tuple[Node, ...]:
 
 
 def _outside(pin: Profile, i: int) -> list[Node]:
-    """The corners between segments i and i + 1."""
+    """The outer corners between segments i and i + 1."""
     left, right, z = pin.segments[i], pin.segments[i + 1], pin.stations[i + 1]
-    here, there, label = left.diameters[1] / 2, right.diameter / 2, pin.labels[i + 1]
+    r_left, r_right, label = left.diameters[1] / 2, right.diameter / 2, pin.labels[i + 1]
     fillet, edge = (pin.fillet_at(i), f"fillet {i + 1}"), f"edge {i + 1}"
     match turn_at(left, right):
         case "step":
             face = f"shoulder {i + 1}"
-            if there > here:
+            if r_right > r_left:
                 return [
-                    Node(here, z, *fillet, face),
-                    Node(there, z, right.edge_radii[0], edge, label),
+                    Node(r_left, z, *fillet, face),
+                    Node(r_right, z, right.edge_radii[0], edge, label),
                 ]
-            return [Node(here, z, left.edge_radii[1], edge, face), Node(there, z, *fillet, label)]
+            return [
+                Node(r_left, z, left.edge_radii[1], edge, face),
+                Node(r_right, z, *fillet, label),
+            ]
         case "edge":
-            return [Node(here, z, max(left.edge_radii[1], right.edge_radii[0]), edge, label)]
-    return [Node(here, z, *fillet, label)]
+            return [Node(r_left, z, max(left.edge_radii[1], right.edge_radii[0]), edge, label)]
+    return [Node(r_left, z, *fillet, label)]
 
 
 def _inside(pin: Profile, i: int) -> list[Node]:
     """The corners of the bore between segments i + 1 and i, in this order."""
     left, right, z = pin.segments[i], pin.segments[i + 1], pin.stations[i + 1]
-    here, there = right.bore / 2, left.bores[1] / 2
+    r_right, r_left = right.bore / 2, left.bores[1] / 2
     names = f"bore fillet {i + 1}", f"bore edge {i + 1}"
     radii = right.bore_radii[0], left.bore_radii[1]
-    if here == there:
-        return [Node(here, z, max(radii), names[1], _bore(pin, i))]
-    one, other = names if here > there else names[::-1]
+    if r_right == r_left:
+        return [Node(r_right, z, max(radii), names[1], _bore(pin, i))]
+    first, second = names if r_right > r_left else names[::-1]
     return [
-        Node(here, z, radii[0], one, f"bore step {i + 1}"),
-        Node(there, z, radii[1], other, _bore(pin, i)),
+        Node(r_right, z, radii[0], first, f"bore step {i + 1}"),
+        Node(r_left, z, radii[1], second, _bore(pin, i)),
     ]
 
 
 def _bore(pin: Profile, i: int) -> str | None:
+    """Name of the bore of segment i; None for a solid segment."""
     return f"bore {pin.labels[i]}" if any(pin.segments[i].bores) else None
 
 
 def legs(nodes: tuple[Node, ...], tolerance: float) -> tuple[Leg, ...]:
-    """From every corner to the next; `tolerance` (m) within which what is left of one is nothing.
+    """The sides from every corner to the next.
 
-    Roundings that take a leg whole meet in one point of it.
+    Roundings that take up a whole side meet in one point of it.
+    tolerance: length of a straight part that counts as nothing, m.
     """
     around = [(a.at, b.at) for a, b in pairwise((*nodes, nodes[0]))]
     along = [_unit(a, b) for a, b in around]
@@ -169,8 +183,12 @@ def legs(nodes: tuple[Node, ...], tolerance: float) -> tuple[Leg, ...]:
 
 @dataclass(frozen=True)
 class Rounding:
-    """An arc of `radius` (m) in place of the corner at (r, z), m, of which it takes `reach` (m) on
-    both sides. inner: whether it is a fillet, at an inner corner.
+    """An arc in place of a corner.
+
+    at: the corner (r, z), m.
+    radius: m.
+    reach: length that it takes off both sides, m.
+    inner: whether it is a fillet, at an inner corner.
     """
 
     name: str
@@ -196,21 +214,25 @@ def roundings(nodes: tuple[Node, ...], sides: tuple[Leg, ...]) -> tuple[Rounding
 
 
 def taken_by_unit(before: RZ, after: RZ) -> float:
-    """Length that rounding with radius 1 takes off both sides, of directions `before` and
-    `after`: tan(a / 2) for a turn by a; 1 exactly at a right angle.
+    """Length that rounding with radius 1 takes off both sides of a corner.
+
+    It is tan(a / 2) for a turn by the angle a, and exactly 1 at a right angle.
+    before, after: unit vectors along the two sides.
     """
     return abs(cross(before, after)) / (1.0 + before[0] * after[0] + before[1] * after[1])
 
 
 def cross(a: RZ, b: RZ) -> float:
-    """Positive where b is to the left of a."""
+    """Cross product of two vectors, positive where b is to the left of a."""
     return a[0] * b[1] - a[1] * b[0]
 
 
 def _unit(a: RZ, b: RZ) -> RZ:
+    """Unit vector from a to b; zero where they coincide."""
     length = math.dist(a, b)
     return ((b[0] - a[0]) / length, (b[1] - a[1]) / length) if length else (0.0, 0.0)
 
 
 def _moved(at: RZ, along: RZ, by: float) -> RZ:
+    """A point moved along a unit vector."""
     return (at[0] + by * along[0], at[1] + by * along[1]) if by else at

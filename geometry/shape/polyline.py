@@ -1,4 +1,4 @@
-"""A pin whose section is given by the corners of its outline, each with a radius to round it."""
+"""A pin from the corners of its section's outline, each with a radius to round it."""
 
 from __future__ import annotations
 
@@ -24,8 +24,9 @@ class Bend:
 
 @dataclass(frozen=True)
 class Stripe:
-    """A part of the outer surface with a name, from z0 to z1 (m); connection: whether a link of
-    that name bears on it.
+    """A part of the outer surface with a name, from z0 to z1 (m).
+
+    connection: whether a link of that name bears on it.
     """
 
     name: str
@@ -35,27 +36,30 @@ class Stripe:
 
 
 def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = ()) -> Pin:
-    """The pin between two outlines, each from z = 0 on to the other end; without a bore it is
-    solid.
+    """The pin between two outlines, each from z = 0 to the other end.
 
-    Raises: GeometryError where an outline goes back in z, or has not the ends of the other; as Pin.
+    outside: corners of the outer surface. bore: corners of the bore; empty: a solid pin.
+
+    Raises: GeometryError where an outline goes back in z or does not end where the other does; as
+    Pin.
     """
     where = f"pin {name}"
     _require_forward(f"{where}: meridian", outside)
-    least, end = 2.0 * LENGTH_TOLERANCE * min(bend.r for bend in outside), outside[-1].z
+    tolerance, end = 2.0 * LENGTH_TOLERANCE * min(bend.r for bend in outside), outside[-1].z
     inside = bore or (Bend(0.0, 0.0), Bend(end, 0.0))
     _require_forward(f"{where}: bore_meridian", inside)
     for line, what in ((outside, "meridian"), (inside, "bore_meridian")):
-        if abs(line[0].z) > least or abs(line[-1].z - end) > least:
+        if abs(line[0].z) > tolerance or abs(line[-1].z - end) > tolerance:
             raise GeometryError(
                 f"{where}: {what} must begin at z = 0 and end where meridian does",
                 "not-whole",
                 ("key", what),
             )
-    same = merged((bend.z for bend in (*outside, *inside)), least)
-    stations = sorted(set(same.values()))
+    # The corners of both outlines divide the pin into segments.
+    merged_z = merged((bend.z for bend in (*outside, *inside)), tolerance)
+    stations = sorted(set(merged_z.values()))
     outer, core = (
-        [_at([replace(bend, z=same[bend.z]) for bend in line], z) for z in stations]
+        [_at([replace(bend, z=merged_z[bend.z]) for bend in line], z) for z in stations]
         for line in (outside, inside)
     )
     for places in (outer, core):
@@ -70,9 +74,10 @@ def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = (
 
 
 def _require_forward(where: str, line: Sequence[Bend]) -> None:
+    """Raises: GeometryError for an outline with too few corners, or that goes back in z."""
     what = ("key", where.rsplit(" ", 1)[1])
     if len(line) < 2:
-        raise GeometryError(f"{where} needs two corners at least", "too-few-corners", what)
+        raise GeometryError(f"{where} needs at least two corners", "too-few-corners", what)
     for i, (a, b) in enumerate(pairwise(line), 1):
         if b.z < a.z:
             raise GeometryError(
@@ -83,26 +88,27 @@ def _require_forward(where: str, line: Sequence[Bend]) -> None:
     for i, (a, b, c) in enumerate(zip(line, line[1:], line[2:], strict=False), 1):
         if a.z == b.z == c.z:
             raise GeometryError(
-                f"{where}: corners {i} to {i + 2} are at one z; two make a step",
+                f"{where}: corners {i} to {i + 2} share one z; at most two may (a step)",
                 "three-at-one-z",
                 what,
             )
     for (a, b), end in (((line[0], line[1]), "first"), ((line[-2], line[-1]), "last")):
         if a.z == b.z:
             raise GeometryError(
-                f"{where}: its {end} two corners are at one z; the end face is not part of it",
+                f"{where}: its {end} two corners share one z; leave out the end face",
                 "face-in-outline",
                 what,
             )
 
 
 def _at(line: Sequence[Bend], z: float) -> tuple[Bend, Bend]:
-    """The corners of an outline at z, the last before a step there and the first after it; of one
-    corner the second has no radius.
+    """The corners of an outline at z, before and after a step there.
+
+    Where there is only one corner, the second is the same without a radius.
     """
-    here = [bend for bend in line if bend.z == z]
-    if here:
-        return here[0], here[1] if here[1:] else replace(here[0], radius=0.0)
+    corners = [bend for bend in line if bend.z == z]
+    if corners:
+        return corners[0], corners[1] if corners[1:] else replace(corners[0], radius=0.0)
     a, b = next((a, b) for a, b in pairwise(line) if a.z < z < b.z)
     r = a.r if a.r == b.r else a.r + (z - a.z) / (b.z - a.z) * (b.r - a.r)
     return Bend(z, r), Bend(z, r)
@@ -111,7 +117,11 @@ def _at(line: Sequence[Bend], z: float) -> tuple[Bend, Bend]:
 def _segment(
     length: float, outer: Sequence[tuple[Bend, Bend]], core: Sequence[tuple[Bend, Bend]]
 ) -> Segment:
-    """Between two stations; the radii of its outer surface are those of `_joined`."""
+    """The segment between two stations.
+
+    outer, core: corners (before, after) of shaft and bore at both. The radii of its outer surface
+    are set by `_joined`.
+    """
     (_, mouth), (far, _) = core
     first, last = outer[0][1], outer[1][0]
     plain = Segment(length, 2.0 * first.r, fillet=0.0, bore_radii=(mouth.radius, far.radius))
@@ -120,7 +130,10 @@ def _segment(
 
 
 def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segment]:
-    """Two segments whose common corners are rounded: an inner one by a fillet."""
+    """Two segments with the radii of their common corners; an inner corner has a fillet.
+
+    one, other: the corner at the end of the left segment and at the start of the right one.
+    """
     turn, rises = turn_at(left, right), one.r < other.r
     fillet, ends = 0.0, [one.radius, other.radius]
     if turn == "smooth":
@@ -135,8 +148,9 @@ def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segme
 
 
 def with_stripes(pin: Pin, stripes: Iterable[Stripe]) -> Pin:
-    """The pin with parts of its cylinders named; an end of a stripe within a rounding is at the
-    cylinder's.
+    """The pin with parts of its cylinders named.
+
+    An end of a stripe within a rounding is moved to the end of the cylinder.
 
     Raises: GeometryError where a stripe is not on one cylinder; as Pin.
     """
@@ -158,8 +172,9 @@ def with_stripes(pin: Pin, stripes: Iterable[Stripe]) -> Pin:
 
 
 def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:
-    """The segment on which it is, and its ends there (m), those of the segment where a rounding or
-    the tolerance makes them so.
+    """Number of the segment on which a stripe lies, and the stripe with its ends there.
+
+    An end within a rounding or the tolerance is that of the segment.
     """
     what, at = f"pin {pin.name}: band {stripe.name}", ("band", stripe.name)
     if not stripe.z0 < stripe.z1:
@@ -192,7 +207,7 @@ def _on_cylinder(pin: Pin, stripe: Stripe) -> tuple[int, Stripe]:
 
 
 def _cut(segment: Segment, start: float, stripes: Sequence[Stripe]) -> Iterable[Segment]:
-    """A segment that begins at `start` (m), its stripes named."""
+    """The parts of a segment that begins at `start` (m), those of stripes with their names."""
     end = start + segment.length
     cuts = sorted({start, end, *(z for s in stripes for z in (s.z0, s.z1))})
     named = {s.z0: s for s in stripes}

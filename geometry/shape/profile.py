@@ -1,4 +1,4 @@
-"""The outline of half a pin's longitudinal section, edge by edge, each with its surface's name."""
+"""The outline of half a pin's longitudinal section, as edges with the names of their surfaces."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Edge:
-    """A straight edge from (r, z) to (r, z), m; `name` of the surface, None on the axis."""
+    """A straight edge from (r, z) to (r, z), m. name: of its surface; None on the axis."""
 
     name: str | None
     start: RZ
@@ -35,7 +35,11 @@ class Edge:
 
 @dataclass(frozen=True)
 class Arc(Edge):
-    """A part of a circle about `centre`, of `radius` (m); along: unit tangents at its two ends."""
+    """A circular edge.
+
+    centre, radius: m.
+    along: unit tangents at its two ends.
+    """
 
     centre: RZ = (0.0, 0.0)
     radius: float = 0.0
@@ -43,7 +47,7 @@ class Arc(Edge):
 
     @property
     def turn(self) -> float:
-        """Angle by which it turns to the left, rad."""
+        """Angle by which it turns, rad, positive to the left."""
         (a, b), (c, d) = self.along
         return math.atan2(a * d - b * c, a * c + b * d)
 
@@ -57,7 +61,7 @@ class Corner:
 
 
 def meridian(pin: Profile) -> tuple[Edge, ...]:
-    """The closed outline, counter-clockwise in (r, z), from the start face on."""
+    """The closed outline of the section, counter-clockwise in (r, z) from the start face on."""
     nodes, sides = corners(pin), pin.legs
     edges: list[Edge] = []
     for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False):
@@ -68,13 +72,13 @@ def meridian(pin: Profile) -> tuple[Edge, ...]:
             centre = (r - side * along[0][1], z + side * along[0][0])
             edges.append(Arc(node.arc, before.end, after.start, centre, node.radius, along))
         edges.append(Edge(after.name, after.start, after.end))
-    found = [e for e in edges if e.start != e.end]
-    start = next((k for k, e in enumerate(found) if e.name == "start"), 0)
-    return (*found[start:], *found[:start])
+    outline = [e for e in edges if e.start != e.end]
+    start = next((k for k, e in enumerate(outline) if e.name == "start"), 0)
+    return (*outline[start:], *outline[:start])
 
 
 def off_edge(edge: Edge) -> Callable[[Floats, Floats], Floats]:
-    """How far points (r, z) are off an edge of an outline."""
+    """Distance of points (r, z), (P,) m each, from an edge of an outline, as a function."""
     (r0, z0), (r1, z1) = sorted([edge.start, edge.end])
     length = math.dist(edge.start, edge.end)
 
@@ -91,7 +95,7 @@ def off_edge(edge: Edge) -> Callable[[Floats, Floats], Floats]:
 
 
 def kind_of(edge: Edge) -> str:
-    """gmsh's word for the surface that an edge makes when it is turned."""
+    """gmsh's type of the surface of revolution of an edge."""
     (r0, z0), (r1, z1) = edge.start, edge.end
     if isinstance(edge, Arc):
         return "Sphere" if edge.centre[0] == 0.0 else "Torus"
@@ -109,11 +113,11 @@ def sharp_corners(pin: Profile) -> tuple[Corner, ...]:
 
 
 def volume_within(outline: tuple[Edge, ...]) -> float:
-    """Of the body of revolution, m^3, exactly: pi times the integral of r^2 dz round it."""
-    return math.pi * math.fsum(_under(e) for e in outline)
+    """Exact volume of the body of revolution, m^3: pi times the integral of r^2 dz around it."""
+    return math.pi * math.fsum(_integral(e) for e in outline)
 
 
-def _under(e: Edge) -> float:
+def _integral(e: Edge) -> float:
     """Integral of r^2 dz along an edge, m^3."""
     if not isinstance(e, Arc):
         (a, start), (b, end) = e.start, e.end
@@ -121,9 +125,9 @@ def _under(e: Edge) -> float:
     c, rho = e.centre[0], e.radius
     first = math.atan2(e.start[1] - e.centre[1], e.start[0] - c)
 
-    def below(t: float) -> float:
+    def antiderivative(t: float) -> float:
         s = math.sin(t)
         half = t / 2.0 + math.sin(2.0 * t) / 4.0
         return rho * (c * c * s + 2.0 * c * rho * half + rho * rho * (s - s**3 / 3.0))
 
-    return below(first + e.turn) - below(first)
+    return antiderivative(first + e.turn) - antiderivative(first)

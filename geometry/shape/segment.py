@@ -11,12 +11,14 @@ Pair = tuple[float, float]
 
 @dataclass(frozen=True)
 class Segment:
-    """A cylinder of the profile, or a cone; all in m.
+    """A cylinder or cone of the profile. All lengths are in m.
 
-    bore: inner diameter, 0 for solid. connection: the connection whose link bears on it. fillet:
-    radius of the inner corner at its far end; None takes the pin's. end_diameter, end_bore: at the
-    far end, None where they are the same. edge_radii: to which the edges of its outer surface at
-    its two ends are rounded; bore_radii: the same of any corners of its bore.
+    diameter, bore: outer and inner diameter at its near end; bore 0 for a solid segment.
+    name, connection: of its outer surface, and the connection whose link bears on it.
+    fillet: radius of the inner corner at its far end; None: the pin's.
+    end_diameter, end_bore: at its far end; None: as at its near end.
+    edge_radii: of the edges of its outer surface at its two ends.
+    bore_radii: of the corners of its bore at its two ends.
     """
 
     length: float
@@ -32,12 +34,12 @@ class Segment:
 
     @property
     def diameters(self) -> Pair:
-        """At its two ends, m."""
+        """Outer diameters at its two ends, m."""
         return self.diameter, self.diameter if self.end_diameter is None else self.end_diameter
 
     @property
     def bores(self) -> Pair:
-        """At its two ends, m."""
+        """Inner diameters at its two ends, m."""
         return self.bore, self.bore if self.end_bore is None else self.end_bore
 
     @property
@@ -48,18 +50,18 @@ class Segment:
 
     @property
     def mean_area(self) -> float:
-        """Volume without roundings over length, m^2 times 4 / pi."""
+        """Mean cross-section without roundings, times 4 / pi, m^2."""
         (d0, d1), (b0, b1) = self.diameters, self.bores
         return (d0 * d0 + d0 * d1 + d1 * d1 - b0 * b0 - b0 * b1 - b1 * b1) / 3.0
 
     def radii(self, z: float) -> Pair:
-        """Of bore and shaft, m, at z (m) from its start on."""
+        """Radii of bore and shaft at z (m) from its start, m."""
         (d0, d1), (b0, b1), x = self.diameters, self.bores, z / self.length
         return (b0 + x * (b1 - b0)) / 2.0, (d0 + x * (d1 - d0)) / 2.0
 
     @property
     def cone(self) -> bool:
-        """Whether its outer surface is one."""
+        """Whether its outer surface is a cone."""
         return self.diameters[0] != self.diameters[1]
 
     @property
@@ -69,7 +71,7 @@ class Segment:
         return not (tapered or any((*self.edge_radii, *self.bore_radii)))
 
     def widened(self, change: Callable[[float], float]) -> Segment:
-        """The same with every dimension across changed: diameters, bores and radii."""
+        """The same segment with every transverse dimension changed: diameters, bores and radii."""
         return replace(
             self,
             diameter=change(self.diameter),
@@ -82,8 +84,9 @@ class Segment:
         )
 
     def cut(self, ends: Sequence[float]) -> tuple[Segment, ...]:
-        """Parts between `ends` (m), from 0 to its length, without names; what is at its own ends
-        stays there.
+        """The parts of the segment between `ends` (m), from 0 to its length, without names.
+
+        The first and last part keep the fillet and radii at the segment's ends.
         """
         parts = []
         for a, b in pairwise(ends):
@@ -94,21 +97,21 @@ class Segment:
             parts.append(plain)
         (edge, last), (mouth, far) = self.edge_radii, self.bore_radii
         parts[0] = replace(parts[0], edge_radii=(edge, 0.0), bore_radii=(mouth, 0.0))
-        ends_of = parts[-1].edge_radii[0], parts[-1].bore_radii[0]
+        near_radii = parts[-1].edge_radii[0], parts[-1].bore_radii[0]
         parts[-1] = replace(
             parts[-1],
             fillet=self.fillet,
-            edge_radii=(ends_of[0], last),
-            bore_radii=(ends_of[1], far),
+            edge_radii=(near_radii[0], last),
+            bore_radii=(near_radii[1], far),
         )
         return tuple(parts)
 
     def scaled(self, factor: float) -> Segment:
-        """The same segment in another unit."""
+        """The same segment in another unit of length: all lengths times `factor`."""
         return replace(self.widened(lambda x: x * factor), length=self.length * factor)
 
     def with_diameters(self, outer: Pair, inner: Pair) -> Segment:
-        """The same with these at its two ends, m."""
+        """The same segment with other diameters and bores at its two ends, m."""
         return replace(
             self,
             diameter=outer[0],

@@ -1,8 +1,8 @@
 """The tolerance below which two dimensions of a pin are equal.
 
-0.7 in and 17.78 mm differ by one unit in the last place, and no lathe, mesh or stress knows a step
-of 1e-18 m. So dimensions of a pin that are closer than a billionth of its diameter are made equal
-where a profile becomes a pin, and all that follows compares exactly.
+0.7 in and 17.78 mm differ by one unit in the last place, but no lathe, mesh or stress knows a step
+of 1e-18 m. Dimensions of a pin that differ by less than a billionth of its diameter are therefore
+made equal when a profile becomes a pin, so that all later comparisons can be exact.
 """
 
 from __future__ import annotations
@@ -11,22 +11,23 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 LENGTH_TOLERANCE = 1e-9  # of the smallest diameter
-DIMENSION_ROUND_OFF = 1e-13  # of the dimension: two ways to write one length differ by less
+DIMENSION_ROUND_OFF = 1e-13  # of a dimension: one length written in two units differs by less
 
 
 def merged(values: Iterable[float], tolerance: float) -> dict[float, float]:
-    """By value the one it becomes: the least of those that are each within `tolerance` of the
-    next.
+    """The merged value by each value.
+
+    Values that are each within `tolerance` of the next become the smallest of them.
     """
     ordered = sorted(set(values))
-    one = {value: value for value in ordered}
+    merged_values = {value: value for value in ordered}
     for low, high in pairwise(ordered):
         if high - low <= tolerance:
-            one[high] = one[low]
-    return one
+            merged_values[high] = merged_values[low]
+    return merged_values
 
 
 def snapped(value: float, marks: Iterable[float], tolerance: float) -> float:
-    """The nearest of the marks within `tolerance`, or the value where there is none."""
-    near = min(marks, key=lambda mark: abs(mark - value), default=value)
-    return near if abs(near - value) <= tolerance else value
+    """The nearest of the marks if it is within `tolerance`, otherwise the value."""
+    nearest = min(marks, key=lambda mark: abs(mark - value), default=value)
+    return nearest if abs(nearest - value) <= tolerance else value

@@ -1,1 +1,1 @@
-"""Forces on a linkage that are known from its motion: constant, tabulated, springs and dampers."""
+"""Forces that act on a linkage, and those that its pins and drives must carry in turn."""

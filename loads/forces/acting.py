@@ -1,4 +1,4 @@
-"""Forces that the motion determines, on the bodies of a linkage."""
+"""Applied forces, springs and dampers on the bodies of a linkage, which its motion determines."""
 
 from __future__ import annotations
 
@@ -16,13 +16,18 @@ from loads.motion.loop_equations import cross, number
 from loads.motion.motion import Motion
 from pinbase.arrays import Complex, Floats
 
-SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch is at it
+SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coincides with it
 MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
 
 
 @dataclass(frozen=True)
 class Push:
-    """Force (T,) N in world axes on an item's point (m, as drawn), and couple (T,) N m on it."""
+    """The action of a load on one item over time.
+
+    at: the item's point at which the force acts, as drawn, m.
+    force: (T,) N, complex, world axes.
+    couple: (T,) N m.
+    """
 
     item: str
     at: Point
@@ -32,8 +37,9 @@ class Push:
 
 @dataclass(frozen=True)
 class Kinks:
-    """Values of a measure, or (rate) of its rate, at which a force is not smooth: the knots of a
-    curve.
+    """Values of a measure at which a force is not smooth, the knots of a curve.
+
+    rate: whether they are values of the measure's rate instead.
     """
 
     measure: Measure
@@ -42,41 +48,45 @@ class Kinks:
 
 
 class Load(Protocol):
-    """Something that acts on a linkage."""
+    """A load on a linkage, known at every instant of a motion."""
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
-        """What it does at every instant."""
+        """The load's actions on each item at every instant."""
         ...
 
     @property
     def kinks(self) -> tuple[Kinks, ...]:
-        """Where it is not smooth."""
+        """The values of its measures at which the load is not smooth."""
         ...
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """Times at which it jumps, s."""
+        """Times at which the load jumps, s."""
         ...
 
 
 @dataclass(frozen=True)
 class Varying:
-    """A factor by a table of a measure."""
+    """A factor tabulated over a measure."""
 
     measure: Measure
     curve: ForceTable
 
     def __call__(self, motion: Motion) -> Floats:
-        """(T,)."""
+        """The factor at every instant, (T,)."""
         return self.curve(self.measure(motion)[0])
 
 
 @dataclass(frozen=True)
 class Applied:
-    """A force (N) on a body's point (m, as drawn) and a couple (N m) on the body.
+    """A force on a point of a body and a couple on the body.
 
-    follows: the force turns with the body (given in axes as drawn); otherwise in world axes.
-    times: a factor of both, by default constant. begin, end: it acts only between, s.
+    at: the point, as drawn, m.
+    force, couple: N and N m.
+    follows: whether the force turns with the body (it is then stated as drawn); otherwise its
+    direction is fixed in the world.
+    times: factor of force and couple; None: 1.
+    begin, end: times between which the load acts, s.
     """
 
     body: str
@@ -91,24 +101,25 @@ class Applied:
     def along(self, motion: Motion) -> Complex:
         """The force in world axes at every instant, (T,) N."""
         force = self._size(motion) * number(self.force)
-        turned = np.exp(1j * motion.angle(self.body)) if self.follows else 1.0
-        return np.asarray(force * turned)
+        rotation = np.exp(1j * motion.angle(self.body)) if self.follows else 1.0
+        return np.asarray(force * rotation)
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
-        """What it does at every instant; at a switch what it did before."""
+        """The force and couple at every instant; at a switch, those just before it."""
         yield Push(self.body, self.at, self.along(motion), self.couple * self._size(motion))
 
     @property
     def kinks(self) -> tuple[Kinks, ...]:
-        """The rows of its table."""
+        """The rows of the factor's table."""
         return () if self.times is None else (Kinks(self.times.measure, self.times.curve),)
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """Its begin and end, s."""
+        """Times at which the load begins and ends, s."""
         return tuple(t for t in (self.begin, self.end) if math.isfinite(t))
 
     def _size(self, motion: Motion) -> Floats:
+        """Factor of force and couple at every instant, (T,)."""
         t = motion.times
         on = np.ones(len(motion), dtype=bool)
         if self.switches:
@@ -125,11 +136,11 @@ class Applied:
 
 @dataclass(frozen=True)
 class ForceLaw:
-    """Force (couple) that a spring and damper exert to increase their length (angle) x:
+    """The force (couple) by which a spring and damper push their ends apart at length (angle) x:
 
         preload - stiffness (x - reference) - damping x' + table(x) + damper(x')
 
-    in SI.
+    All in SI units.
     """
 
     preload: float = 0.0
@@ -140,22 +151,26 @@ class ForceLaw:
     damper: ForceTable | None = None
 
     def __call__(self, x: Floats, rate: Floats) -> Floats:
-        """(T,) N or N m. Raises: LinkageError outside a table."""
+        """The force at x (T,) m and x' = rate (T,) m/s, N; or the couple at x rad, N m.
+
+        Raises: LinkageError outside a table.
+        """
         out = self.preload - self.stiffness * (x - self.reference) - self.damping * rate
         if self.table is not None:
             out = out + self.table(x)
         return out if self.damper is None else out + self.damper(rate)
 
     def kinks(self, measure: Measure) -> tuple[Kinks, ...]:
-        """The rows of its tables."""
-        found = ((self.table, False), (self.damper, True))
-        return tuple(Kinks(measure, curve, rate) for curve, rate in found if curve is not None)
+        """The rows of the tables, as values of `measure`."""
+        tables = ((self.table, False), (self.damper, True))
+        return tuple(Kinks(measure, curve, rate) for curve, rate in tables if curve is not None)
 
 
 @dataclass(frozen=True)
 class Spring:
-    """Between two points, along a slider, or between two bodies that turn: pushes them apart (turns
-    the second against the first) with the force (couple) of its law.
+    """A spring and damper between two points, along a slider, or between two bodies that turn.
+
+    It pushes the points apart (turns the body against its base) with the force (couple) of its law.
     """
 
     name: str
@@ -164,21 +179,24 @@ class Spring:
 
     @property
     def kinks(self) -> tuple[Kinks, ...]:
-        """The rows of its tables."""
+        """The rows of the law's tables."""
         return self.law.kinks(self.between)
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """None."""
+        """No times: a spring acts always."""
         return ()
 
     def force(self, motion: Motion) -> Floats:
-        """(T,) N or N m, positive where it increases its length or angle."""
+        """Force (N) or couple (N m), (T,), positive where it increases the length or angle."""
         return self.law(*self.between(motion))
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
-        """On both its ends."""
-        force, none = self.force(motion), np.zeros(len(motion))
+        """The spring's actions on its two ends at every instant.
+
+        Raises: LinkageError where its two points coincide.
+        """
+        force, zero = self.force(motion), np.zeros(len(motion))
         match self.between:
             case Distance(items, points):
                 line, _ = self.between.line(motion)
@@ -190,24 +208,27 @@ class Spring:
                         ("spring", self.name),
                     )
                 along: Complex = force * line / np.abs(line)
-                yield Push(items[1], points[1], along, none)
-                yield Push(items[0], points[0], -along, none)
+                yield Push(items[1], points[1], along, zero)
+                yield Push(items[0], points[0], -along, zero)
             case Position(Turn() as turn):
-                yield Push(turn.body, (0.0, 0.0), none.astype(complex), force)
-                yield Push(turn.base, (0.0, 0.0), none.astype(complex), -force)
+                yield Push(turn.body, (0.0, 0.0), zero.astype(complex), force)
+                yield Push(turn.base, (0.0, 0.0), zero.astype(complex), -force)
             case Position(Slider() as slider):
+                # The slider's points need not lie on one line of action: the base also takes the
+                # couple of the two forces.
                 k = motion.linkage.sliders.index(slider)
                 along = np.asarray(force * motion.pose.axis[:, k])
                 line, _ = Distance((slider.base, slider.moving), (slider.start, slider.end)).line(
                     motion
                 )
-                yield Push(slider.moving, slider.end, along, none)
+                yield Push(slider.moving, slider.end, along, zero)
                 yield Push(slider.base, slider.start, -along, -cross(line, along))
 
 
 def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Complex, Floats]]:
-    """Of every push its item's number, its force (T,) N and its couple (T,) N m about the item's
-    centre; those on the ground are left out.
+    """The loads' actions as (item's number, force, couple), without those on the ground.
+
+    Forces are (T,) N, complex; couples, about the item's centre of mass, (T,) N m.
     """
     centres, _, _ = motion.centres
     for load in loads:
@@ -221,7 +242,7 @@ def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Comp
 
 
 def power(motion: Motion, loads: tuple[Load, ...]) -> Floats:
-    """(T,) W that the loads put in."""
+    """Power of the loads on the linkage, (T,) W."""
     out = np.zeros(len(motion))
     for load in loads:
         for push in load.pushes(motion):

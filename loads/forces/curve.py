@@ -1,4 +1,4 @@
-"""A quantity by a table: between its rows linear, or cubic without new extremes.
+"""A tabulated quantity, interpolated linearly, or by a cubic without overshoot.
 
 The cubic is that of Fritsch and Carlson, SIAM J. Numer. Anal. 17 (1980) 238, with the weighted
 harmonic mean of Fritsch and Butland as slopes: monotone where the rows are.
@@ -18,16 +18,20 @@ from pinbase.arrays import Floats
 Interpolation = Literal["linear", "monotone"]
 Outside = Literal["error", "hold", "repeat"]
 
-TABLE_END_TOLERANCE = 1e-9  # of the range: this little outside a table is its end
+TABLE_END_TOLERANCE = 1e-9  # of the range: a value this little outside a table is at its end
 
 
 @dataclass(frozen=True)
 class ForceTable:
-    """x, y: rows (N,), N >= 2, x rising, SI. outside: what holds beyond the rows: an error, the
-    value of the last one, or the table again ("repeat", with the range of x as its period).
-    name, unit: of x in messages, unit with its SI value.
+    """A table of y over x.
 
-    Raises: LinkageError for fewer rows, x that does not rise, or a repeated table with a jump.
+    x, y: (N,) rows, N >= 2, x increasing, SI units.
+    outside: beyond the rows, an error, the value of the nearest row ("hold"), or the table again
+    with the range of x as its period ("repeat").
+    name: of the table, for messages.
+    unit: of x in messages, with its SI value.
+
+    Raises: LinkageError for fewer rows, x that does not increase, or a jump where it repeats.
     """
 
     x: tuple[float, ...]
@@ -55,7 +59,7 @@ class ForceTable:
             )
 
     def __call__(self, at: Floats) -> Floats:
-        """Values at (T,). Raises: LinkageError outside the table."""
+        """Values y at x = `at` (T,). Raises: LinkageError outside the table."""
         low, high = self.x[0], self.x[-1]
         if self.outside == "repeat":
             at = low + np.mod(at - low, high - low)
@@ -64,6 +68,7 @@ class ForceTable:
         at = np.clip(at, low, high)
         if self.interpolation == "linear":
             return np.interp(at, self.x, self.y)
+        # Cubic Hermite polynomial of the interval: s from 0 to 1, slopes per interval.
         k = np.clip(np.searchsorted(self.x, at, side="right") - 1, 0, len(self.x) - 2)
         x, y, slopes = np.array(self.x), np.array(self.y), self._slopes
         h = x[k + 1] - x[k]
@@ -73,7 +78,7 @@ class ForceTable:
         return np.asarray(y[k] + s * (start + s * bend))
 
     def knots(self, low: float, high: float) -> Floats:
-        """The rows' x between two values, at which the curve has kinks."""
+        """Values of x between `low` and `high` at which the curve has kinks: those of its rows."""
         x = np.array(self.x)
         if self.outside == "repeat":
             period = x[-1] - x[0]
@@ -82,10 +87,11 @@ class ForceTable:
         return x[(x > low) & (x < high)]
 
     def _require_inside(self, at: Floats) -> None:
+        """Raises: LinkageError where a value of x is outside the table."""
         low, high = self.x[0], self.x[-1]
-        off = np.maximum(low - at, at - high)
-        k = int(off.argmax())
-        if off[k] > TABLE_END_TOLERANCE * (high - low):
+        excess = np.maximum(low - at, at - high)
+        k = int(excess.argmax())
+        if excess[k] > TABLE_END_TOLERANCE * (high - low):
             raise LinkageError(
                 f"{self.name} goes from {self._shown(low)} to {self._shown(high)}, but "
                 f"{self._shown(float(at[k]))} occurs; extend it, or give outside = "
@@ -94,12 +100,13 @@ class ForceTable:
             )
 
     def _shown(self, value: float) -> str:
+        """A value of x as text, in the table's unit."""
         unit, factor = self.unit
         return f"{value / factor:.6g} {unit}".rstrip()
 
     @cached_property
     def _slopes(self) -> Floats:
-        """(N,) at the rows; where the table repeats, its ends are neighbours."""
+        """Slopes dy/dx of the cubic at the rows, (N,); where the table repeats, both ends agree."""
         x, y = np.array(self.x), np.array(self.y)
         h, rise = np.diff(x), np.diff(y)
         d = rise / h
@@ -113,7 +120,10 @@ class ForceTable:
 
 
 def _harmonic(h: Floats, d: Floats) -> Floats:
-    """Slopes between neighbouring pieces of widths h and slopes d; zero at an extreme."""
+    """Slopes at the inner rows, (N - 2,): the harmonic mean of both sides, zero at an extreme.
+
+    h, d: (N - 1,) widths and slopes of the intervals.
+    """
     w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
     same = d[:-1] * d[1:] > 0.0
     safe = [np.where(same, part, 1.0) for part in (d[:-1], d[1:])]
@@ -121,7 +131,10 @@ def _harmonic(h: Floats, d: Floats) -> Floats:
 
 
 def _end_slope(h0: float, h1: float, d0: float, d1: float) -> float:
-    """Of a parabola through three rows, limited such that nothing overshoots."""
+    """Slope at the end row, of a parabola through three rows, limited so as not to overshoot.
+
+    h0, d0: width and slope of the interval at the end; h1, d1: of the next.
+    """
     slope = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
     if slope * d0 <= 0.0:
         return 0.0

@@ -1,8 +1,8 @@
-"""What holds a linkage against its loads: its drives, several in parallel, locks or stops.
+"""Forces of the actuators that hold a linkage against its loads: drives, locks or stops.
 
 Positions follow the drives. Forces follow from virtual work with a multiplier for every set of
-actuators: of one alone it is its force; several in parallel divide it by their areas (equal
-pressure), or by stiffness times how far each is moved (springs on rigid links).
+actuators: for a single actuator it is its force; several in parallel divide it by their areas
+(equal pressure), or by stiffness times displacement (springs on rigid links).
 """
 
 from __future__ import annotations
@@ -19,15 +19,16 @@ from loads.motion.mobility import moving_bodies
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
-OPENING_FORCE_TOLERANCE = (
-    1e-9  # of the largest force: a stop that carries this little of the wrong sign is free
-)
+# Of the largest force: a stop that carries no more of the wrong sign carries nothing.
+OPENING_FORCE_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)
 class Holding:
-    """A actuators in D sets. weights: (T, A, D) N (N m) of every actuator for a unit of every set's
-    multiplier. factors: of the loop equations with a row for every set.
+    """The A actuators that hold a linkage, in D sets.
+
+    weights: (T, A, D) N (N m), force of each actuator per unit of each set's multiplier.
+    factors: those of the loop equations with a row for each set instead of each drive.
     """
 
     actuators: tuple[Slider | Turn, ...]
@@ -35,13 +36,14 @@ class Holding:
     factors: Factors
 
     def forces(self, multipliers: Floats) -> Floats:
-        """(T, A) N or N m, from (T, D)."""
+        """Forces of the actuators, (T, A) N or N m. multipliers: (T, D) of the sets."""
         return np.asarray((self.weights @ multipliers[..., None])[..., 0])
 
 
 def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
-    """Who holds; hold: names of sliders and turns, by default of the drives and what is parallel to
-    them.
+    """The actuators that hold the linkage, and how they divide its load.
+
+    hold: names of sliders and turns; by default the drives and the actuators parallel to them.
 
     Raises: LinkageError when these cannot hold the linkage, or are too many.
     """
@@ -53,13 +55,14 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     weights = np.zeros((len(motion), len(actuators), len(sets)))
     first = 0
     for k, (names, rule) in enumerate(sets):
-        own = slice(first, first + len(names))
-        weights[:, own, k] = _weights(motion, actuators[own], rule)
-        first = own.stop
+        members = slice(first, first + len(names))
+        weights[:, members, k] = _weights(motion, actuators[members], rule)
+        first = members.stop
     if not hold and not linkage.parallel:
         return Holding(actuators, weights, motion.factors)
     if hold:
         _require_count(motion, hold, len(sets))
+    # By virtual work, the row of a set is the sum of its actuators' rows, weighted by their forces.
     J = loops.jacobian(motion.pose)
     rows = np.stack([loops.along(a) / loops.unit(a) for a in actuators])
     J[:, J.shape[1] - len(sets) :] = np.swapaxes(weights, 1, 2) @ rows
@@ -70,22 +73,25 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
 
 
 def require_closed(held: Holding, forces: Floats) -> None:
-    """Raises: LinkageError when a stop would have to pull; forces (T, A) N or N m."""
-    for k, each in enumerate(held.actuators):
-        if not isinstance(each, Turn) or each.carries == "both":
+    """Raises: LinkageError when a stop would have to pull. forces: (T, A) N or N m."""
+    for k, stop in enumerate(held.actuators):
+        if not isinstance(stop, Turn) or stop.carries == "both":
             continue
-        wrong = -forces[:, k] if each.carries == "positive" else forces[:, k]
-        if wrong.max() > OPENING_FORCE_TOLERANCE * np.abs(forces).max():
+        opening = -forces[:, k] if stop.carries == "positive" else forces[:, k]
+        if opening.max() > OPENING_FORCE_TOLERANCE * np.abs(forces).max():
             raise LinkageError(
-                f"stop {each.name} carries only {each.carries} couples, but to hold this load it "
-                f"would have to carry {forces[int(wrong.argmax()), k]:.4g} N m: it opens; name "
+                f"stop {stop.name} carries only {stop.carries} couples, but to hold this load it "
+                f"would have to carry {forces[int(opening.argmax()), k]:.4g} N m: it opens; name "
                 "something else in hold",
                 "stop-opens",
             )
 
 
 def _sets(linkage: Linkage, hold: Sequence[str]) -> list[tuple[tuple[str, ...], Parallel | None]]:
-    """The actuators that share a multiplier, and their rule: those of a rule all of which hold."""
+    """The sets of actuators that share a multiplier, each with its rule, or a single one without.
+
+    A rule applies only if all its members hold the linkage.
+    """
     out: list[tuple[tuple[str, ...], Parallel | None]] = []
     done = set[str]()
     for name in hold or linkage.driven:
@@ -100,22 +106,24 @@ def _sets(linkage: Linkage, hold: Sequence[str]) -> list[tuple[tuple[str, ...], 
 
 
 def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel | None) -> Floats:
-    """(T, A) of the actuators of one set, or (A,) the same for all instants."""
+    """Forces of a set's actuators per unit of its multiplier, (T, A), or (A,) for all instants."""
     loops = motion.loops
     if rule is None:
         return np.array([loops.unit(actuators[0])])
     shares = np.array(rule.shares) / max(rule.shares)
     if rule.by == "areas":
         return shares
+    # By stiffness: a spring's force is in proportion to its displacement per unit of the drive's.
     unit = np.zeros_like(motion.speeds)
     unit[:, next(k for k, d in enumerate(loops.linkage.drives) if d.name in rule.members)] = 1.0
     rates = motion.factors.solve(loops.drive_side(unit))
-    moved = np.stack([rates @ loops.along(a) / loops.unit(a) for a in actuators], axis=1)
-    return shares * moved
+    displacements = np.stack([rates @ loops.along(a) / loops.unit(a) for a in actuators], axis=1)
+    return shares * displacements
 
 
 def _require_count(motion: Motion, hold: Sequence[str], count: int) -> None:
-    degrees = motion.found.degrees
+    """Raises: LinkageError unless there are as many sets as degrees of freedom."""
+    degrees = motion.mobility.degrees
     if count > degrees:
         raise LinkageError(
             f"hold = {', '.join(hold)}: {count} for {degrees} degree(s) of freedom, and statics "
@@ -132,7 +140,7 @@ def _require_count(motion: Motion, hold: Sequence[str], count: int) -> None:
 
 
 def _loose(motion: Motion, J: Floats, names: Sequence[str]) -> LinkageError:
-    """At one instant, J (rows, n)."""
+    """The error of actuators that leave bodies free. J: (rows, n) at the instant where they do."""
     loops = motion.loops
     _, singular, right = np.linalg.svd(J)
     free = right[singular < RANK_TOLERANCE * singular[0]] / loops.scale

@@ -1,4 +1,4 @@
-"""What a force can depend on: time, a drive's or slider's position, a distance of two points."""
+"""Quantities on which a force can depend: time, a slider's or turn's position, a distance."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pinbase.arrays import Floats
 
 
 class Measure(Protocol):
-    """A value and its rate, (T,) each, at every instant of a motion; SI."""
+    """A quantity of a motion; called, it gives value and rate at every instant, (T,) each, SI."""
 
     def __call__(self, motion: Motion) -> tuple[Floats, Floats]: ...
 
@@ -42,13 +42,16 @@ class Position:
 
 @dataclass(frozen=True)
 class Distance:
-    """Of two points (m, as drawn), each of an item or the ground, m."""
+    """Distance between two points, each of an item or the ground, m.
+
+    points: as drawn, m.
+    """
 
     items: tuple[str, str]
     points: tuple[Point, Point]
 
     def line(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-        """From the first point to the second, and its rate, (T,) complex."""
+        """Vector from the first point to the second, m, and its rate, m/s, (T,) complex each."""
         index = np.array([motion.linkage.index[item] for item in self.items])
         drawn = np.array([number(p) for p in self.points])
         place, velocity, _ = motion.follow(motion.loops.points(index, drawn))

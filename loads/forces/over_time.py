@@ -16,18 +16,17 @@ from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
 
-MIN_DRIVE_SHARE = (
-    1e-9  # of the largest force, by length and speed: a drive that gives less gives nothing
-)
+# Of the largest force, times length scale or speed: a drive's smaller force or power is zero.
+MIN_DRIVE_SHARE = 1e-9
 MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
-AGREEMENT_TOLERANCE = (
-    1e-5  # of a maximum: closer than this to its limit, the value at the instant itself is reported
-)
+# Of a maximum: where the value solved at its instant is this close to the interpolated one, the
+# solved one is reported. It differs where the quantity jumps, and the maximum is a one-sided limit.
+AGREEMENT_TOLERANCE = 1e-5
 
 
 @dataclass(frozen=True)
 class Extremum:
-    """A maximum or minimum over time, and its time, s."""
+    """A maximum or minimum over time, and the time at which it occurs, s."""
 
     value: float
     time: float
@@ -35,9 +34,13 @@ class Extremum:
 
 @dataclass(frozen=True)
 class Effort:
-    """Force (N) or torque (N m) of a drive over a time: the largest magnitude, the mean and the
-    root of the mean square; power: largest magnitude, W; stroke: between its extreme positions, m
-    or rad; work (T,) J done up to each sample.
+    """Force (N) or torque (N m) of a drive over a time, with its power and work.
+
+    largest: largest magnitude.
+    mean, rms: over time.
+    power: largest magnitude, W.
+    stroke: difference of its extreme positions, m or rad.
+    work: (T,) J, done up to each sample.
     """
 
     largest: Extremum
@@ -50,8 +53,11 @@ class Effort:
 
 @dataclass(frozen=True)
 class PeakForces:
-    """Of every connection its largest force (N) and moment (N m) over a time, and the force (3,)
-    then. unresolved: (J, 2) s, where they are not certain.
+    """Largest force and moment of every connection over a time.
+
+    force, moment: magnitudes, N and N m, by connection.
+    vector: (3,) N, the largest force by connection, world axes.
+    unresolved: (J, 2) s, intervals in which the quantities are not resolved.
     """
 
     force: dict[str, Extremum]
@@ -64,9 +70,11 @@ class PeakForces:
 class OverTime:
     """Results for a motion as a whole.
 
-    drives: in the linkage's order. transmission: smallest angle (rad) by link and joint.
-    condition: largest. violation: largest relative violation of the power balance at any solved
-    instant. corners: times at which something may jump, s.
+    drives: in the linkage's order.
+    transmission: smallest transmission angle (rad) by link and joint.
+    condition: largest condition number.
+    violation: largest relative violation of the power balance at any solved instant.
+    corners: times at which forces may jump, s.
     """
 
     peaks: PeakForces
@@ -80,14 +88,15 @@ class OverTime:
 def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForces:
     """The largest force and moment of every connection from the first to the last of the samples.
 
-    at: reactions at times (T,) s of the same motion, which jump nowhere.
+    samples: (T,) s, increasing.
+    at: gives the reactions at times (T,) s of the same motion; they must not jump.
     """
     first = at(samples)
     forces = [(np.abs(first.forces).max() or 1.0), (np.abs(first.moments).max() or 1.0)]
 
     def columns(times: Floats) -> Floats:
-        found = at(times)
-        parts = (found.forces / forces[0], found.moments / forces[1])
+        reactions = at(times)
+        parts = (reactions.forces / forces[0], reactions.moments / forces[1])
         return np.concatenate([p.reshape(len(times), -1) for p in parts], axis=1)
 
     count = len(first.connections)
@@ -95,49 +104,60 @@ def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForce
     return _peaks(resolved(samples, columns, groups=groups.tolist()), at, forces)
 
 
-def _peaks(found: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:
-    """From columns fx, fy, fz of every connection, then mx, my, mz, over their units; with one
-    unit there are no moments.
+def _peaks(
+    components: Resolved, at: Callable[[Floats], Reactions], unit: list[float]
+) -> PeakForces:
+    """Largest forces and moments from their components over time.
+
+    components: columns fx, fy, fz of every connection, then mx, my, mz, over their units.
+    at: gives the reactions at times (T,) s.
+    unit: of forces and of moments, N and N m; one only: there are no moments.
     """
-    names = at(found.ends[:1]).connections
+    names = at(components.ends[:1]).connections
     count = len(names)
     width = 3 * count * len(unit)
 
     def sizes(values: Floats) -> Floats:
         return np.asarray(np.linalg.norm(values[:, :width].reshape(len(values), -1, 3), axis=2))
 
-    best, when = found.largest(sizes)
-    there = at(when)
-    both = zip((there.forces, there.moments), unit, strict=False)
+    best, when = components.largest(sizes)
+    # Compare the interpolated maximum with the solution at its instant: they differ at a jump only.
+    solved = at(when)
+    both = zip((solved.forces, solved.moments), unit, strict=False)
     vectors = np.concatenate([vector / size for vector, size in both], axis=1)
     rows = np.arange(len(when))
     exact = vectors[rows, rows]
-    limit = found.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
+    limit = components.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
     size = np.linalg.norm(exact, axis=1)
     agrees = np.abs(size - best) <= AGREEMENT_TOLERANCE * best
     value = np.where(agrees, size, best) * np.repeat(unit, count)
     vector = np.where(agrees[:, None], exact, limit) * unit[0]
 
     def named(first: int) -> dict[str, Extremum]:
-        found = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
-        return {name: Extremum(*peak) for name, peak in zip(names, found, strict=False)}
+        peaks = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
+        return {name: Extremum(*peak) for name, peak in zip(names, peaks, strict=False)}
 
-    nothing = dict.fromkeys(names, Extremum(0.0, float(found.ends[0])))
+    zero = dict.fromkeys(names, Extremum(0.0, float(components.ends[0])))
     return PeakForces(
         named(0),
-        named(count) if len(unit) > 1 else nothing,
+        named(count) if len(unit) > 1 else zero,
         dict(zip(names, vector, strict=False)),
-        found.unresolved,
+        components.unresolved,
     )
 
 
 @dataclass(frozen=True)
 class _Dense:
-    """A motion at instants so dense that the polynomials `found` give the rest. forces (N), effort
-    and power (D,): what forces, drives' forces or torques and their powers are divided by.
+    """Forces of a motion, resolved in time: polynomials give them at all instants.
+
+    quantities: of all connections fx, fy, fz, then drive forces, then drive powers, divided by the
+    next three.
+    forces: unit of forces, N.
+    effort, power: (D,) units of the drives' forces (N) or torques (N m) and of their powers (W).
+    corners: times at which something may jump, s.
     """
 
-    found: Resolved
+    quantities: Resolved
     forces: float
     effort: Floats
     power: Floats
@@ -147,19 +167,20 @@ class _Dense:
 def require_possible(
     course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics
 ) -> None:
-    """Raises: as `solve`, also where it fails between the samples."""
-    solve(_dense(course, solve, samples).found.nodes)
+    """Raises: as `solve`, also where it fails between the samples; arguments as of `over_time`."""
+    solve(_dense(course, solve, samples).quantities.nodes)
 
 
 def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> OverTime:
     """Extremes and means of a motion over the time of its samples.
 
-    solve: the dynamics at times (T,) s of that course. Raises: as `solve`, also where it fails
-    between the samples.
+    solve: gives the dynamics at times (T,) s of that course.
+
+    Raises: as `solve`, also where it fails between the samples.
     """
     d = _dense(course, solve, samples)
-    peaks = _peaks(d.found, lambda times: solve(times).reactions, [d.forces])
-    between = solve(d.found.nodes)
+    peaks = _peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
+    between = solve(d.quantities.nodes)
     angles, condition = _postures(course, between.motion.times)
     positions = np.concatenate([samples.course[0], between.course[0]])
     strokes = np.ptp(positions, axis=0)
@@ -174,6 +195,8 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
 
 
 def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> _Dense:
+    """The forces of a motion, resolved between its samples."""
+    # Units from the samples and the nodes of the path, so that tolerances are of the largest.
     first = (samples, solve(course.path.nodes))
     forces = max(float(np.abs(d.reactions.forces).max()) for d in first) or 1.0
     scale = course.loops.linkage.length_scale
@@ -186,51 +209,55 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
     power = np.where(power > 0.0, power, 1.0)
     connections, drives = len(samples.reactions.connections), len(effort)
 
-    def columns(found: Dynamics) -> Floats:
-        r = found.reactions
-        parts = (r.forces / forces, found.drive / effort, found.power / power)
-        return np.concatenate([p.reshape(len(found.motion), -1) for p in parts], axis=1)
+    def columns(dynamics: Dynamics) -> Floats:
+        r = dynamics.reactions
+        parts = (r.forces / forces, dynamics.drive / effort, dynamics.power / power)
+        return np.concatenate([p.reshape(len(dynamics.motion), -1) for p in parts], axis=1)
 
     groups = np.concatenate(
         [np.repeat(np.arange(connections), 3), connections + np.arange(2 * drives)]
     )
-    asked = np.concatenate([d.motion.times for d in first])
-    start, once = np.unique(asked, return_index=True)
+    times = np.concatenate([d.motion.times for d in first])
+    start, once = np.unique(times, return_index=True)
     known = np.concatenate([columns(d) for d in first])[once]
     corners = np.concatenate(
         [course.corners, _reversals(course, start), kinks(course, samples.applied, start)]
     )
-    found = resolved(
+    quantities = resolved(
         start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
     )
-    return _Dense(found, forces, effort, power, corners)
+    return _Dense(quantities, forces, effort, power, corners)
 
 
 def _efforts(
     dense: _Dense, solve: Callable[[Floats], Dynamics], samples: Floats, strokes: Floats
 ) -> tuple[Effort, ...]:
-    """From the last columns: the drives' forces or torques over `effort`, powers over `power`."""
-    found, effort, power = dense.found, dense.effort, dense.power
+    """Force, power and work of every drive, from the last columns of `dense`.
+
+    samples: (T,) s, times up to which work is integrated.
+    strokes: (D,) m or rad.
+    """
+    effort, power = dense.effort, dense.power
     D = len(effort)
-    found = found.quantities(slice(-2 * D, None))
+    drives = dense.quantities.quantities(slice(-2 * D, None))
 
     def efforts(values: Floats) -> Floats:
         return values[:, :D] * effort
 
-    best, when = found.largest(lambda values: np.abs(efforts(values)))
+    best, when = drives.largest(lambda values: np.abs(efforts(values)))
     exact = np.abs(np.diagonal(solve(when).drive))
     best = np.where(np.abs(exact - best) <= AGREEMENT_TOLERANCE * best, exact, best)
-    mean = found.mean(efforts)
+    mean = drives.mean(efforts)
     mean = np.where(np.abs(mean) > MEAN_ROUND_OFF * best, mean, 0.0)
-    rms = np.sqrt(found.mean(lambda values: efforts(values) ** 2))
-    work = found.integral(samples, lambda values: values[:, -D:] * power)
-    most, at = found.largest(lambda values: np.abs(values[:, -D:] * power))
+    rms = np.sqrt(drives.mean(lambda values: efforts(values) ** 2))
+    work = drives.integral(samples, lambda values: values[:, -D:] * power)
+    max_power, power_time = drives.largest(lambda values: np.abs(values[:, -D:] * power))
     return tuple(
         Effort(
             Extremum(float(best[k]), float(when[k])),
             float(mean[k]),
             float(rms[k]),
-            Extremum(float(most[k]), float(at[k])),
+            Extremum(float(max_power[k]), float(power_time[k])),
             float(strokes[k]),
             work[:, k],
         )
@@ -239,7 +266,10 @@ def _efforts(
 
 
 def _reversals(course: Course, samples: Floats) -> Floats:
-    """Times (s) at which a slider or pin with friction reverses: its friction jumps there."""
+    """Times at which a slider or pin with friction reverses, (N,) s: its friction jumps there.
+
+    samples: (T,) s, times between which sliding speeds are resolved.
+    """
     linkage = course.loops.linkage
     first = course.loops.frames - 1
     slides = [first + k for k, s in enumerate(linkage.sliders) if s.friction]
@@ -252,24 +282,26 @@ def _reversals(course: Course, samples: Floats) -> Floats:
         spins = [motion.turning(j, c)[:, None] * linkage.length_scale for j, c in rubbing]
         return np.concatenate([motion.v[:, slides], *spins], axis=1) / course.pace
 
-    found = resolved(samples, speeds, course.corners)
-    low, high = found.times[:-1], found.times[1:]
+    history = resolved(samples, speeds, course.corners)
+    low, high = history.times[:-1], history.times[1:]
     out = []
     for k in range(len(slides) + len(rubbing)):
-        v = found.values[:, k]
-        turns = np.flatnonzero(v[:-1] * v[1:] < 0.0)
-        a, b, sign = low[turns], high[turns], np.sign(v[turns])
+        v = history.values[:, k]
+        # Bisection of the intervals in which the speed changes sign.
+        reversals = np.flatnonzero(v[:-1] * v[1:] < 0.0)
+        a, b, sign = low[reversals], high[reversals], np.sign(v[reversals])
         for _ in range(60):
             middle = 0.5 * (a + b)
-            same = np.sign(found.interpolate(middle)[:, k]) == sign
+            same = np.sign(history.interpolate(middle)[:, k]) == sign
             a, b = np.where(same, middle, a), np.where(same, b, middle)
-        out += [0.5 * (a + b), found.times[v == 0.0]]
+        out += [0.5 * (a + b), history.times[v == 0.0]]
     return np.unique(np.concatenate(out))
 
 
 def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extremum], Extremum]:
-    """Smallest transmission angles, and the largest condition number, over times (T,) s that lie
-    as densely as the forces need.
+    """Smallest transmission angles by link and joint, and the largest condition number.
+
+    times: (T,) s, as dense as the forces require.
     """
     dense = course.at(times)
     keys = [k for k, v in transmission_angles(dense).items() if np.isfinite(v).any()]
@@ -277,14 +309,12 @@ def _postures(course: Course, times: Floats) -> tuple[dict[tuple[str, str], Extr
     def columns(motion: Motion) -> Floats:
         """Squared sines, which have no kinks, and the reciprocal of the condition number."""
         angles = transmission_angles(motion)
-        none = np.full(len(motion), 0.5 * np.pi)
-        sines = [np.sin(np.nan_to_num(angles.get(k, none), nan=0.5 * np.pi)) ** 2 for k in keys]
+        best = np.full(len(motion), 0.5 * np.pi)  # where a link has no transmission angle
+        sines = [np.sin(np.nan_to_num(angles.get(k, best), nan=0.5 * np.pi)) ** 2 for k in keys]
         return np.stack([*sines, 1.0 / motion.condition], axis=1)
 
-    found = resolved(
-        times, lambda few: columns(course.at(few)), course.corners, known=columns(dense)
-    )
-    when = found.largest(np.negative)[1]
+    history = resolved(times, lambda t: columns(course.at(t)), course.corners, known=columns(dense))
+    when = history.largest(np.negative)[1]
     values = np.diagonal(columns(course.at(when)))
     angles = {
         key: Extremum(float(np.arcsin(np.sqrt(min(value, 1.0)))), float(time))

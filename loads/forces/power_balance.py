@@ -1,4 +1,4 @@
-"""Energies of a linkage, and the ledger of the powers that change them."""
+"""Energies of a linkage, and the balance of the powers that change them."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ def energy(motion: Motion) -> Energy:
 
 @dataclass(frozen=True)
 class Ledger:
-    """Powers put in by drives, gravity, applied loads with springs and dampers, and friction,
-    and the rate of the kinetic energy, (T,) W each.
+    """Powers supplied to a linkage and the rate of its kinetic energy, (T,) W each.
+
+    applied: loads, springs and dampers.
     """
 
     drives: Floats
@@ -45,7 +46,7 @@ class Ledger:
 
     @property
     def violation(self) -> float:
-        """Largest difference between what goes in and the rate, over the largest of the powers."""
+        """Largest difference of power supplied and kinetic rate, over the largest power."""
         terms = (self.drives, self.gravity, self.applied, self.friction, self.kinetic_rate)
         largest = max(float(np.abs(t).max(initial=0.0)) for t in terms)
         gap = self.drives + self.gravity + self.applied + self.friction - self.kinetic_rate

@@ -1,4 +1,4 @@
-"""Reactions: what each body does to its pin, at every instant; and reading them from a table."""
+"""Reactions: the force of each body on its pin at every instant; computed, stated or tabulated."""
 
 from __future__ import annotations
 
@@ -16,11 +16,15 @@ Components = dict[str, tuple[float, ...]]
 
 @dataclass(frozen=True)
 class Reactions:
-    """Forces and moments on the pins: instants x connections.
+    """Forces and moments of the bodies on the pins, at T instants and C connections.
 
-    case: name. times: (T,) s, or None for a case without time (T = 1). connections, bodies: C
-    names. forces: (T, C, 3) N and moments: (T, C, 3) N m, world axes. turn: (T, C) rad, how far the
-    pin's own axes have turned about z from the world's.
+    case: name of the case.
+    times: (T,) s, or None for a case without time (T = 1).
+    connections, bodies: C names; of the body at each connection.
+    forces, moments: (T, C, 3) N and N m, world axes.
+    turn: (T, C) rad, rotation of the pin's axes about z against the world's.
+
+    Raises: ArithmeticError where something is not finite.
     """
 
     case: str
@@ -41,23 +45,23 @@ class Reactions:
 
     @property
     def magnitudes(self) -> Floats:
-        """(T, C) N."""
+        """Magnitudes of the forces, (T, C) N."""
         return np.asarray(np.linalg.norm(self.forces, axis=2))
 
     def force(self, connection: str) -> Floats:
-        """(T, 3) N, world axes."""
+        """Force on the pin at a connection, world axes, (T, 3) N."""
         return self.forces[:, self.connections.index(connection)]
 
     def in_pin_axes(self, connection: str) -> Floats:
-        """Force on the pin in its own axes, (T, 3) N."""
-        return self.turned_back(self.forces[:, self.connections.index(connection)], connection)
+        """Force on the pin at a connection, in the pin's axes, (T, 3) N."""
+        return self.to_pin_axes(self.forces[:, self.connections.index(connection)], connection)
 
     def moment_in_pin_axes(self, connection: str) -> Floats:
-        """Moment on the pin in its own axes, (T, 3) N m."""
-        return self.turned_back(self.moments[:, self.connections.index(connection)], connection)
+        """Moment on the pin at a connection, in the pin's axes, (T, 3) N m."""
+        return self.to_pin_axes(self.moments[:, self.connections.index(connection)], connection)
 
-    def turned_back(self, vectors: Floats, connection: str) -> Floats:
-        """Vectors (T, 3) in world axes in those of the connection's pin."""
+    def to_pin_axes(self, vectors: Floats, connection: str) -> Floats:
+        """Components in the axes of a connection's pin, (T, 3), of vectors (T, 3) in world axes."""
         turn = self.turn[:, self.connections.index(connection)]
         cos, sin = np.cos(turn), np.sin(turn)
         x, y, z = vectors.T
@@ -65,14 +69,15 @@ class Reactions:
 
 
 def given_reactions(case: str, forces: Components, moments: Components | None = None) -> Reactions:
-    """One instant of stated forces (N) and moments (N m) by connection, in the pin's own axes:
-    (x, y[, z]). Those not named are zero.
+    """Reactions at a single instant, from stated forces and moments.
+
+    forces, moments: (x, y[, z]) by connection, in the pin's axes, N and N m; zero where not stated.
     """
     moments = moments or {}
     names = tuple(dict.fromkeys((*forces, *moments)))
     force, moment = (
-        np.array([(*given.get(n, ()), 0.0, 0.0, 0.0)[:3] for n in names], dtype=float)
-        for given in (forces, moments)
+        np.array([(*stated.get(n, ()), 0.0, 0.0, 0.0)[:3] for n in names], dtype=float)
+        for stated in (forces, moments)
     )
     return Reactions(
         case=case,
@@ -86,11 +91,12 @@ def given_reactions(case: str, forces: Components, moments: Components | None = 
 
 
 def read_reactions(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Reactions:
-    """Reactions from a table of forces on pins, in their own axes. unit: SI value of a unit of a
-    dimension. known: the connections of the study. With times the case is a sweep: every
-    connection must be given at every time.
+    """Reactions from a table of forces on pins, in the pins' axes.
 
-    Raises: TableError.
+    unit: gives the SI value of a unit.
+    known: the connections of the study.
+
+    Raises: TableError; also where a connection has no row at one of the times.
     """
     data: dict[float | None, dict[str, list[float]]] = {}
     for row in read_forces(path, layout, unit, known):
@@ -103,13 +109,13 @@ def read_reactions(path: Path, layout: Layout, unit: Unit, known: set[str]) -> R
             )
         instant[row.connection] = row.values
     if not data:
-        raise TableError(f"{path}: no row is of a connection of the pins", "no-rows")
+        raise TableError(f"{path}: no row belongs to a connection of a pin", "no-rows")
     names = list(next(iter(data.values())))
     for time, instant in data.items():
-        gap = set(names).symmetric_difference(instant)
-        if gap or (time is None and len(data) > 1):
+        missing = set(names).symmetric_difference(instant)
+        if missing or (time is None and len(data) > 1):
             raise TableError(
-                f"{path}: connection {sorted(gap or names)[0]} has no row at time "
+                f"{path}: connection {sorted(missing or names)[0]} has no row at time "
                 f"{(time or 0.0) / unit('', 'time'):g}; every connection needs one at every time",
                 "missing-row",
             )

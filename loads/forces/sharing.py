@@ -1,4 +1,4 @@
-"""How connections share what rigid-body statics leaves open: as springs would."""
+"""Forces that rigid-body statics leaves undetermined, shared by connections as by springs."""
 
 from __future__ import annotations
 
@@ -9,10 +9,14 @@ from pinbase.arrays import Complex, Floats
 
 
 def shares(linkage: Linkage, forces: Complex, loose: Complex, shared: tuple[str, ...]) -> Floats:
-    """Amounts (T, k) of self-equilibrated forces `loose` (T, C, k) that make the sharing
-    connections and teeth behave like springs: the sum of force^2 / stiffness over them is least.
+    """Amounts (T, k) of self-equilibrated forces that make connections share as springs do.
 
-    Raises: LinkageError without a rule, or with one that leaves something open.
+    They minimise the sum of force^2 / stiffness over the connections and teeth of the rules.
+    forces: (T, C) N, complex, without self-equilibrated ones.
+    loose: (T, C, k) N, the k self-equilibrated sets of forces.
+    shared: connections whose force is undetermined, for messages.
+
+    Raises: LinkageError without a rule, or with rules that leave a force undetermined.
     """
     names = [name for name, _ in linkage.forces]
     open_ = f"rigid-body statics does not determine the forces at {', '.join(shared)}"

@@ -12,7 +12,7 @@ primed axes unless said otherwise: rates of vectors are rates seen from the worl
 primed components are given, so the rotation of the axes is already in them.
 
 Source of the mechanism: Appeltans, Beerden, De Winter, Dhont, Case studie dynamica, KU Leuven
-(2014); its formulas are partly wrong (studies/kuleuven2014/errors.csv), these are derived anew.
+(2014); some of its formulas are wrong (studies/kuleuven2014/errors.csv), so all are derived here.
 """
 
 from __future__ import annotations
@@ -29,10 +29,15 @@ from pinbase.errors import ArgumentError
 class SpatialLeg:
     """Geometry and mass of leg and wheel.
 
-    l1, l2: B from A along x' and z', m. l3, l4: C from B along -z''' and -x''', m; D lies at 3/4 of
-    l3 and 1/4 of l4. leg_mass, wheel_mass: kg. leg_inertia: about D in leg axes, (3, 3) or its
-    diagonal (3,), kg m^2. wheel_axial, wheel_transverse: about C, along x''' and across, kg m^2.
-    slope: alpha of T1, rad. gravity: along -z of the world, m/s^2.
+    l1, l2: B from A along x' and z', m.
+    l3, l4: C from B along -z''' and -x''', m; D lies at 3/4 of l3 and 1/4 of l4.
+    leg_mass, wheel_mass: kg.
+    leg_inertia: about D in leg axes, (3, 3) or its diagonal (3,), kg m^2.
+    wheel_axial, wheel_transverse: inertia about C, along x''' and across it, kg m^2.
+    slope: alpha of T1, rad.
+    gravity: along -z of the world, m/s^2.
+
+    Raises: ArgumentError for a wrong shape, a number that is not finite, or a negative mass.
     """
 
     l1: float
@@ -48,8 +53,8 @@ class SpatialLeg:
     gravity: float = 9.80665
 
     def __post_init__(self) -> None:
-        given = np.asarray(self.leg_inertia, dtype=float)
-        inertia = np.diag(given) if given.shape == (3,) else given
+        stated = np.asarray(self.leg_inertia, dtype=float)
+        inertia = np.diag(stated) if stated.shape == (3,) else stated
         if inertia.shape != (3, 3) or not np.array_equal(inertia, inertia.T):
             raise ArgumentError(
                 "leg_inertia must be three moments or a symmetric 3 x 3 matrix", "bad-shape"
@@ -65,7 +70,7 @@ class SpatialLeg:
 
     @property
     def wheel_inertia(self) -> Floats:
-        """About C in leg axes, (3, 3) kg m^2: spinning does not change an axisymmetric wheel's."""
+        """Inertia about C in leg axes, (3, 3) kg m^2; constant, as the wheel is axisymmetric."""
         return np.diag([self.wheel_axial, self.wheel_transverse, self.wheel_transverse])
 
 
@@ -73,14 +78,17 @@ class SpatialLeg:
 class LegMotion:
     """Motion at T instants; every array is (T,).
 
-    v_v, a_v: speed of A along y' and its rate, m/s, m/s^2. omega_g, alpha_g: yaw rate about z' and
-    its rate. beta, omega_i, alpha_i: fold angle about y'' and its rates. omega_w, alpha_w: spin of
-    the wheel relative to the leg about -x''' and its rate. All in rad and s.
+    v_v, a_v: speed of A along y' and its rate, m/s and m/s^2.
+    omega_g, alpha_g: yaw rate about z' and its rate, rad/s and rad/s^2.
+    beta, omega_i, alpha_i: fold angle about y'' and its rates, rad, rad/s and rad/s^2.
+    omega_w, alpha_w: spin of the wheel relative to the leg about -x''' and its rate.
+    course_rate: rate at which the direction of A's velocity turns about z', rad/s. Equal to omega_g
+    A keeps moving along y', as with tyres that do not slip; with 0 its path is straight at that
+    instant, as in the publication, which over a history is a skid.
+    heading: yaw angle, rad, which matters only on a slope; None: 0 at every instant, with x' along
+    x, as in the publication.
 
-    course_rate: rate at which the direction of A's velocity turns about z', rad/s. omega_g: A keeps
-    moving along y', as tyres that do not slip make it. 0: A's path is straight at that instant, as
-    in the publication; over a history that is a skid. heading: yaw angle, rad; it matters on a
-    slope only. None: 0 at every instant, x' along x, as in the publication.
+    Raises: ArgumentError for arrays of different lengths or that are not finite.
     """
 
     v_v: Floats
@@ -115,7 +123,7 @@ class LegMotion:
 
     @property
     def yaw(self) -> Floats:
-        """Heading, (T,) rad, 0 where none was given."""
+        """Heading, (T,) rad, 0 where none is stated."""
         return np.zeros(len(self)) if self.heading is None else self.heading
 
 
@@ -123,7 +131,8 @@ class LegMotion:
 class Contact:
     """Force of the ground on the tyre, primed axes.
 
-    force: (T, 3) N. arm: (T, 3) m, from C to the point of contact.
+    force: (T, 3) N.
+    arm: (T, 3) m, from C to the point of contact.
     """
 
     force: Floats
@@ -179,34 +188,34 @@ class LegDynamics:
     kinetic_energy: Floats
 
     def to_world(self, vector: Floats) -> Floats:
-        """Primed components (T, 3) as world components."""
+        """World components, (T, 3), of a vector with primed components (T, 3)."""
         return _times(t1(self.leg.slope) @ turn_z(self.motion.yaw), vector)
 
     def to_leg(self, vector: Floats) -> Floats:
-        """Primed components (T, 3) as components in leg axes x'''y'''z'''."""
+        """Components in leg axes x'''y'''z''', (T, 3), of a vector in primed axes (T, 3)."""
         return _times(np.swapaxes(t2(self.motion.beta), -1, -2), vector)
 
 
 def t1(slope: float) -> Floats:
-    """(3, 3): components along the slope's axes (x'y'z' of heading 0) to world components."""
+    """Matrix (3, 3) from components along the slope's axes (x'y'z' at heading 0) to the world's."""
     c, s = np.cos(slope), np.sin(slope)
     return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
 
 
 def turn_z(heading: Floats) -> Floats:
-    """(T, 3, 3): primed components to components along the slope's axes."""
+    """Matrices (T, 3, 3) from primed components to components along the slope's axes."""
     c, s, o = np.cos(heading), np.sin(heading), np.zeros_like(heading)
     return np.stack([_row(c, -s, o), _row(s, c, o), _row(o, o, o + 1.0)], axis=-2)
 
 
 def t2(beta: Floats) -> Floats:
-    """(T, 3, 3): components in leg axes to primed components."""
+    """Matrices (T, 3, 3) from components in leg axes to primed components."""
     c, s, o = np.cos(beta), np.sin(beta), np.zeros_like(beta)
     return np.stack([_row(c, o, s), _row(o, o + 1.0, o), _row(-s, o, c)], axis=-2)
 
 
 def leg_dynamics(leg: SpatialLeg, motion: LegMotion, contact: Contact | None = None) -> LegDynamics:
-    """Kinematics, momenta, and the forces they take, at all instants at once.
+    """Kinematics, momenta, and the forces that they require, at all instants at once.
 
     contact: None when the wheel is off the ground.
     """
@@ -227,8 +236,9 @@ def leg_dynamics(leg: SpatialLeg, motion: LegMotion, contact: Contact | None = N
 
 
 def _kinematics(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
-    """Rotation, and the motion of B, C and D, primed axes; e_y'' yaws, e_x''' yaws and folds: hence
-    the products.
+    """Rotation of leg and wheel and motion of B, C and D, by their names, primed axes.
+
+    The products of rates arise as the axis e_y'' yaws, and e_x''' yaws and folds.
     """
     c, s = np.cos(motion.beta), np.sin(motion.beta)
     o = np.zeros_like(c)
@@ -254,10 +264,10 @@ def _kinematics(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
 
 
 def _angular_momenta(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
-    """Angular momenta about the centres and their rates, and the moment that spins the wheel up.
+    """Angular momenta of leg and wheel about their centres, and their rates, primed axes.
 
-    Found where the inertia is constant: in leg axes, for the spinning wheel as well, since it is
-    axisymmetric. Rate in the world = rate in leg axes + leg's rotation x L.
+    They are computed in leg axes, in which the inertia is constant, also that of the spinning
+    wheel, since it is axisymmetric: rate in the world = rate in leg axes + leg's rotation x L.
     """
     c, s = np.cos(motion.beta), np.sin(motion.beta)
     o = np.zeros_like(c)
@@ -269,10 +279,10 @@ def _angular_momenta(leg: SpatialLeg, motion: LegMotion) -> dict[str, Floats]:
     L_wheel, L_wheel_rate = _spin(
         leg.wheel_inertia, omega - _row(w_w, o, o), omega_rate - _row(a_w, o, o), omega
     )
-    found = {"L_leg": L_leg, "L_leg_rate": L_leg_rate}
-    found |= {"L_wheel": L_wheel, "L_wheel_rate": L_wheel_rate}
+    momenta = {"L_leg": L_leg, "L_leg_rate": L_leg_rate}
+    momenta |= {"L_wheel": L_wheel, "L_wheel_rate": L_wheel_rate}
     to_primed = t2(motion.beta)
-    return {name: _times(to_primed, v) for name, v in found.items()}
+    return {name: _times(to_primed, v) for name, v in momenta.items()}
 
 
 def _at_hinge(
@@ -282,8 +292,10 @@ def _at_hinge(
     momenta: dict[str, Floats],
     contact: Contact | None,
 ) -> dict[str, Floats]:
-    """Newton and Euler for leg and wheel as one system about B: the attachment supplies what
-    gravity and ground do not, and the leg does the opposite to the attachment.
+    """Weights, and force, moment and actuator torque at the hinge, by their names.
+
+    Newton-Euler equations of leg and wheel as one system about B: the attachment supplies what
+    gravity and ground do not; F_B and M_B, of the leg on the attachment, are the opposite.
     """
     c, s = np.cos(motion.beta), np.sin(motion.beta)
     o = np.zeros_like(c)
@@ -313,39 +325,41 @@ def _at_hinge(
 
 
 def _point(leg: SpatialLeg, motion: LegMotion, r: Floats) -> tuple[Floats, Floats, Floats]:
-    """Velocity, acceleration and its Coriolis part of a point of the leg at r (T, 3) from B.
+    """Velocity, acceleration and its Coriolis part, (T, 3) each, of a point of the leg.
 
-    r has no y component; folding moves the point by omega_i (z, 0, -x).
+    r: (T, 3) m, from B; it has no y component, so folding moves the point by omega_i (z, 0, -x).
     """
     x, z = r[:, 0], r[:, 2]
     w_g, w_i = motion.omega_g, motion.omega_i
-    out = leg.l1 + x  # from the yaw axis
+    radius = leg.l1 + x  # from the yaw axis
     o = np.zeros_like(x)
-    velocity = _row(w_i * z, motion.v_v + w_g * out, -w_i * x)
+    velocity = _row(w_i * z, motion.v_v + w_g * radius, -w_i * x)
     coriolis = _row(o, 2.0 * w_g * w_i * z, o)
     acceleration = coriolis + _row(
-        motion.alpha_i * z - w_i**2 * x - w_g**2 * out - motion.course_rate * motion.v_v,
-        motion.a_v + motion.alpha_g * out,
+        motion.alpha_i * z - w_i**2 * x - w_g**2 * radius - motion.course_rate * motion.v_v,
+        motion.a_v + motion.alpha_g * radius,
         -motion.alpha_i * x - w_i**2 * z,
     )
     return velocity, acceleration, coriolis
 
 
 def _spin(inertia: Floats, omega: Floats, rate: Floats, axes: Floats) -> tuple[Floats, Floats]:
-    """Angular momentum and its rate in the world, leg axes; rate: of omega's components; axes: the
-    rotation of the leg axes; all (T, 3).
+    """Angular momentum and its rate seen from the world, leg axes, (T, 3) each.
+
+    omega, rate: (T, 3) rotation of the body and rates of its components.
+    axes: (T, 3) rotation of the leg axes.
     """
     momentum = omega @ inertia
     return momentum, rate @ inertia + np.cross(axes, momentum)
 
 
 def _row(x: Floats, y: Floats, z: Floats) -> Floats:
-    """(T, 3) of three components (T,)."""
+    """Vectors (T, 3) from three components (T,)."""
     return np.stack([x, y, z], axis=-1)
 
 
 def _times(matrix: Floats, vector: Floats) -> Floats:
-    """(T, 3, 3) times (T, 3)."""
+    """Product of matrices (T, 3, 3) and vectors (T, 3)."""
     return np.asarray((matrix @ vector[..., None])[..., 0])
 
 

@@ -1,4 +1,4 @@
-"""The landing of one leg as a drop: two masses, strut, tyre, wheel; cases of 14 CFR."""
+"""The landing of one leg as a drop of two masses with strut, tyre and wheel; cases of 14 CFR."""
 
 from loads.landing.drop import Drop, LandingError
 from loads.landing.landing import Landing, LandingHistory, land

@@ -1,11 +1,12 @@
 """The drop of one leg: a sprung and an unsprung mass, a strut, a tyre and a wheel.
 
-Downwards is positive. z2 is the way of the axle since the tyre touched, which is the deflection of
-the tyre; u is how far the axle has risen against the aircraft. The strut stands still (extended
-until its preload is overcome, or stuck by friction) or moves one way; the tyre touches or not; the
-wheel slides one way or rolls. Integration ends and begins anew at every change of these.
+Downwards is positive. z2, the distance that the axle has fallen since touch-down, is the deflection
+of the tyre; u is the rise of the axle relative to the aircraft. The strut is at rest (extended
+until its preload is overcome, or stuck by friction) or moves in one direction; the tyre touches the
+ground or not; the wheel slides in one direction or rolls. Integration restarts at every change of
+these.
 
-Sources: B. Milwitzky, F. E. Cook, NACA TR 1154 (1953), for the form of the equations.
+Source: B. Milwitzky, F. E. Cook, NACA TR 1154 (1953), for the form of the equations.
 """
 
 from __future__ import annotations
@@ -25,9 +26,10 @@ from pinbase.errors import CodedError
 
 RELATIVE_TOLERANCE = 1e-11
 ABSOLUTE_TOLERANCE = 1e-13  # of the scale of each variable
-FIRST_STEP_SHARE = 1e-7  # of the time left: what begins at zero must leave it before it is watched
-MIN_STEPS = 200  # at least, so that no event is missed within one
-MAX_SPANS = 500
+# Of the time left: an event's function that begins at zero must have left it after the first step.
+FIRST_STEP_SHARE = 1e-7
+MIN_STEPS = 200  # in the duration, so that no event is missed within one
+MAX_SPANS = 500  # between changes of mode
 Method = Literal["DOP853", "Radau"]
 STATE_ROWS = (
     TYRE_DEFLECTION,
@@ -47,13 +49,20 @@ STATE_ROWS = (
 
 
 class LandingError(CodedError, ValueError):
-    """A drop that the leg does not survive, or that cannot be computed."""
+    """The leg does not survive the drop, or the drop cannot be computed."""
 
 
 @dataclass(frozen=True)
 class Drop:
-    """One leg and what falls on it: masses kg, velocity of sinking m/s, lift as a part of the
-    weight, gravity m/s^2, duration s. Without a strut the leg is rigid.
+    """One leg and the mass that falls on it.
+
+    sprung, unsprung: masses, kg.
+    velocity: of descent at touch-down, m/s.
+    tyre, strut, wheel: without a strut the leg is rigid, without a wheel there is no drag.
+    lift: as a fraction of the weight.
+    gravity: m/s^2.
+    duration: of the drop from touch-down on, s.
+    travel: relation of the strut's stroke and the rise of the axle.
     """
 
     sprung: float
@@ -69,19 +78,22 @@ class Drop:
 
     @property
     def mass(self) -> float:
-        """Of both, kg."""
+        """Sprung and unsprung mass, kg."""
         return self.sprung + self.unsprung
 
     @property
     def weight(self) -> float:
-        """Of both, N."""
+        """Weight of both masses, N."""
         return self.mass * self.gravity
 
 
 @dataclass(frozen=True)
 class Mode:
-    """strut: 1 closing, -1 opening, 0 standing still. wheel: 1, -1 sliding aft or forward, 0
-    rolling. touches: whether the tyre is on the ground.
+    """The state of motion of strut, wheel and tyre, constant between events.
+
+    strut: 1 closing, -1 opening, 0 at rest.
+    wheel: 1 sliding aft, -1 sliding forward, 0 rolling.
+    touches: whether the tyre is on the ground.
     """
 
     strut: int = 0
@@ -91,9 +103,14 @@ class Mode:
 
 @dataclass(frozen=True)
 class DropForces:
-    """At T states: of the ground on the tyre, vertical and drag (aft); of the strut at the wheel
-    and along the strut; drag that the leg passes on; accelerations of sprung and unsprung mass; all
-    downwards but the first, in N and m/s^2. stroke, speed: of the strut, m and m/s.
+    """Forces and accelerations at T states, (T,) each; downwards positive but for `vertical`.
+
+    vertical, drag: of the ground on the tyre, upwards and aft, N.
+    at_wheel, along: of the strut, at the wheel and along the strut, N.
+    on_leg: drag that the leg passes on to the aircraft, N.
+    sprung, unsprung: accelerations of the two masses, m/s^2.
+    stroke, speed: of the strut, m and m/s.
+    lever: stroke per rise of the axle.
     """
 
     vertical: Floats
@@ -109,12 +126,13 @@ class DropForces:
 
 
 def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
-    """At states y (STATE_ROWS, T)."""
+    """Forces at states y (STATE_ROWS, T) in one mode."""
     vertical = damped(d.tyre, y[TYRE_DEFLECTION], y[DEFLECTION_RATE])
     stroke, lever, _ = d.travel.at(y[WHEEL_TRAVEL])
     speed = lever * y[WHEEL_TRAVEL_RATE]
     common = d.gravity * (1.0 - d.lift) - vertical / d.mass
     if d.strut is None or mode.strut == 0:
+        # Both masses fall as one; the strut carries whatever that requires.
         sprung = unsprung = common
         at_wheel = d.sprung * (d.gravity - common) - d.lift * d.weight
         along = at_wheel / lever
@@ -136,7 +154,7 @@ def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
 
 
 def _rates(d: Drop, y: Floats, mode: Mode) -> Floats:
-    """Derivatives of the state, (STATE_ROWS, T)."""
+    """Time derivatives (STATE_ROWS, T) of states y (STATE_ROWS, T) in one mode."""
     f, out = forces(d, y, mode), np.zeros_like(y)
     out[TYRE_DEFLECTION], out[DEFLECTION_RATE], out[WHEEL_TRAVEL], out[WHEEL_TRAVEL_RATE] = (
         y[DEFLECTION_RATE],
@@ -160,28 +178,31 @@ def _rates(d: Drop, y: Floats, mode: Mode) -> Floats:
 
 
 def _limits(d: Drop, y: Floats) -> tuple[float, float]:
-    """Between what forces at the wheel (N) a strut that stands still remains so."""
+    """Least and largest force at the wheel (N) between which a strut at rest remains at rest."""
     if d.strut is None:
         return -np.inf, np.inf
     stroke, lever, _ = d.travel.at(y[WHEEL_TRAVEL])
-    spring, rub = d.strut.spring.force(stroke), d.strut.friction
-    low = -np.inf if y[WHEEL_TRAVEL] == 0.0 else float(lever * (spring - rub))
-    return low, float(lever * (spring + rub))
+    spring, friction = d.strut.spring.force(stroke), d.strut.friction
+    low = -np.inf if y[WHEEL_TRAVEL] == 0.0 else float(lever * (spring - friction))
+    return low, float(lever * (spring + friction))
 
 
 Event = tuple[str, int, Callable[[Floats], float]]
 
 
 def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
-    """(name, direction, function of the state) of all that may end a mode."""
+    """The events that may end a mode.
+
+    Each is a name, the direction of the change of sign, and the function of the state that has it.
+    """
     out: list[Event] = [("tyre", -1 if mode.touches else 1, lambda y: y[TYRE_DEFLECTION])]
-    if np.isfinite(d.tyre.most):
-        out.append(("tyre-exceeded", 1, lambda y: y[TYRE_DEFLECTION] - d.tyre.most))
+    if np.isfinite(d.tyre.max_deflection):
+        out.append(("tyre-exceeded", 1, lambda y: y[TYRE_DEFLECTION] - d.tyre.max_deflection))
     if d.strut is not None and mode.strut:
-        most = d.travel.rise(d.strut.stroke)
+        max_rise = d.travel.rise(d.strut.stroke)
         out.append(("turns", -mode.strut, lambda y: y[WHEEL_TRAVEL_RATE]))
         out.append(("extended", -1, lambda y: y[WHEEL_TRAVEL]))
-        out.append(("bottoms", 1, lambda y: y[WHEEL_TRAVEL] - most))
+        out.append(("bottoms", 1, lambda y: y[WHEEL_TRAVEL] - max_rise))
     elif d.strut is not None:
         low, high = _limits(d, y)
         out.append(("moves", 1, lambda y: float(forces(d, y, mode).at_wheel) - high))
@@ -204,14 +225,14 @@ def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
 
 
 def _beyond_grip(d: Drop, y: Floats, mode: Mode) -> float:
-    """Drag that rolling needs, less what friction gives, N."""
+    """Drag that rolling requires beyond what friction can supply, N."""
     assert d.wheel is not None
     f = forces(d, y, replace(mode, wheel=0))
     return float(np.abs(f.drag) - d.wheel.friction * f.vertical)
 
 
 def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
-    """State and mode with which to go on."""
+    """State and mode with which the integration continues after an event."""
     y = y.copy()
     if event == "tyre":
         y[TYRE_DEFLECTION] = 0.0
@@ -219,24 +240,27 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
     if event in ("rolls", "slides"):
         return y, replace(mode, wheel=_wheel(d, y, mode, event))
     if event == "extended":
-        both = (
+        # A perfectly plastic impact at the stop: both masses go on at their common velocity.
+        velocity = (
             d.sprung * (y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]) + d.unsprung * y[DEFLECTION_RATE]
         ) / d.mass
         y[STOP_ENERGY] += 0.5 * d.sprung * d.unsprung / d.mass * y[WHEEL_TRAVEL_RATE] ** 2
-        y[DEFLECTION_RATE], y[WHEEL_TRAVEL] = both, 0.0
+        y[DEFLECTION_RATE], y[WHEEL_TRAVEL] = velocity, 0.0
     y[WHEEL_TRAVEL_RATE] = 0.0
     low, high = _limits(d, y)
-    hold = float(forces(d, y, replace(mode, strut=0)).at_wheel)
+    holding_force = float(forces(d, y, replace(mode, strut=0)).at_wheel)
     if event == "moves":
-        way = 1 if abs(hold - high) <= abs(hold - low) else -1
+        direction = 1 if abs(holding_force - high) <= abs(holding_force - low) else -1
     else:
-        way = (hold > high) - (hold < low)
-    # What turned does not go on as before: it did so for less than the first step.
-    return y, replace(mode, strut=-way if event == "turns" and way == mode.strut else way)
+        direction = (holding_force > high) - (holding_force < low)
+    # A strut that came to rest cannot go on in the same direction: where the forces say so, its
+    # motion before was shorter than the first step, and its direction is the opposite.
+    reverses = event == "turns" and direction == mode.strut
+    return y, replace(mode, strut=-direction if reverses else direction)
 
 
 def _slides(d: Drop, y: Floats) -> int:
-    """Which way a wheel slides that touches the ground."""
+    """Sliding direction of a wheel that touches the ground: 1 aft, -1 forward."""
     return (
         -1
         if d.wheel is not None and d.wheel.slip(y[LEG_DEFLECTION_RATE], y[WHEEL_SPIN]) < 0.0
@@ -245,7 +269,7 @@ def _slides(d: Drop, y: Floats) -> int:
 
 
 def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
-    """How the wheel goes on: it rolls only if friction suffices."""
+    """Mode of the wheel after an event: it rolls only if friction suffices."""
     if event == "rolls" and _beyond_grip(d, y, mode) <= 0.0:
         return 0
     return 1 if float(forces(d, y, replace(mode, wheel=0)).drag) >= 0.0 else -1
@@ -253,7 +277,12 @@ def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
 
 @dataclass(frozen=True)
 class DropPhase:
-    """Between two changes of mode: times s, state at times (T,) in it, mode; event: its end."""
+    """The part of a drop between two changes of mode.
+
+    first, last: times, s.
+    state: gives the states (STATE_ROWS, T) at times (T,) s in it.
+    event: name of the event that ends it; "end": the end of the drop.
+    """
 
     first: float
     last: float
@@ -263,8 +292,9 @@ class DropPhase:
 
 
 def fall(d: Drop, method: Method = "DOP853") -> tuple[DropPhase, ...]:
-    """Integrate from the touch of the tyre. Raises: LandingError where the strut bottoms or the
-    tyre goes beyond its table.
+    """The phases of a drop, by integration from touch-down.
+
+    Raises: LandingError where the strut bottoms or the tyre is deflected beyond its table.
     """
     y, mode, time, spans = _start(d), Mode(), 0.0, list[DropPhase]()
     for _ in range(MAX_SPANS):
@@ -282,13 +312,14 @@ def fall(d: Drop, method: Method = "DOP853") -> tuple[DropPhase, ...]:
 
 
 def _start(d: Drop) -> Floats:
+    """The state at touch-down, (STATE_ROWS,)."""
     y = np.zeros(len(STATE_ROWS))
     y[DEFLECTION_RATE] = d.velocity
     return y
 
 
 def _scales(d: Drop) -> Floats:
-    """Of the rows of the state."""
+    """Typical magnitudes of the rows of the state, (STATE_ROWS,), for tolerances."""
     out = np.full(len(STATE_ROWS), d.mass * d.velocity**2)
     out[[DEFLECTION_RATE, WHEEL_TRAVEL_RATE, LEG_DEFLECTION_RATE]] = d.velocity
     out[[TYRE_DEFLECTION, WHEEL_TRAVEL, LEG_DEFLECTION]] = d.velocity * 0.1
@@ -299,33 +330,36 @@ def _scales(d: Drop) -> Floats:
 def _span(
     d: Drop, time: float, y: Floats, mode: Mode, method: Method
 ) -> tuple[DropPhase, Floats, Mode]:
+    """The phase that begins at a time (s) with state y and a mode, and the next state and mode."""
     from scipy.integrate import solve_ivp
 
-    known = _events(d, mode, y)
-    found: Any = solve_ivp(
+    possible = _events(d, mode, y)
+    solution: Any = solve_ivp(
         lambda _, y: _rates(d, y, mode),
         (time, d.duration),
         y,
         method,
         dense_output=True,
-        events=[_terminal(direction, of) for _, direction, of in known],
+        events=[_terminal(direction, of) for _, direction, of in possible],
         rtol=RELATIVE_TOLERANCE,
         atol=ABSOLUTE_TOLERANCE * _scales(d),
         max_step=d.duration / MIN_STEPS,
         first_step=FIRST_STEP_SHARE * (d.duration - time),
     )
-    if found.status < 0:
-        raise LandingError(f"the drop cannot be integrated: {found.message}", "not-integrated")
-    last, end, event = float(found.t[-1]), found.y[:, -1], "end"
-    if found.status == 1:
-        event = next(n for (n, *_), t in zip(known, found.t_events, strict=True) if len(t))
+    if solution.status < 0:
+        raise LandingError(f"the drop cannot be integrated: {solution.message}", "not-integrated")
+    last, end, event = float(solution.t[-1]), solution.y[:, -1], "end"
+    if solution.status == 1:
+        event = next(n for (n, *_), t in zip(possible, solution.t_events, strict=True) if len(t))
     if event in ("bottoms", "tyre-exceeded"):
         raise _destroyed(d, event, last, end, mode)
-    span = DropPhase(time, last, found.sol, mode, event)
+    span = DropPhase(time, last, solution.sol, mode, event)
     return (span, *(_after(d, event, end, mode) if event != "end" else (end, mode)))
 
 
 def _terminal(direction: int, of: Callable[[Floats], float]) -> Any:
+    """An event of `solve_ivp` that ends the integration where `of` changes sign in a direction."""
+
     def event(_: float, y: Floats) -> float:
         return of(y)
 
@@ -334,6 +368,7 @@ def _terminal(direction: int, of: Callable[[Floats], float]) -> Any:
 
 
 def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> LandingError:
+    """The error of a strut or tyre that is exceeded, with the energy that remains."""
     f = forces(d, y, mode)
     left = 0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
     sinking = f"{y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]:.3g} m/s"
@@ -345,7 +380,7 @@ def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> Landi
             "strut-bottoms",
         )
     return LandingError(
-        f"the tyre is deflected beyond the last row of its table, {d.tyre.most:.4g} m, {where}; "
-        "give more rows, or a stiffer tyre",
+        "the tyre is deflected beyond the last row of its table, "
+        f"{d.tyre.max_deflection:.4g} m, {where}; give more rows, or a stiffer tyre",
         "tyre-exceeded",
     )

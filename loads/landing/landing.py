@@ -1,4 +1,4 @@
-"""A drop's course: forces, motion and energies at any time, and their largest values."""
+"""The history of a drop: forces, motion and energies at any time, and their largest values."""
 
 from __future__ import annotations
 
@@ -37,8 +37,12 @@ PEAK_NAMES = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "sp
 
 @dataclass(frozen=True)
 class LandingEnergies:
-    """(T,) J. lift and runway: work taken by lift, work done by the ground that passes under the
-    wheel; all others of the leg and what falls on it.
+    """Energies of a drop, (T,) J each.
+
+    kinetic .. bending: stored in the masses, the strut's spring, the tyre and the bent leg.
+    oil .. slip: dissipated by orifice, strut friction, impact at the stop, tyre and sliding.
+    lift: work taken by lift.
+    runway: work done by the ground that passes under the wheel.
     """
 
     kinetic: Floats
@@ -56,16 +60,20 @@ class LandingEnergies:
 
     @property
     def imbalance(self) -> Floats:
-        """Change of everything that should stay, over the first kinetic energy, (T,)."""
-        held = self.kinetic + self.potential + self.spring + self.tyre + self.bending
+        """Change of the total energy, which should be zero, over the first kinetic energy, (T,)."""
+        stored = self.kinetic + self.potential + self.spring + self.tyre + self.bending
         lost = self.oil + self.friction + self.stop + self.tyre_damping + self.slip + self.lift
-        return np.asarray((held + lost - self.runway - self.kinetic[0]) / self.kinetic[0])
+        return np.asarray((stored + lost - self.runway - self.kinetic[0]) / self.kinetic[0])
 
 
 @dataclass(frozen=True)
 class LandingHistory:
-    """(T,) each, in SI: times; deflection and rise of the axle; velocity of the sprung mass,
-    downwards; spin of the wheel; forces; rise_rate and rise_acceleration; energies.
+    """A drop at T instants, (T,) each, SI units.
+
+    deflection: of the tyre, m.
+    rise, rise_rate: of the axle relative to the aircraft, m and m/s.
+    sink_velocity: of the sprung mass, downwards, m/s.
+    spin: of the wheel, rad/s.
     """
 
     times: Floats
@@ -80,7 +88,7 @@ class LandingHistory:
 
 @dataclass(frozen=True)
 class LandingPeak:
-    """A largest value and its time, s."""
+    """A largest value, and the time at which it occurs, s."""
 
     value: float
     time: float
@@ -88,31 +96,31 @@ class LandingPeak:
 
 @dataclass(frozen=True)
 class Landing:
-    """A drop with its course. Made by `land`."""
+    """A drop with its history, from `land`. spans: its phases."""
 
     drop: Drop
     spans: tuple[DropPhase, ...]
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Times at which something changes its mode, s."""
+        """Times at which strut, tyre or wheel change their mode, s."""
         return tuple(span.last for span in self.spans[:-1])
 
     def events(self, name: str) -> tuple[float, ...]:
-        """Times of "tyre", "moves", "turns", "extended", "rolls", "slides", s."""
+        """Times of an event, s. name: tyre, moves, turns, extended, rolls or slides."""
         return tuple(span.last for span in self.spans if span.event == name)
 
     def at(self, times: Floats) -> LandingHistory:
-        """At times (T,) s; outside the drop as at its ends, and at a change as just before."""
+        """The drop at times (T,) s; outside it as at its ends, at a change of mode as before it."""
         d, inside = self.drop, np.clip(times, 0.0, self.spans[-1].last)
-        which = np.searchsorted([span.last for span in self.spans], inside)
-        y, parts = np.empty((len(STATE_ROWS), len(times))), dict[str, Floats]()
-        for k in np.unique(which):
-            here, span = which == k, self.spans[k]
-            y[:, here] = span.state(inside[here])
-            for name, values in vars(forces(d, y[:, here], span.mode)).items():
-                parts.setdefault(name, np.empty(len(times)))[here] = values
-        f = DropForces(**parts)
+        phase = np.searchsorted([span.last for span in self.spans], inside)
+        y, histories = np.empty((len(STATE_ROWS), len(times))), dict[str, Floats]()
+        for k in np.unique(phase):
+            instants, span = phase == k, self.spans[k]
+            y[:, instants] = span.state(inside[instants])
+            for name, values in vars(forces(d, y[:, instants], span.mode)).items():
+                histories.setdefault(name, np.empty(len(times)))[instants] = values
+        f = DropForces(**histories)
         return LandingHistory(
             times,
             y[TYRE_DEFLECTION],
@@ -126,8 +134,9 @@ class Landing:
 
     @cached_property
     def peaks(self) -> dict[str, LandingPeak]:
-        """Largest values by name of PEAK_NAMES, between the steps, too; spring_back: of the leg's
-        drag forward.
+        """Largest values over the whole drop by the names of PEAK_NAMES.
+
+        spring_back: largest forward drag on the leg.
         """
         times = np.linspace(0.0, self.spans[-1].last, 201)
 
@@ -151,12 +160,12 @@ class Landing:
 
     @property
     def equal_impulse_time(self) -> float:
-        """Time (s) over which m V has the peak as its mean: of the impulse that gives as much."""
+        """Time (s) in which a rectangular pulse of the peak force takes up the momentum m V."""
         return self.drop.mass * self.drop.velocity / self.peaks["vertical"].value
 
 
 def land(drop: Drop) -> Landing:
-    """Let the leg fall. Raises: LandingError, also when the aircraft still sinks at the end."""
+    """The landing from a drop. Raises: LandingError, also when the aircraft sinks at the end."""
     landing = Landing(drop, fall(drop))
     ends = [span.last for span in landing.spans]
     if landing.at(np.array([0.0, *ends])).sink_velocity.min() > 0.0:
@@ -168,24 +177,24 @@ def land(drop: Drop) -> Landing:
 
 
 def _energies(d: Drop, y: Floats, stroke: Floats) -> LandingEnergies:
-    """At states y (ROWS, T)."""
-    z1, v1, none = (
+    """Energies at states y (STATE_ROWS, T). stroke: of the strut, (T,) m."""
+    z1, v1, zero = (
         y[TYRE_DEFLECTION] + y[WHEEL_TRAVEL],
         y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE],
         np.zeros(y.shape[1]),
     )
-    wheel, bending = d.wheel, none
+    wheel, bending = d.wheel, zero
     kinetic = 0.5 * (d.sprung * v1**2 + d.unsprung * y[DEFLECTION_RATE] ** 2)
     if wheel is not None:
-        bent = wheel.mass if wheel.stiffness is not None else 0.0
+        bending_mass = wheel.mass if wheel.stiffness is not None else 0.0
         kinetic = kinetic + 0.5 * (
-            bent * y[LEG_DEFLECTION_RATE] ** 2 + wheel.inertia * y[WHEEL_SPIN] ** 2
+            bending_mass * y[LEG_DEFLECTION_RATE] ** 2 + wheel.inertia * y[WHEEL_SPIN] ** 2
         )
         bending = 0.5 * (wheel.stiffness or 0.0) * y[LEG_DEFLECTION] ** 2
     return LandingEnergies(
         kinetic=kinetic,
         potential=-d.gravity * (d.sprung * z1 + d.unsprung * y[TYRE_DEFLECTION]),
-        spring=none if d.strut is None else d.strut.spring.energy(stroke),
+        spring=zero if d.strut is None else d.strut.spring.energy(stroke),
         tyre=d.tyre.energy(y[TYRE_DEFLECTION]),
         bending=bending,
         oil=y[OIL_ENERGY],

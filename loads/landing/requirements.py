@@ -1,6 +1,6 @@
-"""Landing cases of 14 CFR: what they prescribe, with the clause.
+"""Landing cases prescribed by 14 CFR, with their clauses: part 25, and part 23 before 2017.
 
-Parts 25 and, before amendment 64 (2017), 23.
+Amendment 64 of 2017 removed the cases from part 23.
 """
 
 from __future__ import annotations
@@ -12,15 +12,16 @@ from pinbase.errors import ArgumentError
 
 M_PER_FOOT = 0.3048
 PA_PER_PSF = 4.4482216152605 / M_PER_FOOT**2  # lbf/ft^2 in Pa
-MAX_TYRE_FRICTION = (
-    0.8  # which no sliding coefficient of a tyre need exceed: 25.473(d), appendix D to 23
-)
+# The largest sliding coefficient of a tyre that need be assumed: 25.473(d), appendix D to part 23.
+MAX_TYRE_FRICTION = 0.8
 
 
 @dataclass(frozen=True)
 class DropRule:
-    """A descent velocity (m/s; None: it follows from the wing loading) and the most lift over
-    weight, by a clause.
+    """The descent velocity and lift that a clause prescribes for a drop.
+
+    velocity: m/s; None: it follows from the wing loading.
+    lift: largest lift over weight.
     """
 
     clause: str
@@ -56,8 +57,11 @@ DROP_RULES = {
 
 @dataclass(frozen=True)
 class GroundRule:
-    """Parts of a reference load at the wheel: vertical, drag (aft; negative: forward), side. base:
-    what the reference is. deflection: of strut and tyre, over that at the reference load.
+    """The load at a wheel that a clause prescribes.
+
+    vertical, drag, side: over the reference load; drag is aft, negative forward.
+    base: the reference load.
+    deflection: of strut and tyre, over that at the reference load.
     """
 
     clause: str
@@ -99,12 +103,18 @@ GROUND_RULES = {
 
 
 def descent_velocity(wing_loading: float) -> float:
-    """m/s of 14 CFR 23.473(d), at a wing loading in Pa."""
+    """Descent velocity of 14 CFR 23.473(d), m/s. wing_loading: Pa."""
     return min(max(4.4 * math.sqrt(math.sqrt(wing_loading / PA_PER_PSF)), 7.0), 10.0) * M_PER_FOOT
 
 
 def required_velocity(rule: str, wing_loading: float | None) -> float:
-    """Of a rule in DROP_RULES, m/s. Raises: ArgumentError without the wing loading it needs."""
+    """Descent velocity that a rule prescribes, m/s.
+
+    rule: a key of DROP_RULES.
+    wing_loading: Pa.
+
+    Raises: ArgumentError where the rule needs the wing loading and it is None.
+    """
     fixed = DROP_RULES[rule].velocity
     if fixed is not None:
         return fixed
@@ -118,11 +128,14 @@ def required_velocity(rule: str, wing_loading: float | None) -> float:
 def spin_up_drag(
     inertia: float, radius: float, speed: float, vertical: float, time: float
 ) -> float:
-    """Largest spin-up drag on a wheel, N: sqrt(2 I v n F / t) / r, at most n F, where n = 0.8 is
-    the effective coefficient of friction; spring-back is its reverse.
+    """Largest spin-up drag on a wheel, N: sqrt(2 I v n F / t) / r, at most n F.
 
-    inertia: kg m^2. radius: effective, m. speed: of the ground past the tyre less that by which it
-    is pre-rotated, m/s. vertical: the largest vertical force, N. time: until then from touch-down.
+    n = 0.8 is the effective coefficient of friction; spring-back is the same force forward.
+    inertia: I of the wheel, kg m^2.
+    radius: effective radius r, m.
+    speed: v of the ground past the tyre, less its speed by pre-rotation, m/s.
+    vertical: F, the largest vertical force, N.
+    time: t from touch-down to that force, s.
 
     Source: appendix D to 14 CFR part 23.
     """

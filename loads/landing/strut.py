@@ -1,4 +1,4 @@
-"""The shock strut: its spring (gas or linear), its orifice, its friction.
+"""Forces of a shock strut: a gas or linear spring, an orifice, and friction.
 
 The form is that of Milwitzky & Cook, NACA TR 1154 (1953). Force and stroke are positive in
 compression.
@@ -14,24 +14,30 @@ import numpy as np
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 
-MAX_DISPLACED_GAS_SHARE = 0.98  # of the volume: the most that a full stroke may displace
+MAX_DISPLACED_GAS_SHARE = 0.98  # of the gas volume that a full stroke may displace
 
 
 class StrutSpring(Protocol):
-    """Force (N) and stored energy (J) at strokes (T,) m."""
+    """The spring of a strut."""
 
-    def force(self, stroke: Floats) -> Floats: ...
+    def force(self, stroke: Floats) -> Floats:
+        """Force at strokes (T,) m, (T,) N."""
+        ...
 
-    def energy(self, stroke: Floats) -> Floats: ...
+    def energy(self, stroke: Floats) -> Floats:
+        """Stored energy at strokes (T,) m, (T,) J."""
+        ...
 
 
 @dataclass(frozen=True)
 class GasSpring:
-    """A gas column: A ((p + b) (v0 / (v0 - A s))^n - b) at stroke s.
+    """A gas column, with the force A ((p + b) (v0 / (v0 - A s))^n - b) at stroke s.
 
-    pressure p: of the extended strut above ambient, Pa. volume v0: of the extended strut, m^3.
-    area A: m^2. exponent n: of the polytropic change of state. ambient b: Pa; with b = 0 it is the
-    form of NACA TR 1154.
+    pressure: p of the extended strut above ambient, Pa.
+    volume: v0 of the extended strut, m^3.
+    area: A, m^2.
+    exponent: n of the polytropic change of state.
+    ambient: pressure b, Pa; with b = 0 it is the form of NACA TR 1154.
     """
 
     pressure: float
@@ -41,42 +47,47 @@ class GasSpring:
     ambient: float = 0.0
 
     def force(self, stroke: Floats) -> Floats:
-        """N; the preload at no stroke."""
+        """Force at strokes (T,) m, (T,) N; at zero stroke the preload."""
         ratio = self.volume / (self.volume - self.area * stroke)
         absolute = (self.pressure + self.ambient) * ratio**self.exponent
         return np.asarray(self.area * (absolute - self.ambient))
 
     def energy(self, stroke: Floats) -> Floats:
-        """J taken up from no stroke on: the integral of the force."""
+        """Energy stored from zero stroke to strokes (T,) m, (T,) J: the integral of the force."""
         log = -np.log1p(-self.area * stroke / self.volume)
         n1 = self.exponent - 1.0
-        part = log if n1 == 0.0 else np.expm1(n1 * log) / n1
-        work = (self.pressure + self.ambient) * self.volume * part
+        factor = log if n1 == 0.0 else np.expm1(n1 * log) / n1
+        work = (self.pressure + self.ambient) * self.volume * factor
         return np.asarray(work - self.ambient * self.area * stroke)
 
 
 @dataclass(frozen=True)
 class LinearSpring:
-    """A leaf or coil: preload (N) and stiffness (N/m)."""
+    """A leaf or coil spring. stiffness: N/m. preload: N."""
 
     stiffness: float
     preload: float = 0.0
 
     def force(self, stroke: Floats) -> Floats:
-        """N."""
+        """Force at strokes (T,) m, (T,) N."""
         return self.preload + self.stiffness * stroke
 
     def energy(self, stroke: Floats) -> Floats:
-        """J taken up from no stroke on."""
+        """Energy stored from zero stroke to strokes (T,) m, (T,) J."""
         return self.preload * stroke + 0.5 * self.stiffness * stroke**2
 
 
 @dataclass(frozen=True)
 class Oil:
-    """An orifice: rho A_h^3 / (2 (Cd A_n)^2) v |v| at closing speed v.
+    """An orifice, with the force rho A_h^3 / (2 (Cd A_n)^2) v |v| at closing speed v.
 
-    density rho: kg/m^3. area A_h: hydraulic area, m^2. orifice A_n: m^2. discharge: Cd. rebound:
-    the orifice while the strut extends, m^2; by default the same.
+    density: rho, kg/m^3.
+    area: hydraulic area A_h, m^2.
+    orifice: area A_n, m^2.
+    discharge: coefficient Cd.
+    rebound: area of the orifice while the strut extends, m^2; None: the same.
+
+    Raises: ArgumentError for an orifice that is not smaller than the hydraulic area.
     """
 
     density: float
@@ -94,11 +105,11 @@ class Oil:
             )
 
     def coefficient(self, orifice: float) -> float:
-        """Force over the square of the speed, N s^2/m^2."""
+        """Force per square of the speed, N s^2/m^2. orifice: area, m^2."""
         return self.density * self.area**3 / (2.0 * (self.discharge * orifice) ** 2)
 
     def force(self, speed: Floats) -> Floats:
-        """N."""
+        """Force at closing speeds (T,) m/s, (T,) N."""
         closing = self.coefficient(self.orifice)
         opening = self.coefficient(self.rebound or self.orifice)
         return np.asarray(np.where(speed > 0.0, closing, opening) * speed * np.abs(speed))
@@ -106,8 +117,12 @@ class Oil:
 
 @dataclass(frozen=True)
 class Strut:
-    """A shock strut. stroke: at which it bottoms, m. friction: of its bearings and seals, N,
-    whatever the load.
+    """A shock strut.
+
+    stroke: at which it bottoms, m.
+    friction: of its bearings and seals, N, independent of the load.
+
+    Raises: ArgumentError for a stroke that would displace almost all the gas.
     """
 
     spring: GasSpring | LinearSpring
@@ -130,5 +145,5 @@ class Strut:
             )
 
     def oil_force(self, speed: Floats) -> Floats:
-        """N at closing speeds (T,) m/s."""
+        """Force of the orifice at closing speeds (T,) m/s, (T,) N."""
         return np.zeros_like(speed) if self.oil is None else self.oil.force(speed)

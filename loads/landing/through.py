@@ -1,7 +1,7 @@
 """A drop as loads on a mechanism, in axes that fall with the aircraft.
 
-The strut's drive follows the stroke; the ground pushes on the axle; and every mass is pulled by
-what the aircraft's deceleration adds to gravity (d'Alembert).
+The strut's drive follows the stroke; the ground pushes on the axle; and the aircraft's deceleration
+acts on every mass in addition to gravity (d'Alembert).
 """
 
 from __future__ import annotations
@@ -23,14 +23,17 @@ from pinbase.arrays import Complex, Floats
 from pinbase.errors import ArgumentError
 
 STROKE_POINTS = 65  # strokes at which the rise of the axle is computed
-DRIVE_DURATION = 1.0  # s, of a drive through these strokes
+DRIVE_DURATION = 1.0  # s, for all these strokes
 
 
 @dataclass(frozen=True)
 class Touchdown:
-    """Where a leg touches the ground in its mechanism: the body and joint of its axle, unit vectors
-    up and aft, the number of the strut's drive (None: rigid), and the values of all drives (m or
-    rad) with the strut extended.
+    """The axle and the strut of a leg in its mechanism.
+
+    body, joint: of the axle.
+    up, aft: unit vectors.
+    strut: number of the strut's drive; None: a rigid leg.
+    extended: values of all drives with the strut extended, m or rad.
     """
 
     body: str
@@ -42,8 +45,11 @@ class Touchdown:
 
 
 def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
-    """Up, against gravity, and aft; forward: "left" or "right" of up. Raises: ArgumentError
-    without gravity.
+    """Unit vectors up, against gravity, and aft.
+
+    forward: "left" or "right", the side of `up` on which the aircraft's nose is.
+
+    Raises: ArgumentError without gravity.
     """
     size = float(np.hypot(*linkage.gravity))
     if size == 0.0:
@@ -56,7 +62,10 @@ def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
 
 
 def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
-    """The strokes of a strut by the rise of its axle. Raises: LinkageError, ArgumentError."""
+    """The stroke of a strut over the rise of its axle. stroke: the largest, m.
+
+    Raises: LinkageError, ArgumentError.
+    """
     strokes, motion = _closing(linkage, place, stroke)
     at, _, _ = motion.joint(place.joint)
     rises = (at - at[0]) @ np.array(place.up)
@@ -64,9 +73,13 @@ def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
 
 
 def effective_mass(linkage: Linkage, place: Touchdown, stroke: float) -> float:
-    """Mass at the axle (kg) that has as much kinetic energy as all bodies and pins while the strut
-    closes and the aircraft stands still: 2 T / (rate of rise)^2, which changes along the stroke as
-    the leg swings, in the mean over the rise of the axle. Raises: as `travel`.
+    """Effective mass of the leg at its axle, kg.
+
+    It has the kinetic energy T of all bodies and pins while the strut closes and the aircraft is at
+    rest: 2 T / (rate of rise)^2. As that changes along the stroke, it is the mean over the rise.
+    stroke: the largest, m.
+
+    Raises: as `travel`.
     """
     _, motion = _closing(linkage, place, stroke)
     at, rate, _ = motion.joint(place.joint)
@@ -77,7 +90,7 @@ def effective_mass(linkage: Linkage, place: Touchdown, stroke: float) -> float:
 
 
 def _closing(linkage: Linkage, place: Touchdown, stroke: float) -> tuple[Floats, Motion]:
-    """Strokes from none to the whole one, and the leg in them as its strut closes evenly."""
+    """Strokes (STROKE_POINTS,) m from zero to `stroke`, and the leg's motion at constant speed."""
     strokes = np.linspace(0.0, stroke, STROKE_POINTS)
     assert place.strut is not None
     laws: list[Law] = [StateDrive(value) for value in place.extended]
@@ -87,24 +100,24 @@ def _closing(linkage: Linkage, place: Touchdown, stroke: float) -> tuple[Floats,
 
 
 def at_deflection(landing: Landing, place: Touchdown, time: float, part: float) -> tuple[Law, ...]:
-    """Laws that keep the leg at a part of the stroke of its strut at a time (s) of a drop."""
-    there = (float(law(np.array([time]))[0][0]) for law in laws(landing, place))
+    """Laws that hold the leg at a fraction `part` of its stroke at a time (s) of a drop."""
+    values = (float(law(np.array([time]))[0][0]) for law in laws(landing, place))
     return tuple(
-        StateDrive(first + part * (value - first))
-        for first, value in zip(place.extended, there, strict=True)
+        StateDrive(extended + part * (value - extended))
+        for extended, value in zip(place.extended, values, strict=True)
     )
 
 
 @dataclass(frozen=True)
 class StrokeDrive:
-    """The length of a strut's slider along a drop, from its extended length (m) on."""
+    """The length of a strut's slider during a drop. extended: its length at touch-down, m."""
 
     landing: Landing
     extended: float
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Where the strut changes how it moves, s."""
+        """Times at which the drop changes its mode, s."""
         return self.landing.corners
 
     pieces = corners
@@ -119,8 +132,10 @@ class StrokeDrive:
 
 @dataclass(frozen=True)
 class AppliedOverTime(Applied):
-    """A load of a drop, in world axes. mass: kg of what is pulled by the deceleration of the
-    aircraft; None: the forces of the ground on the axle.
+    """A load of a drop on a mechanism, in world axes.
+
+    mass: kg, of a body on which the aircraft's deceleration acts; None: the load is the force of
+    the ground on the axle.
     """
 
     landing: Landing | None = None
@@ -128,7 +143,7 @@ class AppliedOverTime(Applied):
     mass: float | None = None
 
     def along(self, motion: Motion) -> Complex:
-        """(T,) N."""
+        """The force in world axes at every instant, (T,) N."""
         assert self.landing is not None
         assert self.place is not None
         f = self.landing.at(motion.times).forces
@@ -139,15 +154,15 @@ class AppliedOverTime(Applied):
 
 
 def laws(landing: Landing, place: Touchdown) -> tuple[Law, ...]:
-    """Of all drives of the mechanism."""
-    still: list[Law] = [StateDrive(value) for value in place.extended]
+    """The laws of all drives of the mechanism during a drop: only the strut moves."""
+    drives: list[Law] = [StateDrive(value) for value in place.extended]
     if place.strut is not None:
-        still[place.strut] = StrokeDrive(landing, place.extended[place.strut])
-    return tuple(still)
+        drives[place.strut] = StrokeDrive(landing, place.extended[place.strut])
+    return tuple(drives)
 
 
 def pushes(linkage: Linkage, landing: Landing, place: Touchdown) -> tuple[Applied, ...]:
-    """All loads of a drop on the mechanism."""
-    made = partial(AppliedOverTime, landing=landing, place=place)
-    masses = [made(i.name, i.centre, mass=i.mass) for i in linkage.items if i.mass]
-    return (made(place.body, linkage.joint(place.joint).at), *masses)
+    """All loads of a drop on the mechanism: ground force, and deceleration of every mass."""
+    load = partial(AppliedOverTime, landing=landing, place=place)
+    masses = [load(i.name, i.centre, mass=i.mass) for i in linkage.items if i.mass]
+    return (load(place.body, linkage.joint(place.joint).at), *masses)

@@ -1,4 +1,4 @@
-"""How the strut's stroke follows from how far the axle rises against the aircraft."""
+"""The strut's stroke as a function of the rise of the axle relative to the aircraft."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Telescopic:
         return rise, np.ones_like(rise), np.zeros_like(rise)
 
     def rise(self, stroke: float) -> float:
-        """At a stroke, m."""
+        """Rise of the axle at a stroke, m."""
         return stroke
 
 
@@ -30,8 +30,10 @@ TELESCOPIC = Telescopic()
 
 @dataclass(frozen=True)
 class Levered:
-    """Any leg: rises (N,) m at strokes (N,) m, both from zero on, joined by the spline of degree
-    five. The force at the wheel is that of the strut times the derivative (virtual work).
+    """Any other leg: stroke over rise by a quintic spline through rows.
+
+    The force at the wheel is that of the strut times the derivative (virtual work).
+    rises, strokes: (N,) m, both from zero on.
 
     Raises: ArgumentError where the axle does not rise.
     """
@@ -49,6 +51,7 @@ class Levered:
 
     @cached_property
     def _spline(self) -> Any:
+        """Stroke over rise, a SciPy BSpline."""
         from scipy.interpolate import make_interp_spline
 
         return make_interp_spline(self.rises, self.strokes, k=5)
@@ -58,5 +61,5 @@ class Levered:
         return self._spline(rise), self._spline(rise, 1), self._spline(rise, 2)
 
     def rise(self, stroke: float) -> float:
-        """At a stroke of the table, m."""
+        """Rise of the axle at a stroke within the rows, m."""
         return float(np.interp(stroke, self.strokes, self.rises))

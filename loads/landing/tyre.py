@@ -1,4 +1,4 @@
-"""The tyre: vertical force over deflection, by a power law or a table, with optional damping."""
+"""Vertical force of a tyre over its deflection, by a power law or a table, with damping."""
 
 from __future__ import annotations
 
@@ -14,31 +14,38 @@ from pinbase.errors import ArgumentError
 
 @dataclass(frozen=True)
 class PowerTyre:
-    """a z^r at deflection z. coefficient a: N/m^r. exponent: r. damping: s/m, by which the force
-    grows with the speed of deflection: (1 + damping z'), never pulling (Hunt & Crossley, 1975).
+    """A tyre with the force a z^r at deflection z.
+
+    coefficient: a, N/m^r.
+    exponent: r.
+    damping: s/m; the force is multiplied by 1 + damping z', never negative (Hunt & Crossley, 1975).
+    max_deflection: m.
     """
 
     coefficient: float
     exponent: float = 1.0
     damping: float = 0.0
-    most: float = np.inf
+    max_deflection: float = np.inf
 
     def force(self, deflection: Floats) -> Floats:
-        """Without damping, N; none above the ground."""
+        """Force without damping at deflections (T,) m, (T,) N; zero above the ground."""
         return np.asarray(self.coefficient * np.maximum(deflection, 0.0) ** self.exponent)
 
     def energy(self, deflection: Floats) -> Floats:
-        """J."""
+        """Energy stored at deflections (T,) m, (T,) J."""
         n = self.exponent + 1.0
         return np.asarray(self.coefficient * np.maximum(deflection, 0.0) ** n / n)
 
 
 @dataclass(frozen=True)
 class TableTyre:
-    """A table from (0, 0) on, rising, with a monotone piecewise cubic between its rows (Fritsch &
-    Carlson, 1980). deflections (N,) m, forces (N,) N. damping: as a PowerTyre's.
+    """A tyre with a tabulated force, by a monotone piecewise cubic (Fritsch & Carlson, 1980).
 
-    Raises: ArgumentError.
+    deflections, forces: (N,) m and N, increasing from (0, 0).
+    damping: as of a PowerTyre.
+
+    Raises: ArgumentError for fewer than three rows, another first row, or values that do not
+    increase.
     """
 
     deflections: tuple[float, ...]
@@ -52,40 +59,45 @@ class TableTyre:
                 "a tyre's table needs at least three rows, the first of them 0, 0", "tyre-table"
             )
         for name, values in zip(("deflection", "force"), table, strict=True):
-            if (wrong := np.flatnonzero(np.diff(values) <= 0.0)).size:
-                row = int(wrong[0]) + 2
+            if (falling := np.flatnonzero(np.diff(values) <= 0.0)).size:
+                row = int(falling[0]) + 2
                 raise ArgumentError(
                     f"a tyre's {name} must increase from row to row, but does not in row {row}",
                     "not-increasing",
                 )
 
     @property
-    def most(self) -> float:
-        """The last deflection, m, beyond which nothing is known."""
+    def max_deflection(self) -> float:
+        """Last deflection of the table, m, beyond which the force is not known."""
         return self.deflections[-1]
 
     @cached_property
     def _curve(self) -> Any:
+        """Force over deflection, a SciPy PchipInterpolator."""
         from scipy.interpolate import PchipInterpolator
 
         return PchipInterpolator(self.deflections, self.forces)
 
     @cached_property
     def _work(self) -> Any:
+        """Stored energy over deflection, a SciPy polynomial."""
         return self._curve.antiderivative()
 
     def force(self, deflection: Floats) -> Floats:
-        """Without damping, N; none above the ground, and that of the last row beyond it."""
-        return np.asarray(self._curve(np.clip(deflection, 0.0, self.most)))
+        """Force without damping at deflections (T,) m, (T,) N.
+
+        It is zero above the ground, and beyond the table that of the last row.
+        """
+        return np.asarray(self._curve(np.clip(deflection, 0.0, self.max_deflection)))
 
     def energy(self, deflection: Floats) -> Floats:
-        """J."""
-        return np.asarray(self._work(np.clip(deflection, 0.0, self.most)))
+        """Energy stored at deflections (T,) m, (T,) J."""
+        return np.asarray(self._work(np.clip(deflection, 0.0, self.max_deflection)))
 
 
 Tyre = PowerTyre | TableTyre
 
 
 def damped(tyre: Tyre, deflection: Floats, speed: Floats) -> Floats:
-    """Force (T,) N at deflections (T,) m and their rates (T,) m/s."""
+    """Force with damping, (T,) N, at deflections (T,) m and their rates (T,) m/s."""
     return np.asarray(tyre.force(deflection) * np.maximum(1.0 + tyre.damping * speed, 0.0))

@@ -1,6 +1,7 @@
-"""Laws of motion of a drive: value, rate and second rate at given times, exactly.
+"""Laws of motion of a drive: value and first two derivatives at given times, exactly.
 
-Values are lengths (m) of a slider or angles (rad). Outside its time a drive rests where it is.
+Values are lengths of a slider (m) or angles (rad). Before its first and after its last time a drive
+is at rest.
 """
 
 from __future__ import annotations
@@ -18,24 +19,28 @@ Values = tuple[Floats, Floats, Floats]
 
 
 class Law(Protocol):
-    """Value, rate and second rate (T,) at times (T,) in s."""
+    """A law of motion; called with times (T,) s it gives value, rate and second rate, (T,) each."""
 
     def __call__(self, times: Floats) -> Values: ...
 
     @property
     def pieces(self) -> tuple[float, ...]:
-        """Times between which it is one formula, s."""
+        """Times between which the law is a single formula, s."""
         ...
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Those of them at which its first three rates may jump, s."""
+        """Those `pieces` at which one of the first three derivatives may jump, s."""
         ...
 
 
 @dataclass(frozen=True)
 class Ramp:
-    """From `start` to `end` in `duration` (s), beginning at time `begin` (s)."""
+    """A motion from one value to another; the subclasses give its shape.
+
+    start, end: values, m or rad.
+    duration, begin: s.
+    """
 
     start: float
     end: float
@@ -44,36 +49,40 @@ class Ramp:
 
     @property
     def finish(self) -> float:
-        """When it is over, s."""
+        """Time at which the motion ends, s."""
         return self.begin + self.duration
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Its ends, s."""
+        """Times at which the motion begins and ends, s."""
         return self.begin, self.finish
 
     pieces = corners
 
-    def _course(self, times: Floats, shape: Floats, first: Floats, second: Floats) -> Values:
-        """From a shape that goes from 0 to 1 in time / duration, with its two derivatives."""
-        run = self.end - self.start
+    def _scaled(self, times: Floats, shape: Floats, first: Floats, second: Floats) -> Values:
+        """Value and derivatives of the motion from those of its dimensionless shape.
+
+        shape: (T,), rising from 0 to 1. first, second: its derivatives by time / duration.
+        """
+        travel = self.end - self.start
         moving = (times >= self.begin) & (times <= self.finish)
         return (
-            self.start + run * shape,
-            np.where(moving, run / self.duration * first, 0.0),
-            np.where(moving, run / self.duration**2 * second, 0.0),
+            self.start + travel * shape,
+            np.where(moving, travel / self.duration * first, 0.0),
+            np.where(moving, travel / self.duration**2 * second, 0.0),
         )
 
-    def _part(self, times: Floats) -> Floats:
+    def _elapsed(self, times: Floats) -> Floats:
+        """Elapsed fraction of the duration, (T,), between 0 and 1."""
         return np.clip((times - self.begin) / self.duration, 0.0, 1.0)
 
 
 class CosineDrive(Ramp):
-    """Half a cosine: at rest at both ends, the acceleration jumps there."""
+    """Half a cosine wave: at rest at both ends, where the acceleration jumps."""
 
     def __call__(self, times: Floats) -> Values:
-        phase = np.pi * self._part(times)
-        return self._course(
+        phase = np.pi * self._elapsed(times)
+        return self._scaled(
             times,
             0.5 * (1.0 - np.cos(phase)),
             0.5 * np.pi * np.sin(phase),
@@ -85,11 +94,11 @@ class CycloidalDrive(Ramp):
     """A cycloid: speed and acceleration vanish at both ends."""
 
     def __call__(self, times: Floats) -> Values:
-        part = self._part(times)
-        phase = 2.0 * np.pi * part
-        return self._course(
+        elapsed = self._elapsed(times)
+        phase = 2.0 * np.pi * elapsed
+        return self._scaled(
             times,
-            part - np.sin(phase) / (2.0 * np.pi),
+            elapsed - np.sin(phase) / (2.0 * np.pi),
             1.0 - np.cos(phase),
             2.0 * np.pi * np.sin(phase),
         )
@@ -99,13 +108,13 @@ class ConstantDrive(Ramp):
     """Constant speed from start to end."""
 
     def __call__(self, times: Floats) -> Values:
-        part = self._part(times)
-        return self._course(times, part, np.ones_like(part), np.zeros_like(part))
+        elapsed = self._elapsed(times)
+        return self._scaled(times, elapsed, np.ones_like(elapsed), np.zeros_like(elapsed))
 
 
 @dataclass(frozen=True)
 class StateDrive:
-    """One instant: value, rate and second rate as given, whatever the time."""
+    """A single instant: value, rate and second rate as stated, whatever the time."""
 
     value: float
     rate: float = 0.0
@@ -115,19 +124,21 @@ class StateDrive:
     corners: ClassVar[tuple[float, ...]] = ()
 
     def __call__(self, times: Floats) -> Values:
-        one = np.ones_like(times)
-        return self.value * one, self.rate * one, self.second * one
+        ones = np.ones_like(times)
+        return self.value * ones, self.rate * ones, self.second * ones
 
 
 @dataclass(frozen=True)
 class TableDrive:
     """A table interpolated by polynomials of degree five.
 
-    times (N,) s, rising; values (N,); rates and seconds (N,), both or neither. With them every
-    piece meets the rows' own rates; without it is the interpolating spline, smooth to the fourth
-    derivative.
+    times: (N,) s, increasing.
+    values: (N,) m or rad.
+    rates, seconds: (N,) first and second derivatives, both or neither. With them every piece has
+    the stated derivatives at its two rows; without them the interpolant is the quintic spline,
+    whose fourth derivative is continuous.
 
-    Raises: LinkageError for fewer rows than the polynomial needs, or times that do not rise.
+    Raises: LinkageError for fewer rows than the polynomial needs, or times that do not increase.
     """
 
     times: tuple[float, ...]
@@ -136,10 +147,10 @@ class TableDrive:
     seconds: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        least = 2 if self.rates else 6
-        if len(self.times) < least:
+        min_rows = 2 if self.rates else 6
+        if len(self.times) < min_rows:
             raise LinkageError(
-                f"the table has {len(self.times)} rows; a drive needs at least {least}",
+                f"the table has {len(self.times)} rows; a drive needs at least {min_rows}",
                 "too-few-rows",
             )
         if not np.all(np.diff(self.times) > 0.0):
@@ -147,26 +158,27 @@ class TableDrive:
 
     @property
     def begin(self) -> float:
-        """Its first time, s."""
+        """First time of the table, s."""
         return self.times[0]
 
     @property
     def finish(self) -> float:
-        """Its last time, s."""
+        """Last time of the table, s."""
         return self.times[-1]
 
     @property
     def pieces(self) -> tuple[float, ...]:
-        """Its rows, s."""
+        """Times of all rows, s."""
         return self.times
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Its rows where they state rates; the spline is smooth at those between its ends, s."""
+        """Times of all rows, or of the two ends of a spline, which is smooth between them, s."""
         return self.times if self.rates else (self.begin, self.finish)
 
     @cached_property
-    def _pieces(self) -> Any:
+    def _polynomials(self) -> Any:
+        """The interpolant, a SciPy BSpline or BPoly."""
         from scipy.interpolate import BPoly, make_interp_spline
 
         if not self.rates:
@@ -177,9 +189,9 @@ class TableDrive:
     def __call__(self, times: Floats) -> Values:
         at = np.clip(times, self.begin, self.finish)
         moving = (times >= self.begin) & (times <= self.finish)
-        pieces = self._pieces
+        polynomials = self._polynomials
         return (
-            np.asarray(pieces(at)),
-            np.where(moving, pieces.derivative(1)(at), 0.0),
-            np.where(moving, pieces.derivative(2)(at), 0.0),
+            np.asarray(polynomials(at)),
+            np.where(moving, polynomials.derivative(1)(at), 0.0),
+            np.where(moving, polynomials.derivative(2)(at), 0.0),
         )

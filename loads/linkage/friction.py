@@ -1,15 +1,15 @@
-"""Coulomb friction at sliders and pins: which signs of the contact forces are consistent.
+"""Contact forces with Coulomb friction at sliders and pins.
 
-Friction opposes sliding with mu times the size of each contact force n, and changes the contact
-forces in turn: n = n0 - B |n|, with n0 the forces without friction and B their
-reduction by one newton of |n|. Every pattern of signs gives a linear system; the patterns that its
-solution reproduces are the answers. With weak friction there is always exactly one. When there is
-none, no forces are consistent with the motion; when there are two, rigid-body mechanics cannot
-decide between them (Painleve): the slider jams.
+Friction opposes sliding with mu times the magnitude of each contact force n, and changes the
+contact forces in turn: n = n0 - B |n|, with n0 the forces without friction and B their reduction
+per newton of |n|. Every combination of signs of n gives a linear system; a combination is a
+solution if the forces that follow from it have these signs. With weak friction there is always
+exactly one solution. Without any, no forces are consistent with the motion; with two, rigid-body
+mechanics cannot decide between them (Painleve's paradox): the slider jams.
 
-A pin rubs with a couple: its force on the body touches the friction circle, of radius
-r mu / sqrt(1 + mu^2). Its direction is free, so there are no patterns: Newton's method follows the
-answer while friction grows from nothing.
+Friction of a pin is a couple: the force on the body is tangent to the friction circle, of radius
+r mu / sqrt(1 + mu^2). Since the direction of that force is free, there are no signs to try:
+Newton's method follows the solution while friction grows from zero.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ import numpy as np
 from loads.linkage.linkage import LinkageError
 from pinbase.arrays import Complex, Floats, Ints
 
-MAX_ENUMERATED_CONTACTS = 8  # 256 patterns of signs
-FRICTION_STEPS = 4  # in which friction of pins grows from nothing
-MAX_NEWTON_STEPS = 60  # of Newton's method
-FORCE_SIZE_TOLERANCE = (
-    1e-5  # of CONTACT_FORCE_TOLERANCE: sizes are corrected until they change by no more
-)
-CONTACT_FORCE_TOLERANCE = (
-    1e-9  # of the largest contact force: what counts as zero and as the same answer
-)
+MAX_ENUMERATED_CONTACTS = 8  # 256 combinations of signs
+FRICTION_STEPS = 4  # in which the friction of pins grows from zero
+MAX_NEWTON_STEPS = 60
+# Of the largest contact force: below it a force is zero and two solutions are the same.
+CONTACT_FORCE_TOLERANCE = 1e-9
+# Of CONTACT_FORCE_TOLERANCE: Newton's method ends when the magnitudes change by less.
+FORCE_SIZE_TOLERANCE = 1e-5
 
 
 class JammingError(LinkageError):
     """The friction problem has no solution, or several.
 
-    instants: their indices. none: whether there is no solution at the first of them. grip:
-    gain of the loop from contact force to friction to contact force there (from 1 on it can jam).
+    instants: indices of the instants at which that is so.
+    none: whether there is no solution at the first of them, rather than several.
+    grip: contact force that friction adds there per newton of contact force; from 1 on it can jam.
+    when, sliders: the time and what rubs, for the message.
     """
 
     def __init__(
@@ -60,72 +60,88 @@ class JammingError(LinkageError):
 
 
 def contact_sizes(free: Complex, response: Complex) -> Floats:
-    """Sizes n (T, K) = |free + response n| of contact forces; complex those of pins, which press in
-    any direction, response (T, K, K).
+    """Magnitudes n of contact forces with friction, (T, K) N: n = |free + response n|.
 
-    Raises: JammingError where none or, of real ones up to MAX_ENUMERATED_CONTACTS, several exist.
+    free: (T, K) N, contact forces without friction; complex for pins, which press in any direction.
+    response: (T, K, K), change of contact force i per newton of the magnitude of contact force j.
+
+    Raises: JammingError without a solution; also with several, which is noticed only for real
+    forces at up to MAX_ENUMERATED_CONTACTS contacts.
     """
     if not response.any():
         return np.abs(free)
+    # Forces along fixed lines: try all signs, which also shows whether the solution is unique.
     if free.shape[1] <= MAX_ENUMERATED_CONTACTS and not free.imag.any() and not response.imag.any():
         return np.abs(contact_forces(free.real, -response.real))
+    # Forces in the plane: increase friction in steps, each starting from the solution before.
     sizes = np.abs(free)
-    for part in np.linspace(0.0, 1.0, FRICTION_STEPS + 1)[1:]:
-        sizes = _newton(free, part * response, sizes)
+    for fraction in np.linspace(0.0, 1.0, FRICTION_STEPS + 1)[1:]:
+        sizes = _newton(free, fraction * response, sizes)
     return sizes
 
 
 def _newton(free: Complex, response: Complex, sizes: Floats) -> Floats:
-    """From sizes near the answer. Where friction grows from nothing, the answer is lost when the
-    determinant vanishes: more friction is then not consistent with the motion.
+    """Magnitudes of contact forces, (T, K) N, by Newton's method from a nearby start.
+
+    free, response: as of `contact_sizes`.
+    sizes: (T, K) N, the start.
+
+    Raises: JammingError where the solution is lost. While friction grows from zero that happens
+    when the determinant of the tangent vanishes: more friction is not consistent with the motion.
     """
-    one = np.eye(free.shape[1])
-    least = CONTACT_FORCE_TOLERANCE * (np.abs(free).max(axis=1) + 1e-300)
+    identity = np.eye(free.shape[1])
+    tolerance = CONTACT_FORCE_TOLERANCE * (np.abs(free).max(axis=1) + 1e-300)
     for _ in range(MAX_NEWTON_STEPS):
         force = free + (response @ sizes[..., None])[..., 0]
         size = np.abs(force)
-        along = force / np.where(size > 0.0, size, 1.0)
-        slope = np.real(np.conj(along)[..., None] * response)
-        lost = np.linalg.det(one - slope) <= CONTACT_FORCE_TOLERANCE
-        off = size - sizes
+        # d|force| / d sizes: the response projected on the direction of the force.
+        direction = force / np.where(size > 0.0, size, 1.0)
+        slope = np.real(np.conj(direction)[..., None] * response)
+        lost = np.linalg.det(identity - slope) <= CONTACT_FORCE_TOLERANCE
+        residual = size - sizes
         if lost.any():
             break
-        if np.all(np.abs(off).max(axis=1) <= FORCE_SIZE_TOLERANCE * least):
+        if np.all(np.abs(residual).max(axis=1) <= FORCE_SIZE_TOLERANCE * tolerance):
             return size
-        sizes = sizes + np.linalg.solve(one - slope, off[..., None])[..., 0]
+        sizes = sizes + np.linalg.solve(identity - slope, residual[..., None])[..., 0]
     else:
-        lost = np.abs(off).max(axis=1) > least
+        lost = np.abs(residual).max(axis=1) > tolerance
         if not lost.any():
             return size
-    which = np.flatnonzero(lost)
-    grip = float(np.abs(np.linalg.eigvals(np.abs(slope[which[0]]))).max())
-    raise JammingError(which, True, grip)
+    instants = np.flatnonzero(lost)
+    grip = float(np.abs(np.linalg.eigvals(np.abs(slope[instants[0]]))).max())
+    raise JammingError(instants, True, grip)
 
 
 def contact_forces(free: Floats, feedback: Floats) -> Floats:
-    """Contact forces n (T, K) with n = free - feedback |n|; feedback (T, K, K).
+    """Contact forces n, (T, K) N, with n = free - feedback |n|, by trying all signs of n.
 
-    Raises: JammingError where none or several exist.
+    free: (T, K) N, contact forces without friction.
+    feedback: (T, K, K), reduction of contact force i per newton of |n_j|.
+
+    Raises: JammingError where no solution exists, or several.
     """
     count = free.shape[1]
-    found = np.zeros_like(free)
-    answers = np.zeros(len(free), dtype=int)
+    solution = np.zeros_like(free)
+    solutions = np.zeros(len(free), dtype=int)  # how many different ones at each instant
     size = np.abs(free).max(axis=1, initial=0.0) + 1e-300
     for signs in product((1.0, -1.0), repeat=count):
+        # With |n| = s n the equations are linear: (I + B s) n = n0.
         s = np.array(signs)
         matrix = np.eye(count) + feedback * s
-        possible = np.abs(np.linalg.det(matrix)) > CONTACT_FORCE_TOLERANCE
+        regular = np.abs(np.linalg.det(matrix)) > CONTACT_FORCE_TOLERANCE
         n = np.linalg.solve(
-            np.where(possible[:, None, None], matrix, np.eye(count)), free[..., None]
+            np.where(regular[:, None, None], matrix, np.eye(count)), free[..., None]
         )[..., 0]
+        # A solution if n has the assumed signs; a zero force fits two combinations, counted once.
         slack = CONTACT_FORCE_TOLERANCE * np.maximum(size, np.abs(n).max(axis=1))
-        agrees = possible & np.all(n * s >= -slack[:, None], axis=1)
-        known = (answers > 0) & np.all(np.abs(n - found) <= slack[:, None], axis=1)
-        new = agrees & ~known
-        found[new & (answers == 0)] = n[new & (answers == 0)]
-        answers += new
-    wrong = np.flatnonzero(answers != 1)
-    if len(wrong):
-        grip = float(np.abs(np.linalg.eigvals(np.abs(feedback[wrong[0]]))).max())
-        raise JammingError(wrong, bool(answers[wrong[0]] == 0), grip)
-    return found
+        consistent = regular & np.all(n * s >= -slack[:, None], axis=1)
+        known = (solutions > 0) & np.all(np.abs(n - solution) <= slack[:, None], axis=1)
+        new = consistent & ~known
+        solution[new & (solutions == 0)] = n[new & (solutions == 0)]
+        solutions += new
+    jammed = np.flatnonzero(solutions != 1)
+    if len(jammed):
+        grip = float(np.abs(np.linalg.eigvals(np.abs(feedback[jammed[0]]))).max())
+        raise JammingError(jammed, bool(solutions[jammed[0]] == 0), grip)
+    return solution

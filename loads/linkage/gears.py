@@ -1,14 +1,14 @@
-"""Gears and racks: teeth that meet at a pitch point fixed in the body that carries both.
+"""Gears and racks, whose teeth meet at a pitch point fixed in the body that carries both.
 
-Relative to the carrier the pitch circles (of a rack: the pitch line) roll on each other,
+Relative to the carrier the pitch circles (for a rack, the pitch line) roll on each other,
 
     r1 (theta1 - theta_c) + r2 (theta2 - theta_c) = 0,    r1 (theta1 - theta_c) = travel of a rack,
 
-with the radius of a ring negative: linear in the coordinates, so exact at every position, and with
-a carrier that turns Willis' equation of planetary trains. Its multiplier is the force of the teeth
-along the pitch circle. With the pressure angle, on either flank, they also push each other apart
-with tan(pressure angle) of its size (Shigley, Mechanical Engineering Design, ch. 13), which does no
-work but loads the bearings.
+where the radius of a ring gear is negative. The equation is linear in the coordinates, hence exact
+at every position; with a rotating carrier it is Willis' equation for planetary trains. Its
+multiplier is the tangential force of the teeth. The radial force, tan(pressure angle) times the
+magnitude of the tangential one on either flank (Shigley, Mechanical Engineering Design, ch. 13),
+pushes the gears apart; it does no work but loads the bearings.
 """
 
 from __future__ import annotations
@@ -30,8 +30,12 @@ def gear_pair(
     radii: tuple[float, float],
     pressure_angle: float,
 ) -> Teeth:
-    """Two gears with centres (m) as drawn. radii: of the pitch circles in any unit, so also numbers
-    of teeth; that of a ring, with its teeth inside, is negative.
+    """The teeth of two gears that mesh.
+
+    gears, carrier: the two gears, and the body that carries both.
+    centres: of the two gears as drawn, m.
+    radii: of the pitch circles in any unit, or numbers of teeth; negative for a ring gear.
+    pressure_angle: rad.
 
     Raises: LinkageError where no circles in this ratio touch.
     """
@@ -44,8 +48,10 @@ def gear_pair(
             ("gear", name),
         )
     (x1, y1), (x2, y2) = centres
-    part, size = radii[0] / total, math.copysign(distance, total)
-    at = (x1 + part * (x2 - x1), y1 + part * (y2 - y1))
+    # The pitch point divides the line of centres in the ratio of the radii; its normal points out
+    # of the first gear, whichever of the two is the ring.
+    fraction, size = radii[0] / total, math.copysign(distance, total)
+    at = (x1 + fraction * (x2 - x1), y1 + fraction * (y2 - y1))
     return Teeth(name, gears, carrier, at, ((x2 - x1) / size, (y2 - y1) / size), pressure_angle)
 
 
@@ -57,7 +63,13 @@ def rack_and_pinion(
     to_rack: Point,
     pressure_angle: float,
 ) -> Teeth:
-    """A gear and a rack. centre: of the gear, to_rack: from there to the pitch line, m as drawn."""
+    """The teeth of a pinion and a rack that mesh.
+
+    sides, carrier: the pinion and the rack, and the body that carries both.
+    centre: of the pinion as drawn, m.
+    to_rack: vector from there, perpendicular to the pitch line and up to it, m.
+    pressure_angle: rad.
+    """
     radius = math.hypot(*to_rack)
     at = (centre[0] + to_rack[0], centre[1] + to_rack[1])
     normal = (to_rack[0] / radius, to_rack[1] / radius)
@@ -65,12 +77,15 @@ def rack_and_pinion(
 
 
 def row(linkage: Linkage, frame: Ints, teeth: Teeth) -> Floats:
-    """(n,) by how much the first body's teeth run ahead of the second's, m, by each of the
-    coordinates of `Loops`, angles times the length scale. frame: of every item.
+    """The row (n,) of the equation of two meshing bodies, in the coordinates of `Loops`.
+
+    Times the coordinates (angles times the length scale, m) it gives the distance by which the
+    first body's teeth have moved ahead of the second's, m.
+    frame: number of each item's angle, 0 for the ground's.
     """
     normal, point = complex(*teeth.normal), complex(*teeth.at)
     angles = int(frame.max())
-    out = np.zeros(angles + 1 + len(linkage.sliders))  # the first: the ground, which stands still
+    out = np.zeros(angles + 1 + len(linkage.sliders))  # the first is the ground's, dropped below
     for side, sign in zip(teeth.sides, (1.0, -1.0), strict=True):
         if isinstance(side, Rack):
             k, slider = _slider(linkage, side.slider)
@@ -85,27 +100,31 @@ def row(linkage: Linkage, frame: Ints, teeth: Teeth) -> Floats:
 
 
 def _slider(linkage: Linkage, name: str) -> tuple[int, Slider]:
+    """The slider of this name, after its number."""
     return next((k, s) for k, s in enumerate(linkage.sliders) if s.name == name)
 
 
 def gap_weights(linkage: Linkage, closing: Sequence[tuple[bool, int]]) -> Floats:
-    """(teeth, closing) weights of the gaps at the members (slides, which) that close loops in the
-    motion of teeth that their guides do not describe: a force of the teeth acts there in turn.
+    """Motion of the teeth per gap at the members that close loops, (teeth, closing).
+
+    A gear whose bearing closes a loop moves against its carrier by the gap there, which the row of
+    the teeth does not contain; in turn, a force of the teeth acts at that gap.
+    closing: the members, each with whether it is a slider and its number.
     """
     out = np.zeros((len(linkage.teeth), len(closing)))
-    place = {member: k for k, member in enumerate(closing)}
+    columns = {member: k for k, member in enumerate(closing)}
     for g, teeth in enumerate(linkage.teeth):
         for side, sign in zip(teeth.sides, (1.0, -1.0), strict=True):
-            for member, weight in _members(linkage, side, teeth.carrier):
-                if member in place:
-                    out[g, place[member]] += sign * weight
+            for member, weight in _guides(linkage, side, teeth.carrier):
+                if member in columns:
+                    out[g, columns[member]] += sign * weight
     return out
 
 
-def _members(
+def _guides(
     linkage: Linkage, side: Gear | Rack, carrier: str
 ) -> Iterator[tuple[tuple[bool, int], float]]:
-    """What guides the side on its carrier, and how its gap moves the side against the carrier."""
+    """The members that guide a gear or rack on its carrier, and its motion per unit gap there."""
     if isinstance(side, Rack):
         k, slider = _slider(linkage, side.slider)
         yield (True, k), 1.0 if slider.moving == side.body else -1.0

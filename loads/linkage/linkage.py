@@ -18,25 +18,28 @@ GROUND = "ground"
 
 
 class LinkageError(CodedError, ValueError):
-    """The linkage as described cannot be analysed; the message says why and what would be right."""
+    """The linkage as described cannot be analysed; the message says why and what would be right.
+
+    several: the single errors of which this one consists; empty where it is a single one.
+    """
 
     several: tuple[LinkageError, ...] = ()
 
     @classmethod
-    def all(cls, wrong: Sequence[LinkageError]) -> LinkageError:
-        """One error for everything that is wrong."""
-        error = LinkageError("; ".join(map(str, wrong)), wrong[0].code, wrong[0].at)
-        error.several = tuple(wrong)
+    def all(cls, errors: Sequence[LinkageError]) -> LinkageError:
+        """One error that consists of several."""
+        error = LinkageError("; ".join(map(str, errors)), errors[0].code, errors[0].at)
+        error.several = tuple(errors)
         return error
 
     @property
     def each(self) -> tuple[LinkageError, ...]:
-        """Everything that is wrong, one by one."""
+        """The single errors of which this one consists."""
         return self.several or (self,)
 
     @property
     def codes(self) -> tuple[str, ...]:
-        """Their codes."""
+        """The codes of the single errors."""
         return tuple(error.code for error in self.each)
 
 
@@ -44,8 +47,10 @@ class LinkageError(CodedError, ValueError):
 class Body:
     """A rigid body in the drawn position.
 
-    mass: kg. centre: centre of mass in world axes, m. inertia: about the centre, kg m^2; a body
-    without inertia is a particle, with a single connection at `centre`, or slides on the ground.
+    mass: kg.
+    centre: centre of mass in world axes, m.
+    inertia: about the centre of mass, kg m^2; a body without inertia is a particle with a single
+    connection, at `centre`, or slides on the ground.
     """
 
     name: str
@@ -56,8 +61,9 @@ class Body:
 
 @dataclass(frozen=True)
 class Connection:
-    """A body that turns on a pin; `name` labels the force between them. friction: radius of the
-    friction circle, m: r mu / sqrt(1 + mu^2) of a pin of radius r.
+    """A body that turns on a pin; `name` labels the force between them.
+
+    friction: radius of the friction circle, m; r mu / sqrt(1 + mu^2) for a pin of radius r.
     """
 
     name: str
@@ -69,8 +75,9 @@ class Connection:
 class Joint:
     """A pin and the bodies that turn on it.
 
-    at: world position as drawn, m. fixed_in: GROUND or the body of which the pin is a part; None
-    for a floating pin, which is then a particle of the given mass (kg).
+    at: position as drawn, world axes, m.
+    fixed_in: GROUND or the body of which the pin is a part; None for a floating pin.
+    mass: of a floating pin, which is a particle, kg.
     """
 
     name: str
@@ -84,10 +91,12 @@ class Joint:
 class Slider:
     """A prismatic joint: `moving` slides on `base`, a body or GROUND.
 
-    start, end: a point of the base and one of the moving body, in world axes as drawn, m; the
-    slider's length is their distance along `direction` (by default from start to end), which turns
-    with the base. friction: Coulomb's coefficient. bearing: distance of the two pads, centred on
-    `end`, that carry the couple, m; None when the couple is carried without friction.
+    start, end: a point of the base and one of the moving body, world axes as drawn, m; the slider's
+    length is the distance between them along `direction`.
+    direction: by default from start to end; it turns with the base.
+    friction: Coulomb's coefficient.
+    bearing: distance between the two pads that carry the couple, centred on `end`, m; None where
+    the couple is carried without friction.
     """
 
     name: str
@@ -115,8 +124,10 @@ class Slider:
 
 @dataclass(frozen=True)
 class Turn:
-    """The angle of `body` against `base` as a drive sees it; `drawn`: its value as drawn, rad.
-    carries: of a stop, the sign of the couples on the body that it can carry.
+    """The angle of `body` relative to `base`, which a drive or stop acts on.
+
+    drawn: its value as drawn, rad.
+    carries: sign of the couples on the body that a stop can carry.
     """
 
     name: str
@@ -128,7 +139,7 @@ class Turn:
 
 @dataclass(frozen=True)
 class Gear:
-    """A body with teeth about the joint at which its carrier has it."""
+    """A gear: a body with teeth around the joint at which it turns on its carrier."""
 
     body: str
     joint: str
@@ -136,7 +147,7 @@ class Gear:
 
 @dataclass(frozen=True)
 class Rack:
-    """A body with teeth along the slider that guides it on its carrier, or its carrier on it."""
+    """A rack: a body with teeth along the slider between it and its carrier."""
 
     body: str
     slider: str
@@ -144,10 +155,11 @@ class Rack:
 
 @dataclass(frozen=True)
 class Teeth:
-    """Teeth of two bodies that meet at the pitch point, which is fixed in a third, the carrier.
+    """The teeth of two bodies that mesh at a pitch point fixed in a third, the carrier.
 
-    at: pitch point as drawn, m. normal: unit vector there as drawn, out of the first body into the
-    second. pressure_angle: rad.
+    at: pitch point as drawn, m.
+    normal: unit vector there as drawn, out of the first body into the second.
+    pressure_angle: rad.
     """
 
     name: str
@@ -159,14 +171,15 @@ class Teeth:
 
     @property
     def bodies(self) -> tuple[str, str]:
-        """The two that mesh."""
+        """The names of the two bodies that mesh."""
         return self.sides[0].body, self.sides[1].body
 
 
 @dataclass(frozen=True)
 class Sharing:
-    """How redundant connections and teeth share their load: as springs of these stiffnesses (in any
-    unit).
+    """A rule by which redundant connections and teeth share their load, as springs do.
+
+    stiffness: of each connection, in any unit.
     """
 
     connections: tuple[str, ...]
@@ -175,8 +188,10 @@ class Sharing:
 
 @dataclass(frozen=True)
 class Parallel:
-    """Drives in parallel, one of which moves the others: how they divide the force, by areas under
-    the same pressure or by stiffness (in any unit).
+    """A rule by which drives in parallel, one of which moves the others, divide their force.
+
+    by: areas under the same pressure, or stiffness.
+    shares: the area or stiffness of each member, in any unit.
     """
 
     members: tuple[str, ...]
@@ -188,8 +203,10 @@ class Parallel:
 class Linkage:
     """Bodies, joints, sliders and turns in the position in which they are drawn.
 
-    driven: names of the sliders and turns that drives prescribe. gravity: acceleration of free
-    fall, world axes, m/s^2.
+    driven: names of the sliders and turns that drives prescribe.
+    gravity: acceleration of free fall, world axes, m/s^2.
+
+    Raises: LinkageError where the parts contradict each other.
     """
 
     bodies: tuple[Body, ...]
@@ -203,8 +220,8 @@ class Linkage:
     teeth: tuple[Teeth, ...] = ()
 
     def __post_init__(self) -> None:
-        if wrong := [LinkageError(*each) for each in _contradictions(self)]:
-            raise LinkageError.all(wrong)
+        if errors := [LinkageError(*contradiction) for contradiction in _contradictions(self)]:
+            raise LinkageError.all(errors)
 
     @cached_property
     def connections(self) -> tuple[tuple[Joint, Connection], ...]:
@@ -213,9 +230,7 @@ class Linkage:
 
     @cached_property
     def forces(self) -> tuple[tuple[str, str], ...]:
-        """Names of all forces between bodies, of connections, then of teeth, with the body that
-        exerts each.
-        """
+        """Name and exerting body of every force between bodies: connections, then teeth."""
         teeth = tuple((t.name, t.bodies[0]) for t in self.teeth)
         return tuple((c.name, c.body) for _, c in self.connections) + teeth
 
@@ -226,20 +241,20 @@ class Linkage:
 
     @cached_property
     def drives(self) -> tuple[Slider | Turn, ...]:
-        """What the drives prescribe, in the order of `driven`."""
+        """The sliders and turns that drives prescribe, in the order of `driven`."""
         known: dict[str, Slider | Turn] = {s.name: s for s in self.sliders}
         known |= {t.name: t for t in self.turns}
         return tuple(known[name] for name in self.driven)
 
     @cached_property
     def items(self) -> tuple[Body, ...]:
-        """All that moves: the bodies, then each floating pin as a particle."""
+        """Everything with mass: the bodies, then each floating pin as a particle."""
         pins = (Body(_pin_item(j), j.mass, j.at) for j in self.joints if j.fixed_in is None)
         return self.bodies + tuple(pins)
 
     @cached_property
     def index(self) -> dict[str, int]:
-        """Number of each item; the ground comes after the last."""
+        """Number of each item by its name; the ground comes after the last."""
         rows = {item.name: i for i, item in enumerate(self.items)}
         return rows | {GROUND: len(rows)}
 
@@ -252,7 +267,7 @@ class Linkage:
         return _pin_item(joint) if joint.fixed_in is None else joint.fixed_in
 
     def joints_on(self, body: str) -> tuple[Joint, ...]:
-        """The joints at which a body (or the ground) turns or carries the pin."""
+        """The joints at which a body (or the ground) turns or of which it carries the pin."""
         return tuple(
             j
             for j in self.joints
@@ -261,37 +276,39 @@ class Linkage:
 
     @cached_property
     def length_scale(self) -> float:
-        """A typical distance between joints, m: turns angles into lengths of like size."""
+        """A typical distance between joints, m, which makes angles comparable to lengths."""
         ends = [p for s in self.sliders for p in (s.start, s.end)]
         at = np.array([j.at for j in self.joints] + ends)
         return float(np.linalg.norm(at - at.mean(axis=0), axis=1).mean()) or 1.0
 
 
 def _pin_item(joint: Joint) -> str:
+    """Name of the item that a floating pin is."""
     return f"pin {joint.name}"
 
 
 def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
+    """Everything by which the parts of a linkage contradict each other."""
     if not linkage.joints:
         yield "the linkage has no joints", "no-joints", ()
     bodies = {b.name: b for b in linkage.bodies}
     names = [c.name for j in linkage.joints for c in j.connections]
     names += [t.name for t in linkage.teeth]
     coordinates = [s.name for s in linkage.sliders] + [t.name for t in linkage.turns]
-    for what, seen in (
+    for kind, kind_names in (
         ("body", [b.name for b in linkage.bodies]),
         ("joint", [j.name for j in linkage.joints]),
         ("connection or gear" if linkage.teeth else "connection", names),
         ("slider or turn", coordinates),
         ("drive", list(linkage.driven)),
     ):
-        for name in sorted({n for n in seen if seen.count(n) > 1}):
-            yield f"{what} {name!r} is named twice; names must be unique", "duplicate-name", ()
+        for name in sorted({n for n in kind_names if kind_names.count(n) > 1}):
+            yield f"{kind} {name!r} is named twice; names must be unique", "duplicate-name", ()
     if GROUND in bodies:
         text = f"body {GROUND!r}: this name is reserved for the fixed frame; rename the body"
         yield text, "reserved-name", ("body", GROUND)
-    yield from _of_joints(linkage, bodies)
-    yield from _of_sliders(linkage, bodies)
+    yield from _joint_contradictions(linkage, bodies)
+    yield from _slider_contradictions(linkage, bodies)
     for teeth in linkage.teeth:
         for gear in (side.body for side in teeth.sides if isinstance(side, Gear)):
             if gear in bodies and bodies[gear].inertia is None:
@@ -307,13 +324,16 @@ def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
                 text = f"sharing: there is no connection, gear or rack {name!r}"
                 yield text, "unknown-connection", ("sharing",)
     for rule in linkage.parallel:
-        yield from _of_parallel(linkage, rule, coordinates)
+        yield from _parallel_contradictions(linkage, rule, coordinates)
     for body in linkage.bodies:
         if body.inertia is None:
-            yield from _of_particle(linkage, body)
+            yield from _particle_contradictions(linkage, body)
 
 
-def _of_parallel(linkage: Linkage, rule: Parallel, known: list[str]) -> Iterator[Contradiction]:
+def _parallel_contradictions(
+    linkage: Linkage, rule: Parallel, known: list[str]
+) -> Iterator[Contradiction]:
+    """Contradictions of a rule for drives in parallel. known: names of all sliders and turns."""
     names, at = ", ".join(rule.members), ("sharing",)
     for name in rule.members:
         if name not in known:
@@ -326,7 +346,8 @@ def _of_parallel(linkage: Linkage, rule: Parallel, known: list[str]) -> Iterator
         yield f"{text}; the others follow it", "one-must-drive", at
 
 
-def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+def _joint_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    """Contradictions of joints and their connections. bodies: by name."""
     for joint in linkage.joints:
         at = ("joint", joint.name)
         for c in joint.connections:
@@ -348,7 +369,8 @@ def _of_joints(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradict
             yield text, "too-few-connections", at
 
 
-def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+def _slider_contradictions(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradiction]:
+    """Contradictions of sliders and turns. bodies: by name."""
     pairs = [("slider", s.name, (s.base, s.moving)) for s in linkage.sliders]
     pairs += [("drive", t.name, (t.base, t.body)) for t in linkage.turns]
     for kind, name, pair in pairs:
@@ -364,14 +386,15 @@ def _of_sliders(linkage: Linkage, bodies: dict[str, Body]) -> Iterator[Contradic
             yield f"slider {slider.name}: {text}", "no-direction", ("slider", slider.name)
 
 
-def _of_particle(linkage: Linkage, body: Body) -> Iterator[Contradiction]:
+def _particle_contradictions(linkage: Linkage, body: Body) -> Iterator[Contradiction]:
+    """Contradictions of a body without inertia that is neither a particle nor slides on ground."""
     slides = [s for s in linkage.sliders if body.name in (s.base, s.moving)]
     if any(GROUND in (s.base, s.moving) for s in slides):
         return
     joined = [j for j in linkage.joints for c in j.connections if c.body == body.name]
     carries = any(j.fixed_in == body.name for j in linkage.joints)
-    alone = len(joined) == 1 and not slides and not carries
-    if not alone or not np.allclose(joined[0].at, body.centre, atol=1e-9):
+    single_connection = len(joined) == 1 and not slides and not carries
+    if not single_connection or not np.allclose(joined[0].at, body.centre, atol=1e-9):
         text = (
             f"body {body.name}: a body without inertia is a particle, which must have exactly one "
             "connection, at its centre; give its inertia, or place its centre at that joint"

@@ -1,4 +1,4 @@
-"""Whether a linkage is drawn in a singular position."""
+"""Singular positions in the drawing: whether a linkage is drawn at a change point or dead point."""
 
 from __future__ import annotations
 
@@ -11,62 +11,73 @@ from pinbase.arrays import Floats
 
 Singular = Literal["change point", "dead point"]
 
-TRIAL_DISPLACEMENT = 0.05  # rad (or length scales) that a coordinate moves away from the drawing
-TRIAL_COUNT = 12  # ways to move away
-MAX_TRIAL_DISPLACEMENT = 20.0 * TRIAL_DISPLACEMENT  # what goes further is not near the drawing
-RANK_TOLERANCE = 1e-9  # smallest singular value that counts, relative to the largest
-CLOSED_LOOP_TOLERANCE = 1e-10  # of the length scale: gap of a loop that is closed
+TRIAL_DISPLACEMENT = 0.05  # rad (or length scales) from the drawing to a trial position
+TRIAL_COUNT = 12  # directions of trial positions
+MAX_TRIAL_DISPLACEMENT = 20.0 * TRIAL_DISPLACEMENT  # further away is not near the drawing
+RANK_TOLERANCE = 1e-9  # smallest singular value that is not zero, relative to the largest
+CLOSED_LOOP_TOLERANCE = 1e-10  # gap of a closed loop, relative to the length scale
 
 
 def rank(singular: Floats) -> int:
-    """Number of singular values that count."""
+    """Rank of a matrix with these singular values (K,), the largest first."""
     return int(np.sum(singular > RANK_TOLERANCE * singular[0])) if singular.any() else 0
 
 
 def singular_as_drawn(loops: Loops) -> Singular | None:
-    """Which singular position the drawing is, if the same linkage has fewer freedoms near it: a
-    change point when its loops do, a dead point when it is the drives that guide it there.
+    """The kind of singular position in which the linkage is drawn, or None.
+
+    A drawing is singular if the equations have a higher rank at positions near it: at a change
+    point those of the loops have, at a dead point only those of loops and drives together.
     """
-    closing, whole = _ranks(loops, np.zeros(loops.columns))
+    loop_rank, total_rank = _ranks(loops, np.zeros(loops.columns))
     nearby = [_ranks(loops, q) for q in _nearby(loops)]
-    if any(there[0] > closing for there in nearby):
+    if any(ranks[0] > loop_rank for ranks in nearby):
         return "change point"
-    return "dead point" if any(there[1] > whole for there in nearby) else None
+    return "dead point" if any(ranks[1] > total_rank for ranks in nearby) else None
 
 
 def _ranks(loops: Loops, q: Floats) -> tuple[int, int]:
-    """Of the loop equations without the drives', and of all."""
+    """Rank of the loop equations at coordinates q (n,), without the drives' and with them."""
     J = loops.jacobian(loops.pose(q[None]))[0]
     closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: loops.guides], J))
     return rank(closing), rank(whole)
 
 
 def _nearby(loops: Loops) -> list[Floats]:
-    """Coordinates (n,) near the drawing at which all loops are closed, drives free."""
+    """Coordinates (n,) of positions near the drawing with closed loops and free drives.
+
+    They lie in random directions of the null space of the loop equations.
+    """
     first = loops.jacobian(loops.pose(np.zeros((1, loops.columns))))[0]
     closing = first[: loops.guides]
     _, singular, right = np.linalg.svd(closing)
-    ways = right[rank(singular) :]
+    null = right[rank(singular) :]
     random = np.random.default_rng(0)
-    tried = [
-        random.standard_normal(len(ways)) @ ways for _ in range(TRIAL_COUNT if len(ways) else 0)
+    trials = [
+        random.standard_normal(len(null)) @ null for _ in range(TRIAL_COUNT if len(null) else 0)
     ]
-    return [q for way in tried if (q := _closed(loops, way / np.linalg.norm(way))) is not None]
+    return [
+        q
+        for direction in trials
+        if (q := _closed(loops, direction / np.linalg.norm(direction))) is not None
+    ]
 
 
-def _closed(loops: Loops, way: Floats) -> Floats | None:
-    """Coordinates with closed loops that have gone a given part of a unit way (n,) from the
-    drawing; None where Newton's method finds none.
+def _closed(loops: Loops, direction: Floats) -> Floats | None:
+    """Coordinates (n,) with closed loops at TRIAL_DISPLACEMENT along a direction, or None.
+
+    They follow by Newton's method from the point on the straight line; None where it fails.
+    direction: (n,) unit vector of scaled coordinates.
     """
     scale = loops.linkage.length_scale
-    x = TRIAL_DISPLACEMENT * scale * way
+    x = TRIAL_DISPLACEMENT * scale * direction
     for _ in range(40):
         pose = loops.pose((x / loops.scale)[None])
         gap = loops.residual((x / loops.scale)[None], pose, loops.drawn_drives[None])[0]
-        error = np.append(gap[: loops.guides], way @ x - TRIAL_DISPLACEMENT * scale)
+        error = np.append(gap[: loops.guides], direction @ x - TRIAL_DISPLACEMENT * scale)
         if np.abs(error).max() <= CLOSED_LOOP_TOLERANCE * scale:
             return np.asarray(x / loops.scale)
-        J = np.vstack([loops.jacobian(pose)[0][: len(error) - 1], way])
+        J = np.vstack([loops.jacobian(pose)[0][: len(error) - 1], direction])
         x = x - np.linalg.lstsq(J, error, rcond=1e-12)[0]
         if not np.abs(x).max() <= MAX_TRIAL_DISPLACEMENT * scale:
             return None

@@ -1,4 +1,4 @@
-"""Four-bars: recognised in a linkage, classed by Grashof, and how they are assembled."""
+"""Four-bar linkages: their recognition, class after Grashof, and branch of assembly."""
 
 from __future__ import annotations
 
@@ -14,8 +14,12 @@ CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest equal the 
 
 @dataclass(frozen=True)
 class FourBar:
-    """Lengths (m) of the ground, the driven link, the coupler and the follower; their joints in
-    turn (fixed, moving, moving, fixed); and whether it is assembled open or crossed.
+    """A four-bar linkage.
+
+    lengths: of the ground, the driven link, the coupler and the follower, m.
+    bodies: the driven link, the coupler and the follower.
+    joints: in order along the ring (fixed, moving, moving, fixed).
+    branch: whether it is assembled open or crossed.
     """
 
     lengths: tuple[float, float, float, float]
@@ -38,8 +42,10 @@ class FourBar:
 
 
 def four_bar(linkage: Linkage) -> FourBar | None:
-    """The linkage as a four-bar, if it is one: three bodies and the ground in a ring of four pins,
-    the first body driven by its angle.
+    """The linkage as a four-bar, or None.
+
+    It is one if three bodies and the ground form a ring of four pins and a body at the ground is
+    driven by its angle.
     """
     bodies = [b.name for b in linkage.bodies if b.inertia is not None]
     if len(bodies) != 3 or linkage.sliders or len(linkage.joints) != 4 or len(linkage.turns) != 1:
@@ -63,17 +69,24 @@ def four_bar(linkage: Linkage) -> FourBar | None:
         return None
     joints = (o2, a, b, o4)
     at = [linkage.joint(name).at for name in joints]
-    lengths = (_far(at[0], at[3]), _far(at[0], at[1]), _far(at[1], at[2]), _far(at[2], at[3]))
+    lengths = (
+        _distance(at[0], at[3]),
+        _distance(at[0], at[1]),
+        _distance(at[1], at[2]),
+        _distance(at[2], at[3]),
+    )
     return FourBar(lengths, (driven, coupler, follower), joints, _branch(at))
 
 
-def _far(a: Point, b: Point) -> float:
+def _distance(a: Point, b: Point) -> float:
     return float(np.hypot(a[0] - b[0], a[1] - b[1]))
 
 
 def _branch(at: list[Point]) -> Literal["open", "crossed"]:
-    """Open when, seen with the ground pointing right, the coupler's end lies left of the line from
-    the crank's end to the follower's pivot (Norton, sec. 4.5); one turn of a crank keeps it there.
+    """The branch in which the four joints at `at` are assembled.
+
+    It is open when, with the ground pointing right, the coupler's end lies left of the line from
+    the crank's end to the follower's pivot (Norton, sec. 4.5); a turn of the crank keeps it there.
     """
     (_, a, b, o4) = at
     left = (o4[0] - a[0]) * (b[1] - a[1]) - (o4[1] - a[1]) * (b[0] - a[0]) > 0.0

@@ -1,7 +1,7 @@
-"""Forces in every connection and slider, from the forces that bodies need and those at closures.
+"""Forces in every connection and slider, from the forces that items require and those at closures.
 
-Cutting one member of the tree splits off the items beyond it: the force through it is what these
-items need, less what closures and teeth bring to them. No system is solved.
+A cut through one member of the spanning tree separates the items beyond it: the force in the member
+is what these items require, less the forces of closures and teeth on them. No system is solved.
 """
 
 from __future__ import annotations
@@ -18,41 +18,51 @@ from pinbase.arrays import Complex, Floats
 
 @dataclass(frozen=True)
 class Members:
-    """Weights (members, items) and (members, closures and teeth) of the two contributions."""
+    """Weights from which the forces in members follow.
+
+    from_items: (members, items), of the forces that items require.
+    from_closures: (members, closures and teeth), of the forces there.
+    """
 
     from_items: Floats
     from_closures: Floats
 
     def forces(self, needed: Complex, closing: Complex) -> Complex:
-        """(T, members) N, from (T, items) and (T, closures and teeth)."""
+        """Forces in the members, (T, members) N, complex.
+
+        needed: (T, items) N, that the items require. closing: (T, closures and teeth) N.
+        """
         return np.asarray(needed @ self.from_items.T + closing @ self.from_closures.T)
 
 
 def connection_members(loops: Loops) -> Members:
-    """For the force of the pin on the body at every connection."""
+    """The weights for the force of the pin on the body at every connection."""
     return _members(loops, slides=False, count=len(loops.linkage.connections))
 
 
 def slider_members(loops: Loops) -> Members:
-    """For the force of the base on the moving body at every slider."""
+    """The weights for the force of the base on the moving body at every slider."""
     return _members(loops, slides=True, count=len(loops.linkage.sliders))
 
 
 def _members(loops: Loops, slides: bool, count: int) -> Members:
+    """The weights for all sliders (`slides`) or all connections."""
     linkage = loops.linkage
-    needs = np.zeros((count, len(linkage.items)))
+    from_items = np.zeros((count, len(linkage.items)))
     bodies, carriers, _ = loops.closing_ends
-    brings = np.zeros((count, len(bodies)))
+    from_closures = np.zeros((count, len(bodies)))
     for edge in loops.tree:
         if edge.slides is slides:
             sign = 1.0 if edge.forward else -1.0
-            needs[edge.which, list(edge.away)] = sign
+            from_items[edge.which, list(edge.away)] = sign
+            # A closure counts where only one of its ends is beyond the cut.
             for k, (body, carrier) in enumerate(zip(bodies, carriers, strict=True)):
-                brings[edge.which, k] = -sign * ((body in edge.away) - (carrier in edge.away))
+                side = (body in edge.away) - (carrier in edge.away)
+                from_closures[edge.which, k] = -sign * side
     for k, (closes, which) in enumerate(loops.closing):
         if closes is slides:
-            brings[which, k] = 1.0
-    return Members(needs, brings)
+            from_closures[which, k] = 1.0
+    return Members(from_items, from_closures)
 
 
 def slider_couple(
@@ -66,17 +76,22 @@ def slider_couple(
     closing: Complex,
     torques: Sequence[tuple[Turn, Floats]],
 ) -> Floats:
-    """Couple of the base on the moving body of a slider about points (T,), (T,) N m.
+    """Couple of the base on the moving body of a slider, (T,) N m.
 
-    centres, needed, couples: (T, items) places, forces and couples that the items need. closing_at,
-    closing: (T, closures and teeth) places and forces. torques: (T,) of every turn that is held. A
-    slider that closes a loop of sliders alone is taken to carry no couple.
+    A slider that closes a loop of sliders alone is assumed to carry no couple.
+    which: number of the slider.
+    about: (T,) points, complex, m.
+    centres, needed, couples: (T, items) centres of mass, and forces and couples that items require.
+    closing_at, closing: (T, closures and teeth) points and forces there.
+    torques: (T,) N m of every turn that is held.
     """
     edge = next((e for e in loops.tree if e.slides and e.which == which), None)
     out = np.zeros(len(about))
     if edge is None:
         return out
     away = list(edge.away)
+    # Moments about the points for the items beyond the slider: what they require, less closures,
+    # teeth and torques that act on them from this side of the cut.
     p = about[:, None]
     out += np.sum(couples[:, away] + cross(centres[:, away] - p, needed[:, away]), axis=1)
     for k, (body, carrier) in enumerate(zip(*loops.closing_ends[:2], strict=True)):

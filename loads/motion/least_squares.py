@@ -1,10 +1,10 @@
-"""Least squares for a stack of small sparse systems of one pattern, with its transpose and what it
-leaves free.
+"""Least squares, transposed solutions and null vectors for a stack of small sparse systems.
 
-Orthogonal elimination column by column, as in sparse QR (George and Heath, Solution of sparse
-linear least squares problems using Givens rotations, 1980, here by Householder's reflections of the
-rows that share a column). It needs no pivoting, so the order of the columns and the places of all
-nonzeros are found once, and every operation is done for all systems of the stack at once.
+All systems have one pattern of nonzeros. The method is sparse QR, column by column (George and
+Heath, Solution of sparse linear least squares problems using Givens rotations, 1980; here by
+Householder reflections of the rows that share a column). As it needs no pivoting, the order of the
+columns and the places of all nonzeros are determined once, and every operation is done for all
+systems of the stack at once.
 """
 
 from __future__ import annotations
@@ -20,14 +20,16 @@ from pinbase.arrays import Floats
 
 Ints = NDArray[np.int64]
 
-MAX_POWER_ROUNDS = 30  # of powers for a condition number
-CONDITION_TOLERANCE = 1e-6  # relative: changes by less in a round; the error is of that order
+MAX_POWER_ROUNDS = 30  # of the power method for a condition number
+CONDITION_TOLERANCE = 1e-6  # relative change in the last round; the error is of that order
 
 
 @dataclass(frozen=True)
 class Step:
-    """Elimination of one column: the rows (r,) that have it, of which the first keeps it, and the
-    columns (m,) that these rows have then, the eliminated one first.
+    """The elimination of one column.
+
+    rows: (r,) that contain the column; the first of them keeps it, as a row of R.
+    columns: (m,) that these rows contain then, the eliminated one first.
     """
 
     rows: Ints
@@ -35,162 +37,178 @@ class Step:
 
 
 def elimination(pattern: NDArray[np.bool_]) -> tuple[Step, ...]:
-    """Steps for systems with nonzeros in a pattern (rows, columns): next is always the column whose
-    rows have the fewest columns together, so that few places fill.
+    """The steps for systems with nonzeros in a pattern (rows, columns).
+
+    The next column is always the one whose rows have the fewest columns together, so that few
+    entries fill in.
     """
-    has = pattern.copy()  # rows that keep a column lose all places
-    fill, steps = has.T.astype(np.int64) @ has > 0, list[Step]()
-    left, rows = np.ones(has.shape[1], dtype=bool), np.ones(len(has), dtype=bool)
+    nonzero = pattern.copy()  # rows of R, which keep a column, are emptied
+    fill, steps = nonzero.T.astype(np.int64) @ nonzero > 0, list[Step]()
+    left, rows = np.ones(nonzero.shape[1], dtype=bool), np.ones(len(nonzero), dtype=bool)
     while left.any():
-        column = int(np.where(left, fill.sum(axis=1), has.size + 1).argmin())
-        front = np.flatnonzero(has[:, column])
-        if not len(front):  # without the column the system has lost rank
+        column = int(np.where(left, fill.sum(axis=1), nonzero.size + 1).argmin())
+        front = np.flatnonzero(nonzero[:, column])
+        if not len(front):  # no row has the column: the system is rank deficient
             front = np.flatnonzero(rows)[:1]
-        others = np.asarray(has[front].any(axis=0))
+        others = np.asarray(nonzero[front].any(axis=0))
         others[column] = False
         steps.append(Step(front, np.append(column, np.flatnonzero(others))))
-        has[front] = others
-        has[front[0]] = False
+        # After the reflection all rows of the front contain all their columns but this one; the
+        # first is a row of R and takes no further part.
+        nonzero[front] = others
+        nonzero[front[0]] = False
         rows[front[0]] = left[column] = False
         for c in np.flatnonzero(others):
-            fill[c] = has[has[:, c]].any(axis=0)
+            fill[c] = nonzero[nonzero[:, c]].any(axis=0)
     return tuple(steps)
 
 
 class Factors:
-    """Orthogonal factors of J (T, rows, columns), rows >= columns, of full column rank, which is
-    overwritten.
+    """Orthogonal factors of a stack of matrices J (T, rows, columns), rows >= columns.
 
-    Redundant rows are consistent where this is used, so least squares solves them all.
+    steps: of `elimination`.
+    J: of full column rank; it is overwritten.
+
+    Where this is used redundant rows are consistent, so that least squares satisfies all rows.
     """
 
     def __init__(self, steps: tuple[Step, ...], J: Floats) -> None:
         self._steps, self._rows, self._n = steps, J.shape[1], J.shape[2]
         work = np.moveaxis(J, 0, -1)
-        # Of every step: its reflection I - u u^T (T last), and its row of R, the diagonal first.
+        # For every step: its reflection I - u u^T (T last), and its row of R, the diagonal first.
         self._reflections, self._R = list[Floats](), list[Floats]()
         for step in steps:
-            where = np.ix_(step.rows, step.columns)
-            front = work[where]
+            block = np.ix_(step.rows, step.columns)
+            front = work[block]
             u = _reflection(front[:, 0])
             front -= u[:, None] * _total(u[:, None] * front)
-            work[where] = front
+            work[block] = front
             self._reflections.append(u)
             self._R.append(front[0])
 
     @property
     def spare(self) -> int:
-        """Number of rows more than columns."""
+        """Excess of rows over columns, the dimension of the null space of J^T."""
         return int(self._rows - self._n)
 
     @cached_property
     def _pivots(self) -> Ints:
-        """(columns,) rows that keep a column, in the order of the steps."""
+        """Rows that keep a column, (columns,), in the order of the steps."""
         return np.array([step.rows[0] for step in self._steps], dtype=np.int64)
 
-    def _into(self, b: Floats) -> Floats:
+    def _apply_q_transposed(self, b: Floats) -> Floats:
         """Q^T b for b (rows, ..., T), in place."""
         for step, u in zip(self._steps, self._reflections, strict=True):
             _reflect(b, step.rows, u)
         return b
 
-    def _back(self, y: Floats) -> Floats:
+    def _apply_q(self, y: Floats) -> Floats:
         """Q y for y (rows, ..., T), in place."""
         for step, u in zip(reversed(self._steps), reversed(self._reflections), strict=True):
             _reflect(y, step.rows, u)
         return y
 
     def solve(self, b: Floats) -> Floats:
-        """x (T, columns) of J x = b (T, rows)."""
-        y = self._into(np.array(b.T, order="C"))
+        """The least-squares solution x (T, columns) of J x = b (T, rows)."""
+        y = self._apply_q_transposed(np.array(b.T, order="C"))
         x = np.empty((self._n, len(b)))
         for step, row in zip(reversed(self._steps), reversed(self._R), strict=True):
             column, others = step.columns[0], step.columns[1:]
             rest = y[step.rows[0]] - _total(row[1:] * x[others])
-            x[column] = _over(rest, row[0])
+            x[column] = _divided(rest, row[0])
         return np.ascontiguousarray(x.T)
 
     def solve_transposed(self, g: Floats) -> Floats:
-        """The shortest y (T, rows) of J^T y = g (T, columns)."""
-        left = np.array(g.T, order="C")
+        """The shortest solution y (T, rows) of J^T y = g (T, columns)."""
+        rest = np.array(g.T, order="C")
         y = np.zeros((self._rows, len(g)))
         for step, row in zip(self._steps, self._R, strict=True):
             column, others = step.columns[0], step.columns[1:]
-            y[step.rows[0]] = _over(left[column], row[0])
-            left[others] -= row[1:] * y[step.rows[0]]
-        return np.ascontiguousarray(self._back(y).T)
+            y[step.rows[0]] = _divided(rest[column], row[0])
+            rest[others] -= row[1:] * y[step.rows[0]]
+        return np.ascontiguousarray(self._apply_q(y).T)
 
     @cached_property
     def null(self) -> Floats:
-        """(T, rows, spare) orthonormal y with J^T y = 0."""
+        """Orthonormal vectors (T, rows, spare) y with J^T y = 0."""
         free = np.setdiff1d(np.arange(self._rows), self._pivots)
         y = np.zeros((self._rows, self.spare, self._diagonal.shape[1]))
         y[free, np.arange(self.spare)] = 1.0
-        return np.moveaxis(self._back(y), -1, 0)
+        return np.moveaxis(self._apply_q(y), -1, 0)
 
     @cached_property
     def _diagonal(self) -> Floats:
-        """(columns, T) of R, in the order of the steps."""
+        """Diagonal of R, (columns, T), in the order of the steps."""
         return np.stack([row[0] for row in self._R])
 
     @cached_property
     def weakest(self) -> Floats:
-        """(T,) smallest over largest pivot: tiny where J loses rank."""
+        """Smallest over largest pivot, (T,), which is tiny where J loses rank."""
         pivots = np.abs(self._diagonal)
         return np.asarray(pivots.min(axis=0) / pivots.max(axis=0))
 
-    def _scaled(self, x: Floats) -> Floats:
-        """R^T R x for x (columns, T)."""
+    def _apply_gram(self, x: Floats) -> Floats:
+        """R^T R x, which is J^T J x, for x (columns, T)."""
         out = np.zeros_like(x)
         for step, row in zip(self._steps, self._R, strict=True):
             out[step.columns] += row * _total(row * x[step.columns])
         return out
 
-    def _unscaled(self, x: Floats) -> Floats:
-        """(R^T R)^-1 x for x (columns, T), in place."""
+    def _solve_gram(self, x: Floats) -> Floats:
+        """The solution (R^T R)^-1 x for x (columns, T), in place."""
         for step, row in zip(self._steps, self._R, strict=True):
-            x[step.columns[0]] = _over(x[step.columns[0]], row[0])
+            x[step.columns[0]] = _divided(x[step.columns[0]], row[0])
             x[step.columns[1:]] -= row[1:] * x[step.columns[0]]
         for step, row in zip(reversed(self._steps), reversed(self._R), strict=True):
             column, others = step.columns[0], step.columns[1:]
-            x[column] = _over(x[column] - _total(row[1:] * x[others]), row[0])
+            x[column] = _divided(x[column] - _total(row[1:] * x[others]), row[0])
         return x
 
     def condition(self) -> Floats:
-        """(T,) largest over smallest singular value of J, by powers of R^T R and of its inverse;
-        NaN where these do not settle soon.
-        """
-        largest, smallest = self._power(self._scaled), self._power(self._unscaled)
-        return np.sqrt(largest * smallest)
+        """Condition number of J, (T,), largest over smallest singular value.
 
-    def _power(self, apply: Callable[[Floats], Floats]) -> Floats:
-        """(T,) largest eigenvalue of a symmetric operator; NaN where it does not settle."""
+        It follows by the power method for R^T R and its inverse; NaN where that does not converge
+        within MAX_POWER_ROUNDS.
+        """
+        largest = self._largest_eigenvalue(self._apply_gram)
+        inverse_smallest = self._largest_eigenvalue(self._solve_gram)
+        return np.sqrt(largest * inverse_smallest)
+
+    def _largest_eigenvalue(self, apply: Callable[[Floats], Floats]) -> Floats:
+        """Largest eigenvalue of a symmetric operator, (T,), by the power method.
+
+        It is NaN where the method does not converge.
+        """
         start = np.random.default_rng(0).standard_normal((self._n, 1))
         x = np.repeat(start / np.linalg.norm(start), self._diagonal.shape[1], axis=1)
-        before, found = np.zeros(x.shape[1]), np.full(x.shape[1], np.nan)
+        before, eigenvalues = np.zeros(x.shape[1]), np.full(x.shape[1], np.nan)
         for _ in range(MAX_POWER_ROUNDS):
             x = apply(x)
             size = np.sqrt(_total(x**2))
             x /= size
-            settled = np.isnan(found) & (np.abs(size - before) <= CONDITION_TOLERANCE * size)
-            found[settled] = size[settled]  # at once: whatever other systems there are
-            if not np.isnan(found).any():
+            converged = np.abs(size - before) <= CONDITION_TOLERANCE * size
+            new = np.isnan(eigenvalues) & converged
+            eigenvalues[new] = size[new]  # at once, so that other systems do not matter
+            if not np.isnan(eigenvalues).any():
                 break
             before = size
-        return found
+        return eigenvalues
 
-    def turn_to(self, J: Floats) -> Floats:
-        """(T,) determinant of another J seen in this one's range: its sign changes where J loses
-        rank between the two.
+    def orientation(self, J: Floats) -> Floats:
+        """Determinant, (T,), of another J projected on the range of this one.
+
+        It is positive if the two agree in orientation; a negative sign shows that J has lost rank
+        between them.
         """
         columns = np.array([step.columns[0] for step in self._steps])
-        seen = self._into(np.array(np.moveaxis(J, 0, -1), order="C"))[self._pivots][:, columns]
-        here = np.prod(np.sign(self._diagonal), axis=0)
-        return np.asarray(here * np.linalg.det(np.moveaxis(seen, -1, 0)))
+        rotated = self._apply_q_transposed(np.array(np.moveaxis(J, 0, -1), order="C"))
+        projected = rotated[self._pivots][:, columns]
+        sign = np.prod(np.sign(self._diagonal), axis=0)
+        return np.asarray(sign * np.linalg.det(np.moveaxis(projected, -1, 0)))
 
 
 def _reflection(x: Floats) -> Floats:
-    """u (r, T) for which I - u u^T turns x (r, T) onto its first row."""
+    """The vector u (r, T) for which I - u u^T reflects x (r, T) onto its first row."""
     if len(x) == 1:
         return np.zeros_like(x)
     u = x.copy()
@@ -200,20 +218,20 @@ def _reflection(x: Floats) -> Floats:
 
 
 def _reflect(b: Floats, rows: Ints, u: Floats) -> None:
-    """b (rows, ..., T) with some of its rows reflected."""
+    """Reflect some of the rows of b (rows, ..., T) in place, by I - u u^T."""
     if len(rows) > 1:
         u = u.reshape(len(u), *(1,) * (b.ndim - 2), -1)
-        part = b[rows]
-        b[rows] = part - u * _total(u * part)
+        front = b[rows]
+        b[rows] = front - u * _total(u * front)
 
 
 def _total(x: Floats) -> Floats:
-    """Sum over the first axis, in its order: the same bits however many systems there are."""
+    """Sum over the first axis, in its order: the same bits whatever the number of systems."""
     return reduce(np.add, x, np.zeros(x.shape[1:]))
 
 
-def _over(a: Floats, pivot: Floats) -> Floats:
-    """a / pivot. Raises: LinAlgError where a pivot is zero, as LAPACK would."""
+def _divided(a: Floats, pivot: Floats) -> Floats:
+    """The quotient a / pivot. Raises: LinAlgError where a pivot is zero, as LAPACK would."""
     if not pivot.all():
         raise np.linalg.LinAlgError("singular matrix")
     return a / pivot

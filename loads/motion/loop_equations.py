@@ -1,17 +1,17 @@
 """The loop equations of a planar linkage, assembled from its data, for all instants at once.
 
-Bodies hang on the ground in a tree of connections and sliders; every connection or slider beyond
-the tree closes a loop. Bodies that slide on each other turn together: they share one frame. With
-u = exp(i angle) of each frame and x = extension of each slider since the drawing, every point of
-the linkage is, in complex numbers, a sum of fixed vectors that turn with frames and slide along
-axes,
+A spanning tree of connections and sliders joins all bodies to the ground; every connection or
+slider beyond the tree closes a loop. Bodies that slide on each other rotate together: they share a
+frame. With u = exp(i angle) of each frame and x = extension of each slider since the drawing, the
+position of every point of the linkage is, in complex numbers, a sum of fixed vectors that rotate
+with frames and slide along axes,
 
     z = sum over frames of u A + sum over sliders of x u_f e B,
 
 so a loop equation is a vanishing sum of the same kind (the vector loop of the textbooks, e.g.
-Norton, Design of Machinery, ch. 4 and 6), and its derivatives are written down at once. The
-coordinates are the frames' angles and the sliders' extensions: a few per linkage, however many
-bodies and pins it has. Angles are scaled by a typical length, so that all columns are lengths.
+Norton, Design of Machinery, ch. 4 and 6), and its derivatives are explicit. The coordinates are the
+frames' angles and the sliders' extensions, which are few, however many bodies and pins there are.
+Angles are scaled by a typical length, so that all columns are lengths.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from loads.motion.least_squares import Factors, Step, elimination
 from loads.motion.spanning_tree import LENGTH_ROUND_OFF, ends_of, frames, shortest, spanning_tree
 from pinbase.arrays import Complex, Floats, Ints
 
-MATRIX_BATCH_ENTRIES = 2**20  # entries of the matrices of a batch of instants: 8 MB
+MATRIX_BATCH_ENTRIES = 2**20  # in the matrices of a batch of instants: 8 MB
 
 
 def number(point: Point) -> complex:
@@ -36,18 +36,22 @@ def number(point: Point) -> complex:
 
 
 def pairs(z: Complex) -> Floats:
-    """Complex numbers (...) as x, y (..., 2)."""
+    """Components x, y (..., 2) of complex numbers (...)."""
     return np.stack([z.real, z.imag], axis=-1)
 
 
 def cross(a: Complex, b: Complex) -> Floats:
-    """Moment of forces b at arms a."""
+    """Cross product of complex vectors, such as the moment of forces b at arms a."""
     return np.asarray(a.real * b.imag - a.imag * b.real)
 
 
 @dataclass(frozen=True)
 class Points:
-    """N points (or closures) as sums: turning (F, N) complex, m; sliding (S, N), 0 or +-1."""
+    """N points (or gaps of loops) as sums of vectors that rotate and slide.
+
+    turning: (F, N) complex, m, A of every frame.
+    sliding: (S, N) B of every slider, 0 or +-1.
+    """
 
     turning: Complex
     sliding: Floats
@@ -58,8 +62,11 @@ class Points:
 
 @dataclass(frozen=True)
 class Pose:
-    """Coordinates at T instants. turn: (T, F) u of every frame, the ground's first. axis: (T, S)
-    directions of the sliders. extension: (T, S) m since the drawing.
+    """The position of a linkage at T instants.
+
+    turn: (T, F) u of every frame, the ground's first.
+    axis: (T, S) directions of the sliders, complex unit vectors.
+    extension: (T, S) m, of the sliders since the drawing.
     """
 
     turn: Complex
@@ -73,11 +80,11 @@ class Pose:
 class Loops:
     """The loop and drive equations of one linkage.
 
-    Coordinates q (T, n): angles (rad) of the frames but the ground's, then extensions (m). Rows:
-    two per closure (x, then y, of all closures), one per pair of teeth, then one per drive. The
-    multiplier of a closure is the force of the pin on the body (of the base on the moving body) in
-    N; that of teeth the force on the first body along the pitch circle; that of a drive's row is
-    its force, or its torque over the length scale.
+    Coordinates q (T, n) are the angles (rad) of all frames but the ground's, then extensions (m).
+    Rows are two per closure (x of all closures, then y), one per pair of teeth, and one per drive.
+    The multiplier of a closure is the force of the pin on the body (of the base on the moving
+    body), N; that of teeth the force on the first body along the pitch circle, N; that of a drive
+    its force, or its torque over the length scale, N.
     """
 
     def __init__(self, linkage: Linkage) -> None:
@@ -104,29 +111,29 @@ class Loops:
 
     @property
     def guides(self) -> int:
-        """Number of equations but the drives'."""
+        """Number of equations without the drives'."""
         return 2 * len(self.closing) + len(self.linkage.teeth)
 
     def parts(self, count: int) -> list[slice]:
-        """Slices of so many instants that matrices of all instants of one take little memory."""
-        each = max(1, MATRIX_BATCH_ENTRIES // max(1, self.rows * self.columns))
-        return [slice(k, min(k + each, count)) for k in range(0, max(count, 1), each)]
+        """Slices that divide `count` instants into batches whose matrices take little memory."""
+        size = max(1, MATRIX_BATCH_ENTRIES // max(1, self.rows * self.columns))
+        return [slice(k, min(k + size, count)) for k in range(0, max(count, 1), size)]
 
     @cached_property
     def scale(self) -> Floats:
-        """(n,) length per unit of each coordinate: m for an angle, 1 for an extension."""
+        """Length per unit of each coordinate, (n,): m for an angle, 1 for an extension."""
         out = np.ones(self.columns)
         out[: self.frames - 1] = self.linkage.length_scale
         return out
 
     @cached_property
     def slider_frame(self) -> Ints:
-        """(S,) frame with which each slider turns."""
+        """Frame with which each slider rotates, (S,)."""
         index = self.linkage.index
         return np.array([self.frame[index[s.base]] for s in self.linkage.sliders], dtype=np.int64)
 
     def along(self, drive: Slider | Turn) -> Floats:
-        """(n,) how a drive's value depends on the coordinates, angles times the length scale."""
+        """Derivative (n,) of a drive's value by the coordinates, both scaled to lengths."""
         row = np.zeros(self.columns)
         if isinstance(drive, Slider):
             row[self.frames - 1 + self.linkage.sliders.index(drive)] = 1.0
@@ -146,7 +153,7 @@ class Loops:
         return self.unit(self.linkage.drives[k])
 
     def points(self, items: Ints, drawn: Complex) -> Points:
-        """Points of items at their drawn places (N,)."""
+        """Points of items. items: (N,) numbers. drawn: (N,) positions as drawn, complex, m."""
         turning = self._root[:, items].copy()
         turning[self.frame[items], np.arange(len(items))] += drawn
         return Points(turning, self._slid[:, items])
@@ -160,7 +167,7 @@ class Loops:
     # --- kinematics -------------------------------------------------------------------------------
 
     def pose(self, q: Floats) -> Pose:
-        """The pose of coordinates (T, n)."""
+        """The position of the linkage at coordinates q (T, n)."""
         angles = self.frames - 1
         turn = np.ones((len(q), self.frames), dtype=complex)
         np.exp(1j * q[:, :angles], out=turn[:, 1:])
@@ -168,43 +175,48 @@ class Loops:
         return Pose(turn, turn[:, self.slider_frame] * drawn, q[:, angles:])
 
     def place(self, pose: Pose, points: Points) -> Complex:
-        """Positions (T, N)."""
+        """Positions of points, (T, N) complex, m."""
         return np.asarray(
             pose.turn @ points.turning + (pose.axis * pose.extension) @ points.sliding
         )
 
     def partials(self, pose: Pose, points: Points) -> Complex:
-        """Derivatives of the positions by the coordinates, (T, n, N)."""
+        """Derivatives of the positions of points by the coordinates, (T, n, N) complex."""
         angles = self.frames - 1
         out = np.empty((len(pose.turn), self.columns, points.turning.shape[1]), dtype=complex)
         out[:, :angles] = pose.turn[:, 1:, None] * (1j * points.turning[1:])
         out[:, angles:] = pose.axis[:, :, None] * points.sliding
+        # A frame also rotates the axes of the sliders on it.
         for s, f in enumerate(self.slider_frame):
             if f:
                 out[:, f - 1] += (1j * pose.extension[:, s, None]) * out[:, angles + s]
         return out
 
     def velocities(self, pose: Pose, rates: Floats, points: Points) -> Complex:
-        """Velocities (T, N) of points at rates (T, n): `partials` times the rates."""
+        """Velocities of points, (T, N) complex, at rates (T, n): `partials` times the rates."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
         slide = rates[:, angles:] + 1j * omega[:, self.slider_frame] * pose.extension
-        turned = (1j * omega * pose.turn) @ points.turning
-        return np.asarray(turned + (pose.axis * slide) @ points.sliding)
+        rotating = (1j * omega * pose.turn) @ points.turning
+        return np.asarray(rotating + (pose.axis * slide) @ points.sliding)
 
     def along_coordinates(self, pose: Pose, forces: Complex, points: Points) -> Floats:
-        """Forces along the coordinates (T, n) that do the work of forces (T, N) on points."""
-        turned = np.conj(1j * pose.turn) * (forces @ np.conj(points.turning).T)
-        slid = np.conj(pose.axis) * (forces @ points.sliding.T)
-        out = np.concatenate([turned.real[:, 1:], slid.real], axis=1)
+        """Generalised forces (T, n) that do the same work as forces (T, N) N on points."""
+        on_frames = np.conj(1j * pose.turn) * (forces @ np.conj(points.turning).T)
+        on_sliders = np.conj(pose.axis) * (forces @ points.sliding.T)
+        out = np.concatenate([on_frames.real[:, 1:], on_sliders.real], axis=1)
+        # Forces across a slider's axis turn the frame that carries it.
         for s, f in enumerate(self.slider_frame):
             if f:
-                out[:, f - 1] += pose.extension[:, s] * slid.imag[:, s]
+                out[:, f - 1] += pose.extension[:, s] * on_sliders.imag[:, s]
         return out
 
     def bends(self, pose: Pose, rates: Floats, points: Points) -> Complex:
-        """The part of the accelerations that is quadratic in the rates, (T, N)."""
+        """Part of the points' accelerations that is quadratic in the rates (T, n), (T, N) complex.
+
+        It consists of centripetal and Coriolis accelerations.
+        """
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
@@ -215,7 +227,10 @@ class Loops:
     # --- the equations ----------------------------------------------------------------------------
 
     def residual(self, q: Floats, pose: Pose, drives: Floats) -> Floats:
-        """Violation of every equation, (T, rows), m; drives (T, D) their values."""
+        """Violation of every equation, (T, rows) m, at coordinates q (T, n) and their pose.
+
+        drives: (T, D) values of the drives, m or rad.
+        """
         gap = self.place(pose, self.closures)
         lag = (q * self.scale) @ self._fixed_rows.T
         for k in range(drives.shape[1]):
@@ -225,9 +240,10 @@ class Loops:
         return np.concatenate([gap.real, gap.imag, lag], axis=1)
 
     def jacobian(self, pose: Pose) -> Floats:
-        """Derivative of the residual by the scaled coordinates, (T, rows, n), no unit."""
+        """Derivatives of the residual by the scaled coordinates, (T, rows, n), dimensionless."""
         angles, count = self.frames - 1, len(self.closing)
-        J = np.zeros((self.rows, self.columns, len(pose.turn)))  # instants last: few are not zero
+        # Instants come last: the few nonzeros of the pattern are then contiguous.
+        J = np.zeros((self.rows, self.columns, len(pose.turn)))
 
         def add(rows: Ints, columns: Ints | int, slopes: Complex) -> None:
             J[rows, columns] += slopes.real
@@ -246,11 +262,12 @@ class Loops:
         return np.moveaxis(J, -1, 0)
 
     def factors(self, pose: Pose) -> Factors:
-        """Of the Jacobian at T instants."""
+        """Orthogonal factors of the Jacobian at T instants."""
         return Factors(self._elimination, self.jacobian(pose))
 
     @cached_property
     def _elimination(self) -> tuple[Step, ...]:
+        """The steps of elimination for the Jacobian's pattern of nonzeros."""
         turns, slides = self.closures.turning[1:] != 0.0, self.closures.sliding != 0.0
         for s, f in enumerate(self.slider_frame):
             if f:
@@ -260,29 +277,33 @@ class Loops:
         return elimination(pattern)
 
     def drive_side(self, values: Floats) -> Floats:
-        """Right-hand side (T, rows) that gives the drives these rates (T, D)."""
+        """Right-hand side (T, rows) for drives with these rates (T, D)."""
         out = np.zeros((len(values), self.rows))
         for k in range(values.shape[1]):
             out[:, self.guides + k] = self.drive_scale(k) * values[:, k]
         return out
 
     def bend_side(self, pose: Pose, rates: Floats) -> Floats:
-        """(T, rows) what accelerations must make up for; nothing in the rows of teeth and drives,
-        which are linear in the coordinates.
+        """Right-hand side (T, rows) from the accelerations that are quadratic in rates (T, n).
+
+        It is zero in the rows of teeth and drives, which are linear in the coordinates.
         """
         bend = self.bends(pose, rates, self.closures)
-        nothing = np.zeros((len(rates), len(self._fixed_rows)))
-        return -np.concatenate([bend.real, bend.imag, nothing], axis=1)
+        zero = np.zeros((len(rates), len(self._fixed_rows)))
+        return -np.concatenate([bend.real, bend.imag, zero], axis=1)
 
     # --- assembly ---------------------------------------------------------------------------------
 
     def _chains(self) -> tuple[Complex, Floats]:
-        """Where each item's drawn origin is: turning (F, items + ground), sliding (S, ...)."""
+        """The points of the items at the drawing's origin: (F, items + ground) and (S, ...).
+
+        They are `turning` and `sliding` as of Points.
+        """
         linkage = self.linkage
         count = len(linkage.index)
         turning = np.zeros((self.frames, count), dtype=complex)
         sliding = np.zeros((len(linkage.sliders), count))
-        # Edges come from the ground outwards, so each adds to what lies nearer to the ground.
+        # Each edge displaces all items beyond it, seen from the ground.
         for edge in self.tree:
             ends = ends_of(linkage, edge.slides, edge.which)
             outer, inner = ends if edge.forward else ends[::-1]
@@ -297,8 +318,10 @@ class Loops:
 
     @cached_property
     def closing_ends(self) -> tuple[Ints, Ints, Complex]:
-        """Of every closure, then of all teeth, the items on which its force acts (the body) and
-        reacts (the carrier), and its drawn place.
+        """Items at the two ends of every closure, then of all teeth, and its position as drawn.
+
+        The force of the closure acts on the first item (the body) and reacts on the second (what
+        carries it). Positions are complex, m.
         """
         linkage, index = self.linkage, self.linkage.index
         ends = [ends_of(linkage, *c) for c in self.closing]
@@ -311,14 +334,16 @@ class Loops:
 
     @cached_property
     def closing_points(self) -> Points:
-        """Where the forces at closures and teeth act: a pitch point is fixed in its carrier."""
+        """Points at which the forces of closures and teeth act; a pitch point is of the carrier."""
         acts, _, at = self.closing_ends
         carriers = [self.linkage.index[t.carrier] for t in self.linkage.teeth]
         return self.points(np.array([*acts[: len(self.closing)], *carriers], dtype=np.int64), at)
 
     def closing_forces(self, pose: Pose, f: Floats, spread: Floats | None = None) -> Complex:
-        """(T, closing and teeth) forces at the members that close loops and at teeth, from
-        multipliers (T, rows). spread: (T, teeth) N by which teeth push each other apart.
+        """Forces at the members that close loops and at teeth, (T, closing and teeth) N, complex.
+
+        f: (T, rows) multipliers.
+        spread: (T, teeth) N, radial forces that push teeth apart.
         """
         k = len(self.closing)
         closing = (f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T
@@ -331,20 +356,21 @@ class Loops:
 
     @cached_property
     def _gap_weights(self) -> Floats:
+        """Motion of the teeth per gap at the members that close loops, (teeth, closing)."""
         return gap_weights(self.linkage, self.closing)
 
     @cached_property
     def closures(self) -> Points:
-        """The loops' equations: sums and differences of the gaps, with few nonzeros."""
+        """The loop equations, as sums and differences of the gaps with few nonzeros."""
         turning, sliding = self.gaps.turning @ self._combined, self.gaps.sliding @ self._combined
         turning[np.abs(turning) < LENGTH_ROUND_OFF * self.linkage.length_scale] = 0.0
         return Points(turning, sliding)
 
     def _gaps(self) -> Points:
-        """By how much each member that closes a loop leaves it open."""
+        """The gap of each member that closes a loop, which vanishes where the loop is closed."""
         body, carrier, at = self.closing_ends
-        own = slice(len(self.closing))
-        gap = self.points(body[own], at[own]) - self.points(carrier[own], at[own])
+        members = slice(len(self.closing))  # without the teeth
+        gap = self.points(body[members], at[members]) - self.points(carrier[members], at[members])
         for k, (slides, which) in enumerate(self.closing):
             if slides:
                 gap.sliding[which, k] -= 1.0

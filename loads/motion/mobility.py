@@ -1,4 +1,4 @@
-"""Rank of the loop equations: is every body constrained, which connections are redundant."""
+"""Mobility by the rank of the loop equations: unconstrained bodies and redundant connections."""
 
 from __future__ import annotations
 
@@ -13,17 +13,19 @@ from loads.motion.joint_forces import connection_members
 from loads.motion.loop_equations import Loops, Pose
 from pinbase.arrays import Floats
 
-MIN_PARTICIPATION = 1e-6  # of the largest part in a null vector
+MIN_PARTICIPATION = 1e-6  # of the largest component of a null vector
 
 
 @dataclass(frozen=True)
 class Mobility:
     """Degrees of freedom and redundancy in the drawn position.
 
-    kutzbach: degrees of freedom by counting links and joints. degrees: by rank, without drives.
-    free: motions that remain with the drives locked (0 when the position is determined). loose:
-    bodies that move in them. redundant: number of redundant equations. shared: connections
-    whose force rigid-body statics does not determine.
+    kutzbach: degrees of freedom by counting links and joints.
+    degrees: degrees of freedom by rank, without drives.
+    free: degrees of freedom that remain with the drives locked; 0: the position is determined.
+    loose: bodies that can move then.
+    redundant: number of redundant equations.
+    shared: connections whose force rigid-body statics does not determine.
     """
 
     kutzbach: int
@@ -35,28 +37,31 @@ class Mobility:
 
 
 def mobility(linkage: Linkage) -> Mobility:
-    """Mobility and redundancy as drawn. Raises: LinkageError for bodies joined to nothing."""
+    """Mobility and redundancy as drawn.
+
+    Raises: LinkageError for bodies that are not joined to the ground.
+    """
     loops = Loops(linkage)
     pose = loops.pose(np.zeros((1, loops.columns)))
     J = loops.jacobian(pose)[0]
     left, singular, right = np.linalg.svd(J)
-    found = rank(singular)
+    equations = rank(singular)
     guided = J[: loops.guides]
-    free = right[found:]
+    free = right[equations:]
     return Mobility(
         kutzbach=kutzbach(linkage),
         degrees=loops.columns - rank(np.linalg.svd(guided, compute_uv=False)),
         free=len(free),
         loose=moving_bodies(loops, pose, free / loops.scale),
-        redundant=len(J) - found,
-        shared=stressed_connections(loops, pose, left[:, found:]),
+        redundant=len(J) - equations,
+        shared=stressed_connections(loops, pose, left[:, equations:]),
     )
 
 
 def kutzbach(linkage: Linkage) -> int:
-    """Degrees of freedom by count: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
+    """Degrees of freedom by Kutzbach: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
 
-    A pin on which k links meet counts k - 1 times; particles do not count.
+    A pin at which k links meet counts k - 1 times; particles do not count.
     """
     links = {b.name for b in linkage.bodies if not is_particle(linkage, b.name)} | {GROUND}
     pins = 0
@@ -67,7 +72,7 @@ def kutzbach(linkage: Linkage) -> int:
 
 
 def is_particle(linkage: Linkage, name: str) -> bool:
-    """Whether a body hangs on its connection as a particle."""
+    """Whether a body is a particle at its connection."""
     body = next(b for b in linkage.bodies if b.name == name)
     slides = any(name in (s.base, s.moving) for s in linkage.sliders)
     return body.inertia is None and not slides
@@ -76,8 +81,11 @@ def is_particle(linkage: Linkage, name: str) -> bool:
 def moving_bodies(
     loops: Loops, pose: Pose, rates: Floats, least: float = MIN_PARTICIPATION
 ) -> tuple[str, ...]:
-    """Bodies that take part in motions given as rates (k, n) at one pose; `least`: how fast, of
-    the fastest.
+    """Names of the bodies that move in any of k motions.
+
+    pose: at a single instant.
+    rates: (k, n) of the coordinates.
+    least: speed of a body that moves, relative to the fastest.
     """
     if not len(rates):
         return ()
@@ -95,42 +103,45 @@ def moving_bodies(
 
 
 def stressed_connections(loops: Loops, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
-    """Connections and teeth that take part in self-equilibrated forces at one pose: multipliers
-    (rows, k).
+    """Names of the connections and teeth that carry any of k sets of self-equilibrated forces.
+
+    pose: at a single instant.
+    multipliers: (rows, k).
     """
     closing = loops.closing_forces(pose, multipliers.T)
     if not closing.size:
         return ()
-    nothing = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
-    forces = connection_members(loops).forces(nothing, closing)
+    no_forces = np.zeros((len(closing), len(loops.linkage.items)), dtype=complex)
+    forces = connection_members(loops).forces(no_forces, closing)
     size = np.abs(np.hstack([forces, closing[:, len(loops.closing) :]])).max(axis=0)
     names = [name for name, _ in loops.linkage.forces]
     return tuple(n for n, f in zip(names, size, strict=True) if f > MIN_PARTICIPATION * size.max())
 
 
 def require_determined(linkage: Linkage) -> Mobility:
-    """The mobility, provided that the drives determine every position.
+    """The mobility of a linkage whose drives determine every position.
 
-    Raises: LinkageError naming the bodies that can still move.
+    Raises: LinkageError where they do not, with the bodies that can still move; for too many
+    drives; and for sharing rules without effect.
     """
-    found = mobility(linkage)
-    if 0 < found.degrees < len(linkage.driven):
+    freedom = mobility(linkage)
+    if 0 < freedom.degrees < len(linkage.driven):
         raise LinkageError(
-            f"{len(linkage.driven)} drives ({', '.join(linkage.driven)}) for {found.degrees} "
+            f"{len(linkage.driven)} drives ({', '.join(linkage.driven)}) for {freedom.degrees} "
             "degree(s) of freedom: remove one",
             "too-many-drives",
             ("drive",),
         )
-    if found.free:
-        raise _unguided(linkage, found)
-    if wrong := list(_idle_sharing(linkage, found)):
-        raise LinkageError.all(wrong)
-    return found
+    if freedom.free:
+        raise _unconstrained(linkage, freedom)
+    if errors := list(_idle_sharing(linkage, freedom)):
+        raise LinkageError.all(errors)
+    return freedom
 
 
-def _unguided(linkage: Linkage, found: Mobility) -> LinkageError:
-    """Why bodies can move with the drives locked: the position as drawn, or a missing part."""
-    loose = ", ".join(found.loose)
+def _unconstrained(linkage: Linkage, freedom: Mobility) -> LinkageError:
+    """The error of bodies that can move with the drives locked: singular as drawn, or unguided."""
+    loose = ", ".join(freedom.loose)
     match singular_as_drawn(Loops(linkage)):
         case "change point":
             return LinkageError(
@@ -146,21 +157,22 @@ def _unguided(linkage: Linkage, found: Mobility) -> LinkageError:
                 "dead-point",
             )
     return LinkageError(
-        f"with the drives locked the linkage still has {found.free} degree(s) of freedom: {loose} "
-        "can move; add the missing connection or drive",
+        f"with the drives locked the linkage still has {freedom.free} degree(s) of freedom: "
+        f"{loose} can move; add the missing connection or drive",
         "underconstrained",
     )
 
 
-def _idle_sharing(linkage: Linkage, found: Mobility) -> Iterator[LinkageError]:
-    """Errors of sharing rules none of whose connections is statically indeterminate."""
+def _idle_sharing(linkage: Linkage, freedom: Mobility) -> Iterator[LinkageError]:
+    """The errors of sharing rules none of whose connections is statically indeterminate."""
     for share in linkage.sharing:
-        if set(share.connections) & set(found.shared):
+        if set(share.connections) & set(freedom.shared):
             continue
-        right = f"name some of {', '.join(found.shared)} instead" if found.shared else "remove it"
+        shared = ", ".join(freedom.shared)
+        remedy = f"name some of {shared} instead" if shared else "remove it"
         yield LinkageError(
             f"sharing over {', '.join(share.connections)} has no effect: rigid-body statics "
-            f"determines the forces there; {right}{_undriven(linkage, share.connections)}",
+            f"determines the forces there; {remedy}{_undriven(linkage, share.connections)}",
             "sharing-idle",
             ("sharing",),
         )

@@ -1,4 +1,4 @@
-"""Positions along drives: continuation that cannot jump branches, then Newton at all instants."""
+"""Positions under given drives: continuation that cannot jump branches, then Newton's method."""
 
 from __future__ import annotations
 
@@ -9,28 +9,27 @@ import numpy as np
 
 from loads.motion.least_squares import Factors
 from loads.motion.loop_equations import Loops
-from loads.motion.singular_positions import MotionBlocked, impasse
+from loads.motion.singular_positions import MotionBlocked, motion_blocked
 from pinbase.arrays import Floats
 
-NEWTON_TOLERANCE = 1e-10  # last correction, of the length scale: the error is its square
-CLOSURE_TOLERANCE = 1e-11  # largest gap of a closed loop, of the length scale
-MAX_STEP_TURN = 0.25  # rad (or length scales) that a step of the continuation may move a coordinate
-MAX_CONTRACTION_RATIO = 0.25  # each Newton correction must be at most this part of the one before
-MIN_PIVOT_RATIO = 1e-10  # pivot, of the largest: below it rank is lost
-MAX_LINE_DEVIATION = (
-    0.02  # rad (or length scales) by which a step may leave the drives' straight line
-)
+NEWTON_TOLERANCE = 1e-10  # last correction, over the length scale; the error is its square
+CLOSURE_TOLERANCE = 1e-11  # largest gap of a closed loop, over the length scale
+MAX_STEP_TURN = 0.25  # rad (or length scales) that a coordinate may move in a continuation step
+MAX_CONTRACTION_RATIO = 0.25  # largest ratio of a Newton correction to the one before
+MIN_PIVOT_RATIO = 1e-10  # smallest to largest pivot: below it rank is lost
+# rad (or length scales) that a coordinate may deviate as the drives deviate from a straight line.
+MAX_LINE_DEVIATION = 0.02
 
 Drives = Callable[[Floats], Floats]
 _COURSE_KEYS = ("start", "run", "q", "rate", "bend")
 
 
 class _Lost(Exception):
-    """Newton did not converge at once from the predicted position."""
+    """Newton's method did not converge at once from the predicted position."""
 
 
 class _Open(Exception):
-    """The equations contradict each other: the best coordinates leave loops open."""
+    """The equations contradict each other: at the best coordinates, q (n,), loops stay open."""
 
     def __init__(self, q: Floats) -> None:
         self.q = q
@@ -39,8 +38,12 @@ class _Open(Exception):
 
 @dataclass(frozen=True)
 class _Step:
-    """One step of a path: times (s), coordinates q (2, n) at its ends, with their first and second
-    rates per part of the way, as the drives go straight from `start` by `run` (D,).
+    """One step of a path, along which the drives are nearly on a straight line.
+
+    begin, end: times, s.
+    start, run: (D,) values of the drives at its start, and their change.
+    q, rate, bend: (2, n) coordinates at its ends, and their first and second derivatives by the
+    fraction of `run`.
     """
 
     begin: float
@@ -53,35 +56,41 @@ class _Step:
 
 
 class Path:
-    """Coordinates along the drives' course in time, followed from the drawn position.
+    """The coordinates as functions of time, followed from the drawn position.
 
-    Steps are so small that Newton contracts from the first iteration on and that the drives go
-    nearly straight: another branch is never in reach, and which instants are requested afterwards
-    does not matter.
+    Steps are so small that Newton's method contracts from the first iteration on and that the
+    drives are nearly on a straight line: another branch is never in reach, and the result at an
+    instant does not depend on which others are requested.
     """
 
     def __init__(self, loops: Loops, drives: Drives, grid: Floats) -> None:
-        """drives: their values (T, D) at times (T,). grid: (G,) s, rising, from the first time to
-        the last, so dense that nothing the drives do is between.
+        """Follow the drives from the drawing to their first values, then through time.
 
-        Raises: Impasse where the linkage cannot follow.
+        drives: gives their values (T, D) at times (T,) s.
+        grid: (G,) s, increasing, from the first time to the last, dense enough to show everything
+        that the drives do.
+
+        Raises: MotionBlocked where the linkage cannot follow.
         """
         self.loops, self.drives = loops, drives
         drawn, first = loops.drawn_drives, drives(grid[:1])[0]
-        way = self._follow(
+        approach = self._follow(
             np.zeros(loops.columns),
-            lambda parts: drawn + parts[:, None] * (first - drawn),
+            lambda fraction: drawn + fraction[:, None] * (first - drawn),
             np.array([0.0, 1.0]),
         )
-        steps = self._follow(way[-1].q[1], drives, grid)
+        steps = self._follow(approach[-1].q[1], drives, grid)
         self._ends = np.array([step.end for step in steps])
         self._course = [np.stack([getattr(step, key) for step in steps]) for key in _COURSE_KEYS]
         self.nodes = np.append([step.begin for step in steps], self._ends[-1])  # s
 
     def at(self, times: Floats) -> Floats:
-        """Coordinates (T, n): the quintic along the path, polished by Newton at all times at once.
+        """Coordinates (T, n) at times (T,) s.
 
-        Raises: Impasse where the linkage cannot follow.
+        They are estimated by the quintic along the path and corrected by Newton's method, at all
+        times at once.
+
+        Raises: MotionBlocked where the linkage cannot follow.
         """
         values = self.drives(times)
         guess = self._guess(times, values)
@@ -92,66 +101,83 @@ class Path:
         except (_Lost, _Open):
             order = np.argsort(times, kind="stable")
             last = order[_last_good(self.loops, guess[order], values[order])]
-            raise impasse(self.loops, guess[last], values[last], values[order[-1]]) from None
+            raise motion_blocked(self.loops, guess[last], values[last], values[order[-1]]) from None
 
     @property
     def _length(self) -> float:
+        """Length scale of the linkage, m."""
         return self.loops.linkage.length_scale
 
     def _follow(self, q: Floats, drives: Drives, grid: Floats) -> list[_Step]:
+        """The steps from coordinates q (n,) at the grid's first time to its last.
+
+        Raises: MotionBlocked.
+        """
         loops, last = self.loops, float(grid[-1])
         marks, factors = drives(grid), self._factors(q)
-        now, here, step, steps = float(grid[0]), marks[0], last - float(grid[0]), list[_Step]()
-        least = 1e-9 * step
-        while now < last or not steps:
-            end = last if step >= last - now else now + step
-            there = drives(np.array([end]))[0]
-            between = marks[(grid > now) & (grid < end)]
+        time, start, step, steps = float(grid[0]), marks[0], last - float(grid[0]), list[_Step]()
+        min_step = 1e-9 * step
+        while time < last or not steps:
+            end = last if step >= last - time else time + step
+            target = drives(np.array([end]))[0]
+            between = marks[(grid > time) & (grid < end)]
+            # Halve the step until the prediction is good enough; where that does not help, the
+            # linkage cannot follow.
             try:
-                q1 = self._next(q, factors, here, there, between)
+                q1 = self._next(q, factors, start, target, between)
             except (_Lost, _Open) as problem:
-                step = (end - now) / 2.0
-                if step < least:
+                step = (end - time) / 2.0
+                if step < min_step:
                     opened = problem.q if isinstance(problem, _Open) else None
-                    wanted = self._furthest(here, marks[grid > now])
-                    raise impasse(loops, q, here, wanted, opened) from None
+                    wanted = self._furthest(start, marks[grid > time])
+                    raise motion_blocked(loops, q, start, wanted, opened) from None
                 continue
+            # A change of sign of the determinant shows that the step passed a singular position.
             pose = loops.pose(q1[None])
-            if factors.turn_to(loops.jacobian(pose))[0] < 0.0:
-                raise self._crossed((now, end), q, q1, drives, marks[grid > now])
-            beyond = loops.factors(pose)
-            if beyond.weakest[0] < MIN_PIVOT_RATIO:
-                raise impasse(loops, q1, there, self._furthest(here, marks[grid > now]))
-            steps.append(self._step(now, end, here, there - here, (q, q1), (factors, beyond)))
+            if factors.orientation(loops.jacobian(pose))[0] < 0.0:
+                raise self._crossed((time, end), q, q1, drives, marks[grid > time])
+            factors1 = loops.factors(pose)
+            if factors1.weakest[0] < MIN_PIVOT_RATIO:
+                raise motion_blocked(loops, q1, target, self._furthest(start, marks[grid > time]))
+            steps.append(self._step(time, end, start, target - start, (q, q1), (factors, factors1)))
+            # The next step moves the fastest coordinate by almost MAX_STEP_TURN, at most doubling.
             fastest = float(np.abs(steps[-1].rate[1] * loops.scale).max()) / self._length
-            step = (end - now) * min(2.0, 0.98 * MAX_STEP_TURN / max(fastest, 1e-300))
-            now, here, q, factors = end, there, q1, beyond
+            step = (end - time) * min(2.0, 0.98 * MAX_STEP_TURN / max(fastest, 1e-300))
+            time, start, q, factors = end, target, q1, factors1
         return steps
 
     def _next(
-        self, q: Floats, factors: Factors, here: Floats, there: Floats, between: Floats
+        self, q: Floats, factors: Factors, start: Floats, target: Floats, between: Floats
     ) -> Floats:
-        """Coordinates (n,) at the drives' values `there`, which pass `between` (M, D).
+        """Coordinates (n,) at the end of a step from coordinates q (n,), with their factors.
 
-        Raises: _Lost when the step is too large.
+        start, target: (D,) values of the drives at both ends of the step.
+        between: (M, D) values that they pass.
+
+        Raises: _Lost when the step is too large; _Open.
         """
-        loops, run = self.loops, there - here
-        if not run.any() and not (between - here).any():
+        loops, run = self.loops, target - start
+        if not run.any() and not (between - start).any():
             return q
         rate = factors.solve(loops.drive_side(run[None])) / loops.scale
         moved = float(np.abs(rate * loops.scale).max()) / self._length
-        if not moved <= MAX_STEP_TURN or not self._straight(factors, between - here, run):
+        if not moved <= MAX_STEP_TURN or not self._straight(factors, between - start, run):
             raise _Lost
         if not run.any():
             return q
+        # Second-order prediction; the first Newton correction must be small against the step.
         bend = factors.solve(loops.bend_side(loops.pose(q[None]), rate)) / loops.scale
-        ahead = q + (rate + 0.5 * bend)[0]
-        return np.asarray(_newton(loops, ahead[None], there[None], 0.1 * moved * self._length)[0])
+        predicted = q + (rate + 0.5 * bend)[0]
+        max_correction = 0.1 * moved * self._length
+        return np.asarray(_newton(loops, predicted[None], target[None], max_correction)[0])
 
     def _straight(self, factors: Factors, passed: Floats, run: Floats) -> bool:
-        """Whether drives that pass (M, D), from where they are, do not leave the line to `run`."""
-        off = passed - _part(self.loops, passed, run)[:, None] * run
-        size = np.abs(factors.solve(self.loops.drive_side(off))).max(initial=0.0)
+        """Whether the drives stay near the straight line of a step.
+
+        passed: (M, D) values that they pass, relative to those at its start. run: (D,) its change.
+        """
+        deviation = passed - _fraction(self.loops, passed, run)[:, None] * run
+        size = np.abs(factors.solve(self.loops.drive_side(deviation))).max(initial=0.0)
         return bool(size <= MAX_LINE_DEVIATION * self._length)
 
     def _step(
@@ -163,6 +189,7 @@ class Path:
         q: tuple[Floats, Floats],
         factors: tuple[Factors, Factors],
     ) -> _Step:
+        """The step with the derivatives of the coordinates. q, factors: at both its ends."""
         loops = self.loops
         side = loops.drive_side(run[None])
         rate = np.concatenate([f.solve(side) for f in factors]) / loops.scale
@@ -172,17 +199,21 @@ class Path:
         return _Step(begin, end, start, run, both, rate, bend / loops.scale)
 
     def _factors(self, q: Floats) -> Factors:
+        """Factors of the equations at coordinates q (n,)."""
         return self.loops.factors(self.loops.pose(q[None]))
 
     @staticmethod
-    def _furthest(here: Floats, ahead: Floats) -> Floats:
-        """Of the drives' values ahead (M, D) those furthest from `here`: what was wanted."""
-        return np.asarray(ahead[int(np.abs(ahead - here).max(axis=1).argmax())])
+    def _furthest(start: Floats, ahead: Floats) -> Floats:
+        """Those of the drives' values ahead (M, D) that are furthest from `start` (D,)."""
+        return np.asarray(ahead[int(np.abs(ahead - start).max(axis=1).argmax())])
 
     def _crossed(
         self, times: tuple[float, float], q: Floats, q1: Floats, drives: Drives, ahead: Floats
     ) -> MotionBlocked:
-        """Where between two instants rank was lost and another path crosses, by halving."""
+        """The error at the singular position between two instants, located by bisection.
+
+        times: of the step, s. q, q1: (n,) coordinates at its ends. ahead: (M, D) drives to come.
+        """
         (low, high), (begin, end) = times, times
         at, factors = q, self._factors(q)
         for _ in range(40):
@@ -192,45 +223,54 @@ class Path:
             try:
                 between = _newton(self.loops, guess[None], drives(np.array([middle])))
             except (_Lost, _Open):
-                low, at = middle, guess  # Newton fails between two good nodes: it is here
+                low, at = middle, guess  # both ends are regular, so the singular position is here
                 break
             J = self.loops.jacobian(self.loops.pose(between))
-            if factors.turn_to(J)[0] < 0.0:
+            if factors.orientation(J)[0] < 0.0:
                 high = middle
             else:
                 low, at = middle, between[0]
         reached = drives(np.array([low]))[0]
-        return impasse(self.loops, at, reached, self._furthest(reached, ahead))
+        return motion_blocked(self.loops, at, reached, self._furthest(reached, ahead))
 
     def _guess(self, times: Floats, values: Floats) -> Floats:
-        """Coordinates near the path for drives (T, D): Hermite's quintic along each step, and the
-        rate of the step's start across it.
+        """Estimated coordinates (T, n) at times (T,) s, with the drives at `values` (T, D).
+
+        Along the straight line of a step they follow the Hermite quintic; for the drives' deviation
+        from it, the derivatives at the step's start.
         """
         loops = self.loops
         k = np.searchsorted(self._ends[:-1], times)
         start, run, q, rate, bend = (values[k] for values in self._course)
-        s = _part(loops, values - start, run)
+        s = _fraction(loops, values - start, run)
         along = _quintic(s[:, None], q, rate, bend)
-        off = values - start - s[:, None] * run
-        if not off.any():
+        deviation = values - start - s[:, None] * run
+        if not deviation.any():
             return along
         across = [
-            loops.factors(loops.pose(q[k, 0])).solve(loops.drive_side(off[k]))
+            loops.factors(loops.pose(q[k, 0])).solve(loops.drive_side(deviation[k]))
             for k in loops.parts(len(q))
         ]
         return np.asarray(along + np.concatenate(across) / loops.scale)
 
 
-def _part(loops: Loops, passed: Floats, run: Floats) -> Floats:
-    """(T,) which part of the way `run` (D,) or (T, D) drives have gone that are at (T, D)."""
+def _fraction(loops: Loops, passed: Floats, run: Floats) -> Floats:
+    """Fraction of a step, (T,) between 0 and 1, by projection of the drives on its line.
+
+    passed: (T, D) values of the drives relative to the step's start.
+    run: (D,) or (T, D) their change in the step.
+    """
     weight = np.array([loops.drive_scale(k) ** 2 for k in range(passed.shape[1])])
     length = np.sum(weight * run**2, axis=-1)
-    gone = np.sum(weight * run * passed, axis=-1)
-    return np.asarray(np.clip(gone / np.where(length > 0.0, length, 1.0), 0.0, 1.0))
+    projection = np.sum(weight * run * passed, axis=-1)
+    return np.asarray(np.clip(projection / np.where(length > 0.0, length, 1.0), 0.0, 1.0))
 
 
 def _quintic(s: Floats, q: Floats, rate: Floats, bend: Floats) -> Floats:
-    """(T, n) at parts s (T, 1) of the way, from values and rates (T, 2, n) at its ends."""
+    """Hermite quintic (T, n) at fractions s (T, 1) of a step.
+
+    q, rate, bend: (T, 2, n) values and first two derivatives at both ends.
+    """
     t = 1.0 - s
     return np.asarray(
         t**3 * (1.0 + 3.0 * s + 6.0 * s**2) * q[:, 0]
@@ -243,8 +283,13 @@ def _quintic(s: Floats, q: Floats, rate: Floats, bend: Floats) -> Floats:
 
 
 def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> Floats:
-    """Newton from q (T, n); every correction must be a part of the one before, the first below
-    `first` (m). Factors are kept while corrections fall fast.
+    """Coordinates (T, n) that satisfy the equations, by Newton's method from q (T, n).
+
+    Every correction must be at most MAX_CONTRACTION_RATIO of the one before.
+    drives: (T, D) values of the drives.
+    first: largest first correction, m.
+
+    Raises: _Lost without such contraction; _Open where the equations contradict each other.
     """
     scale = loops.linkage.length_scale
     before, factors = first / MAX_CONTRACTION_RATIO, None
@@ -268,14 +313,14 @@ def _newton(loops: Loops, q: Floats, drives: Floats, first: float = np.inf) -> F
             return q
         if size > MAX_CONTRACTION_RATIO * before and size > 1e-9 * scale:
             raise _Lost
-        if size > 1e-2 * scale:
+        if size > 1e-2 * scale:  # after a small correction the factors still serve
             factors = None
         before = size
     raise _Lost
 
 
 def _last_good(loops: Loops, guess: Floats, drives: Floats) -> int:
-    """The last instant before the first at which Newton fails by itself."""
+    """Index of the last instant before the first at which Newton's method fails on its own."""
     for t in range(len(drives)):
         try:
             _newton(loops, guess[t : t + 1], drives[t : t + 1])

@@ -1,9 +1,9 @@
-"""Quantities between the samples of a motion, by polynomials on a sufficient number of instants.
+"""Quantities between the samples of a motion, by piecewise polynomials, refined adaptively.
 
-The time is cut at its corners (where something may jump) into spans and these into panels of nine
+Time is divided at its corners (where something may jump) into spans, and these into panels of nine
 equidistant instants. A panel's polynomial must predict the eight instants halfway between, and the
-samples inside, to the tolerance; else the panel is halved. Once it does, its two halves, of nine
-instants each, are 2^9 times as accurate as that.
+samples inside, to the tolerance; else the panel is halved. Once it does, the result uses its two
+halves, of nine instants each, which are 2^9 times as accurate.
 """
 
 from __future__ import annotations
@@ -17,21 +17,16 @@ from pinbase.arrays import Floats
 
 PANEL_DEGREE = 8
 INTERPOLATION_TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
-MIN_PANELS = 16  # at least, of all the time before any is halved
-CORNER_INSET = (
-    1e-6  # of a span: so far inside its corners it is evaluated, to see one side of a jump only
-)
-CORNER_MERGE_TOLERANCE = (
-    1e-9  # of the whole time: corners this close are one; of a maximum: so is an end's value
-)
-MAXIMUM_TOLERANCE = 1e-12  # of a maximum: what is no larger than by this is not larger
-MAX_PANEL_HALVINGS = 24  # halvings of a panel
-MIN_RESOLVED_SHARE = (
-    1e-6  # of the largest of all quantities: one below it need not be resolved as finely
-)
-SEARCH_POINTS = (
-    33  # points in which a largest value is looked for, in a panel, then between two of those
-)
+MIN_PANELS = 16  # over the whole time, before any is halved
+# Of a span: it is evaluated this far inside its corners, to see only one side of a jump.
+CORNER_INSET = 1e-6
+# Of the whole time: corners this close are one. Of a maximum: so is a value this close at an end.
+CORNER_MERGE_TOLERANCE = 1e-9
+MAXIMUM_TOLERANCE = 1e-12  # of a maximum: a value larger by no more is not larger
+MAX_PANEL_HALVINGS = 24
+# Of the largest of all quantities: the tolerance of a smaller quantity is relative to this.
+MIN_RESOLVED_SHARE = 1e-6
+SEARCH_POINTS = 33  # of a search for a maximum, in a panel, then between two of these points
 
 At = Callable[[Floats], Floats]
 
@@ -40,14 +35,17 @@ _CHEBYSHEV_FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(_PANEL_NODES, 
 
 
 def _weights(x: Floats) -> Floats:
-    """(N, nodes) of the values at the nodes in the polynomial at x (N,) of [-1, 1]."""
+    """Weights (N, nodes) of the values at the nodes in the polynomial at x (N,) in [-1, 1]."""
     return np.asarray(np.polynomial.chebyshev.chebvander(x, PANEL_DEGREE) @ _CHEBYSHEV_FIT)
 
 
 @dataclass(frozen=True)
 class _Panels:
-    """P panels: the first and the last of their instants (P,), and values (P, nodes, K) there.
-    rough: (P,) whether the polynomial overshoots, so that nodes alone say how large values are.
+    """P panels with the values of K quantities.
+
+    low, high: (P,) s, first and last instants.
+    values: (P, nodes, K) at equidistant instants.
+    rough: (P,) whether the polynomial may overshoot and is limited to the range of its nodes.
     """
 
     low: Floats
@@ -57,28 +55,28 @@ class _Panels:
 
     @staticmethod
     def times(low: Floats, high: Floats, x: Floats) -> Floats:
-        """(P, N) of x (N,) of [-1, 1]."""
+        """Times (P, N) s in panels from low to high (P,) s, at x (N,) in [-1, 1]."""
         return np.asarray(0.5 * ((high + low)[:, None] + (high - low)[:, None] * x))
 
     def __getitem__(self, chosen: np.ndarray) -> _Panels:
-        parts = (self.low, self.high, self.values, self.rough)
-        return _Panels(*(part[chosen] for part in parts))
+        arrays = (self.low, self.high, self.values, self.rough)
+        return _Panels(*(array[chosen] for array in arrays))
 
     def at(self, which: np.ndarray, times: Floats) -> Floats:
-        """Values (T, K) of the polynomials of panels `which` (T,) at times (T,)."""
+        """Values (T, K) of the polynomials of panels `which` (T,) at times (T,) s."""
         low, high = self.low[which], self.high[which]
         weights = _weights((2.0 * times - low - high) / (high - low))
-        found = np.empty((len(times), self.values.shape[2]))
+        out = np.empty((len(times), self.values.shape[2]))
         order = np.argsort(which, kind="stable")
         cuts = np.flatnonzero(np.diff(which[order])) + 1
-        for here in np.split(order, cuts) if len(order) else ():
-            nodes, rough = self.values[which[here[0]]], self.rough[which[here[0]]]
-            values = weights[here] @ nodes
-            found[here] = np.clip(values, nodes.min(axis=0), nodes.max(axis=0)) if rough else values
-        return found
+        for rows in np.split(order, cuts) if len(order) else ():
+            nodes, rough = self.values[which[rows[0]]], self.rough[which[rows[0]]]
+            values = weights[rows] @ nodes
+            out[rows] = np.clip(values, nodes.min(axis=0), nodes.max(axis=0)) if rough else values
+        return out
 
     def halves(self, between: Floats) -> _Panels:
-        """Twice as many, from the values (P, nodes - 1, K) halfway between the nodes."""
+        """Both halves of all panels, from the values (P, nodes - 1, K) between the nodes."""
         count, nodes, quantities = self.values.shape
         both = np.empty((count, 2 * nodes - 1, quantities))
         both[:, ::2], both[:, 1::2] = self.values, between
@@ -95,11 +93,12 @@ class _Panels:
 
 @dataclass(frozen=True)
 class Resolved:
-    """K quantities over a time: polynomials between instants, which include the samples.
+    """K quantities over a time, as piecewise polynomials.
 
-    times: (N,) s, rising. values: (N, K). unresolved: (J, 2) s, where the polynomials are not as
-    accurate as requested. ends: (P + 1,) s, between which each panel's polynomial holds; at a
-    corner it is the limit from its own side.
+    times, values: (N,) s, increasing, and (N, K): all instants evaluated, with the samples.
+    unresolved: (J, 2) s, intervals in which the polynomials are less accurate than required.
+    ends: (P + 1,) s, between which each panel's polynomial holds; at a corner it has the limit from
+    its side.
     """
 
     times: Floats
@@ -110,33 +109,36 @@ class Resolved:
 
     @property
     def nodes(self) -> Floats:
-        """(N,) s, rising: the instants of all panels, between which little happens."""
+        """Instants of all panels, (N,) s, increasing, between which little happens."""
         return np.unique(_Panels.times(self.panels.low, self.panels.high, _PANEL_NODES))
 
     def quantities(self, chosen: slice) -> Resolved:
-        """Some of the quantities."""
+        """The same with only some of the quantities."""
         panels = replace(self.panels, values=self.panels.values[:, :, chosen])
         return replace(self, values=self.values[:, chosen], panels=panels)
 
     def interpolate(self, times: Floats) -> Floats:
-        """(T, K) at times (T,) s; at a corner from the side before."""
+        """Values (T, K) at times (T,) s; at a corner those before it."""
         which = np.searchsorted(self.ends, times, side="left") - 1
         return self.panels.at(np.clip(which, 0, len(self.panels.low) - 1), times)
 
     def mean(self, of: Callable[[Floats], Floats] = lambda values: values) -> Floats:
-        """(M,) mean over the time of what `of` makes (T, M) of values (T, K)."""
+        """Mean over time, (M,). of: function of values (T, K) that gives (T, M)."""
         last = self.ends[-1:]
         return np.asarray(self.integral(last, of)[0] / (last - self.ends[0]))
 
     def integral(self, times: Floats, of: Callable[[Floats], Floats]) -> Floats:
-        """(T, M) from the first time to `times` (T,) s, of what `of` makes (N, M) of values."""
+        """Integral from the first time to `times` (T,) s, (T, M), by Gauss quadrature in panels.
+
+        of: function of values (N, K) that gives (N, M).
+        """
         x, weight = np.polynomial.legendre.leggauss(2 * PANEL_DEGREE)
 
         def between(panel: np.ndarray, low: Floats, high: Floats) -> Floats:
             at = _Panels.times(low, high, x)
-            found = of(self.panels.at(np.repeat(panel, len(x)), at.ravel()))
-            parts = found.reshape(len(panel), len(x), -1) * weight[:, None]
-            return np.asarray(0.5 * (high - low)[:, None] * parts.sum(axis=1))
+            integrand = of(self.panels.at(np.repeat(panel, len(x)), at.ravel()))
+            weighted = integrand.reshape(len(panel), len(x), -1) * weight[:, None]
+            return np.asarray(0.5 * (high - low)[:, None] * weighted.sum(axis=1))
 
         whole = np.cumsum(
             between(np.arange(len(self.ends) - 1), self.ends[:-1], self.ends[1:]), axis=0
@@ -146,46 +148,46 @@ class Resolved:
         return np.asarray(before + between(k, self.ends[k], times))
 
     def largest(self, of: Callable[[Floats], Floats] = np.abs) -> tuple[Floats, Floats]:
-        """The largest of what `of` makes (T, M) of values (T, K), and its times, (M,) each; of
-        equally large ones that at an end.
+        """Largest values over time and their times, (M,) each; of equal ones that at an end.
+
+        of: function of values (T, K) that gives (T, M).
         """
         low, high = self.ends[:-1], self.ends[1:]
         x = np.linspace(-1.0, 1.0, SEARCH_POINTS)
         times = _Panels.times(low, high, x)
-        found = of(self._inside(times))
-        top = found.argmax(axis=0)
-        best, when = found[top, np.arange(len(top))], times.ravel()[top]
+        values = of(self._inside(times))
+        top = values.argmax(axis=0)
+        best, when = values[top, np.arange(len(top))], times.ravel()[top]
+        # Search more closely around the largest point; at the end of a panel, also in the next.
         panel, point = np.divmod(top, SEARCH_POINTS)
-        beyond = (point == SEARCH_POINTS - 1).astype(int) - (
-            point == 0
-        )  # at an end: it may be past that
-        for each in (panel, np.clip(panel + beyond, 0, len(low) - 1)):
-            best, when = self._near(of, best, when, each)
+        neighbour = (point == SEARCH_POINTS - 1).astype(int) - (point == 0)
+        for searched in (panel, np.clip(panel + neighbour, 0, len(low) - 1)):
+            best, when = self._near(of, best, when, searched)
         for k in (-1, 0):
-            same = found[k] >= best - CORNER_MERGE_TOLERANCE * np.abs(best)
-            best, when = np.where(same, found[k], best), np.where(same, self.ends[k], when)
+            same = values[k] >= best - CORNER_MERGE_TOLERANCE * np.abs(best)
+            best, when = np.where(same, values[k], best), np.where(same, self.ends[k], when)
         return best, when
 
     def _near(
         self, of: Callable[[Floats], Floats], best: Floats, when: Floats, panel: np.ndarray
     ) -> tuple[Floats, Floats]:
-        """The largest values (M,) and their times near those known, each in a panel (M,)."""
+        """Largest values and their times, (M,) each, near known ones, each in its panel (M,)."""
         low, high = self.ends[:-1][panel], self.ends[1:][panel]
         x, rows = np.linspace(-1.0, 1.0, SEARCH_POINTS), np.arange(len(panel))
         at, width = np.clip(when, low, high), (high - low) / (SEARCH_POINTS - 1)
         while np.any(width > 1e-9 * (self.ends[-1] - self.ends[0])):
-            here = _Panels.times(np.maximum(at - width, low), np.minimum(at + width, high), x)
-            near = of(self.panels.at(np.repeat(panel, SEARCH_POINTS), here.ravel()))
+            times = _Panels.times(np.maximum(at - width, low), np.minimum(at + width, high), x)
+            near = of(self.panels.at(np.repeat(panel, SEARCH_POINTS), times.ravel()))
             near = near.reshape(len(panel), SEARCH_POINTS, -1)[rows, :, rows]
             k = near.argmax(axis=1)
             better = near[rows, k] > best + MAXIMUM_TOLERANCE * np.abs(best)
             best = np.where(better, near[rows, k], best)
-            at, when = (np.where(better, here[rows, k], t) for t in (at, when))
-            width = width / (0.25 * (SEARCH_POINTS - 1))
+            at, when = (np.where(better, times[rows, k], t) for t in (at, when))
+            width = width / (0.25 * (SEARCH_POINTS - 1))  # two intervals on either side
         return best, when
 
     def _inside(self, times: Floats) -> Floats:
-        """Values (P N, K) at times (P, N) of each panel's own polynomial."""
+        """Values (P N, K) at times (P, N) s, each row by the polynomial of its panel."""
         return self.panels.at(np.repeat(np.arange(len(times)), times.shape[1]), times.ravel())
 
 
@@ -193,25 +195,28 @@ def resolved(
     times: Floats,
     at: At,
     corners: Floats | tuple[float, ...] = (),
-    most: int = 4096,
+    max_evaluations: int = 4096,
     groups: Sequence[int] | None = None,
     known: Floats | None = None,
 ) -> Resolved:
-    """Quantities at `times` (T,) s, increasing, and at as many instants in between as necessary.
+    """K quantities at `times` (T,) s, increasing, and at as many instants between as necessary.
 
-    at: values (T, K) at times (T,) in any order. corners: where values or their derivatives may
-    jump, s. groups: (K,) numbers of those whose tolerance is a part of the largest magnitude of
-    all in the group, by default each quantity is alone. most: evaluations after the first round;
-    what they do not resolve is in `unresolved`. known: values (T, K) at `times`, if they are.
+    at: gives the values (T, K) at times (T,) s, in any order.
+    corners: times at which values or their derivatives may jump, s.
+    max_evaluations: largest number after the first round; intervals that remain are
+    `unresolved`.
+    groups: (K,) number of each quantity's group, in which the tolerance is relative to the largest
+    magnitude of all; by default each quantity is its own group.
+    known: (T, K) values at `times`, if already known.
     """
     ends = _spans(times, corners)
-    low, high = _first(ends)
+    low, high = _first_panels(ends)
     samples, values = times, at(times) if known is None else known
     first = _Panels.times(low, high, _PANEL_NODES).ravel()
     solved = [(samples, values), (first, at(first))]
-    large = np.zeros(values.shape[1])
-    for _, found in solved:
-        large = np.maximum(large, np.abs(found).max(axis=0, initial=0.0))
+    largest = np.zeros(values.shape[1])
+    for _, known_values in solved:
+        largest = np.maximum(largest, np.abs(known_values).max(axis=0, initial=0.0))
     active = _Panels(
         low,
         high,
@@ -220,23 +225,25 @@ def resolved(
     )
     done, left = list[_Panels](), list[_Panels]()
     middle = 0.5 * (_PANEL_NODES[1:] + _PANEL_NODES[:-1])
-    halfway, used = _weights(middle), 0
+    weights, used = _weights(middle), 0
+    # In each round, evaluate all active panels halfway between their nodes: those whose polynomial
+    # predicted the values are done, the others are halved.
     for depth in range(MAX_PANEL_HALVINGS + 1):
         between = _Panels.times(active.low, active.high, middle)
-        if used and used + between.size > most:
+        if used and used + between.size > max_evaluations:
             left.append(active)
             break
-        fresh = at(between.ravel())
+        new = at(between.ravel())
         used += between.size
-        solved.append((between.ravel(), fresh))
-        large = np.maximum(large, np.abs(fresh).max(axis=0, initial=0.0))
-        scale = _scale(large, groups)
-        fresh = fresh.reshape(len(between), PANEL_DEGREE, -1)
-        off = _largest(np.abs(halfway @ active.values - fresh) / scale)
-        np.maximum.at(off, *_off_at(active, samples, values, scale))
-        good = off <= INTERPOLATION_TOLERANCE
-        done.append(active[good].halves(fresh[good]))
-        active = active[~good].halves(fresh[~good])
+        solved.append((between.ravel(), new))
+        largest = np.maximum(largest, np.abs(new).max(axis=0, initial=0.0))
+        scale = _scale(largest, groups)
+        new = new.reshape(len(between), PANEL_DEGREE, -1)
+        error = _largest(np.abs(weights @ active.values - new) / scale)
+        np.maximum.at(error, *_sample_errors(active, samples, values, scale))
+        good = error <= INTERPOLATION_TOLERANCE
+        done.append(active[good].halves(new[good]))
+        active = active[~good].halves(new[~good])
         if not len(active.low):
             break
         if depth == MAX_PANEL_HALVINGS:
@@ -245,63 +252,67 @@ def resolved(
 
 
 def _spans(times: Floats, corners: Floats | tuple[float, ...]) -> Floats:
-    """(S + 1,) ends of the spans: the first and the last time, and the corners between."""
+    """Ends of the spans, (S + 1,) s: the first and the last time, and the corners between."""
     first, last = float(times[0]), float(times[-1])
-    apart = CORNER_MERGE_TOLERANCE * (last - first)
-    inside = [c for c in sorted(corners) if first + apart < c < last - apart]
-    kept = [first]
+    min_distance = CORNER_MERGE_TOLERANCE * (last - first)
+    inside = [c for c in sorted(corners) if first + min_distance < c < last - min_distance]
+    ends = [first]
     for c in inside:
-        if c > kept[-1] + apart:
-            kept.append(float(c))
-    return np.array([*kept, last])
+        if c > ends[-1] + min_distance:
+            ends.append(float(c))
+    return np.array([*ends, last])
 
 
-def _first(ends: Floats) -> tuple[Floats, Floats]:
-    """Low and high ends of the first panels. They differ in width, so that equal steps in all of
-    them are never the period of what repeats itself.
+def _first_panels(ends: Floats) -> tuple[Floats, Floats]:
+    """Low and high ends of the first panels, (P,) s each.
+
+    Panels differ in width, so that their instants never coincide with the period of a periodic
+    quantity, which would then look constant.
     """
     count = max(1, -(-MIN_PANELS // (len(ends) - 1)))
     width = 1.0 + 0.5 * np.mod(np.arange(count) * 0.6180339887, 1.0)
-    parts = np.concatenate([[0.0], np.cumsum(width)]) / width.sum()
+    fractions = np.concatenate([[0.0], np.cumsum(width)]) / width.sum()
     inset = CORNER_INSET * np.diff(ends)
     first, last = ends[:-1] + inset, ends[1:] - inset
-    cuts = first[:, None] + (last - first)[:, None] * parts
+    cuts = first[:, None] + (last - first)[:, None] * fractions
     return cuts[:, :-1].ravel(), cuts[:, 1:].ravel()
 
 
-def _largest(off: Floats) -> Floats:
-    """(P,) of (P, N, K); none where there are no quantities."""
-    return np.asarray(off.max(axis=(1, 2), initial=0.0))
+def _largest(errors: Floats) -> Floats:
+    """Largest error of each panel, (P,), from (P, N, K); zero without quantities."""
+    return np.asarray(errors.max(axis=(1, 2), initial=0.0))
 
 
-def _scale(large: Floats, groups: Sequence[int] | None) -> Floats:
-    """(K,) what the tolerance is a part of, from the largest magnitudes (K,); one where everything
-    is zero.
+def _scale(largest: Floats, groups: Sequence[int] | None) -> Floats:
+    """Magnitudes (K,) to which the tolerance is relative; one where everything is zero.
+
+    largest: (K,) largest magnitude of each quantity.
     """
     if groups is not None:
-        of_group = np.zeros(max(groups, default=-1) + 1)
-        np.maximum.at(of_group, list(groups), large)
-        large = of_group[list(groups)]
-    large = np.maximum(large, MIN_RESOLVED_SHARE * large.max(initial=0.0))
-    return np.where(large > 0.0, large, 1.0)
+        group_largest = np.zeros(max(groups, default=-1) + 1)
+        np.maximum.at(group_largest, list(groups), largest)
+        largest = group_largest[list(groups)]
+    largest = np.maximum(largest, MIN_RESOLVED_SHARE * largest.max(initial=0.0))
+    return np.where(largest > 0.0, largest, 1.0)
 
 
-def _off_at(
+def _sample_errors(
     panels: _Panels, times: Floats, values: Floats, scale: Floats
 ) -> tuple[np.ndarray, Floats]:
-    """Panel and error of the polynomial, over the scale, at every sample inside a panel."""
+    """Panel and error of its polynomial, over the scale, at every sample inside a panel."""
     which = np.searchsorted(panels.low, times, side="right") - 1
     inside = (which >= 0) & (times < panels.high[which])
     which = which[inside]
-    off = panels.at(which, times[inside])
-    off -= values[inside]
-    off /= scale
-    return which, np.abs(off, out=off).max(axis=1, initial=0.0)
+    error = panels.at(which, times[inside])
+    error -= values[inside]
+    error /= scale
+    return which, np.abs(error, out=error).max(axis=1, initial=0.0)
 
 
 def _gathered(
     known: list[tuple[Floats, Floats]], done: list[_Panels], left: list[_Panels], ends: Floats
 ) -> Resolved:
+    """The result from all evaluations, resolved panels, panels left rough, and ends of spans."""
     times, first = np.unique(np.concatenate([t for t, _ in known]), return_index=True)
     parts = done + [replace(p, rough=np.ones(len(p.low), dtype=bool)) for p in left]
     low, high, values, rough = (
@@ -309,7 +320,7 @@ def _gathered(
     )
     panels = _Panels(low, high, values, rough)[np.argsort(low, kind="stable")]
     cuts = np.concatenate([ends[:1], 0.5 * (panels.high[:-1] + panels.low[1:]), ends[-1:]])
-    for end in ends[1:-1]:  # exactly at a corner, however its two sides were rounded
+    for end in ends[1:-1]:  # exactly at a corner, in spite of round-off on its two sides
         cuts[np.abs(cuts - end).argmin()] = end
     unresolved = [np.stack([p.low, p.high], axis=1) for p in left]
     return Resolved(
@@ -322,7 +333,7 @@ def _gathered(
 
 
 def _joined(intervals: Floats) -> Floats:
-    """Intervals (J, 2), rising, with those that touch made one."""
+    """Intervals (J, 2), increasing, in which those that touch are joined."""
     intervals = intervals[np.argsort(intervals[:, 0], kind="stable")]
     starts = np.concatenate([[True], intervals[1:, 0] > intervals[:-1, 1]])
     return np.stack([intervals[starts, 0], intervals[np.append(starts[1:], True), 1]], axis=1)

@@ -1,9 +1,9 @@
 """Positions in which a linkage cannot follow its drives: dead points, change points, open loops.
 
 In such a position the loop equations lose rank. The right null vector shows which bodies can still
-move while the drives are locked; the left one, which forces are unbounded, and whether the drive
-takes part distinguishes a dead point, past which the drive cannot go, from a change point, where
-two branches cross.
+move while the drives are locked; the left one shows which forces are unbounded. If the drive's
+force is among these, the position is a dead point, past which the drive cannot go; otherwise it is
+a change point, at which two branches cross.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ KIND_CODES: dict[Kind, str] = {
     "change point": "change-point",
     "open": "does-not-close",
 }
-SNAP_SPEED_RATIO = 1e-2  # of the fastest: a body this slow near a dead point is still at it
+SNAP_SPEED_RATIO = 1e-2  # of the fastest body: near a dead point, a slower one counts as at rest
 MAX_LISTED_NAMES = 6  # in a message
 Show = Callable[[float, bool], str]
 
 
 def in_si(value: float, slides: bool) -> str:
-    """A drive's value as text, SI."""
+    """A drive's value as text, in m (`slides`) or degrees. value: m or rad."""
     return f"{value:.6g} m" if slides else f"{np.degrees(value):.6g} deg"
 
 
-def _some(names: tuple[str, ...]) -> str:
-    """The names, or the first of many."""
+def _listed(names: tuple[str, ...]) -> str:
+    """The names as text; of many, the first ones and the number of the others."""
     if len(names) <= MAX_LISTED_NAMES:
         return ", ".join(names)
     return (
@@ -46,9 +46,10 @@ def _some(names: tuple[str, ...]) -> str:
 class MotionBlocked(LinkageError):
     """The linkage cannot follow its drives.
 
-    kind: what prevents it. reached, wanted: (D,) values of the drives, m or rad. bodies: those
-    that can move there with the drives locked. connections: those whose forces have no bound there
-    (or, for loops that stay open, those that do not meet).
+    kind: of the position that prevents it.
+    reached, wanted: (D,) values of the drives, m or rad.
+    bodies: that can move there with the drives locked.
+    connections: whose forces are unbounded there; for loops that stay open, those that do not meet.
     """
 
     def __init__(
@@ -66,14 +67,14 @@ class MotionBlocked(LinkageError):
         super().__init__(self.message(), KIND_CODES[kind])
 
     def message(self, show: Show = in_si) -> str:
-        """What is wrong and what to do; `show` formats a drive's value."""
+        """The message: what is wrong and what to do. show: formats a drive's value."""
         slides = [isinstance(d, Slider) for d in self.linkage.drives]
 
         def at(values: Floats) -> str:
             named = zip(self.linkage.driven, values, slides, strict=True)
             return ", ".join(f"{name} = {show(float(v), s)}" for name, v, s in named)
 
-        bodies, connections = _some(self.bodies), _some(self.connections)
+        bodies, connections = _listed(self.bodies), _listed(self.connections)
         if self.kind == "open":
             toothed = bool(self.linkage.teeth)
             return (
@@ -97,10 +98,14 @@ class MotionBlocked(LinkageError):
         )
 
 
-def impasse(
+def motion_blocked(
     loops: Loops, q: Floats, reached: Floats, wanted: Floats, opened: Floats | None = None
 ) -> MotionBlocked:
-    """What prevents the motion near coordinates q (n,). opened: coordinates with open loops."""
+    """The error of a motion that is blocked near coordinates q (n,).
+
+    reached, wanted: (D,) values of the drives, m or rad.
+    opened: (n,) coordinates at which loops stay open, if that is what blocks it.
+    """
     if opened is not None:
         pose = loops.pose(opened[None])
         lag = loops.residual(opened[None], pose, reached[None])[0, 2 * len(loops.closing) :]
@@ -119,8 +124,8 @@ def impasse(
     force, motion = left[:, last], right[last]
     drives = len(loops.linkage.driven)
     # At a dead point the drive force is unbounded too; at a change point it is not.
-    blocked = float(np.abs(force[len(force) - drives :]).max()) > 1e-3
-    kind: Kind = "dead point" if blocked else "change point"
+    unbounded = float(np.abs(force[len(force) - drives :]).max()) > 1e-3
+    kind: Kind = "dead point" if unbounded else "change point"
     return MotionBlocked(
         loops.linkage,
         kind,

@@ -1,5 +1,6 @@
-"""The tree of connections and sliders by which bodies hang on the ground, and the loops that the
-others close.
+"""The spanning tree of connections and sliders that joins bodies to the ground.
+
+The connections and sliders beyond the tree close loops.
 """
 
 from __future__ import annotations
@@ -11,14 +12,17 @@ import numpy as np
 from loads.linkage.linkage import GROUND, Linkage, LinkageError
 from pinbase.arrays import Complex, Floats, Ints
 
-LENGTH_ROUND_OFF = 1e-14  # of a length: what is left where equal lengths cancel
+LENGTH_ROUND_OFF = 1e-14  # of a length: the remainder where equal lengths cancel
 
 
 @dataclass(frozen=True)
 class LoopEdge:
-    """A member of the tree: connection or slider number `which`; `away`: the items on the side
-    away from the ground. forward: whether the connection's body (the slider's moving body) is
-    among them.
+    """A member of the tree, which joins some items to the ground.
+
+    slides: whether it is a slider; otherwise it is a connection.
+    which: its number.
+    away: the items on the side away from the ground.
+    forward: whether the connection's body (the slider's moving body) is among them.
     """
 
     slides: bool
@@ -28,7 +32,7 @@ class LoopEdge:
 
 
 def ends_of(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
-    """The items that a slider or connection joins: its (moving) body, and what carries that."""
+    """Numbers of the items that a slider or connection joins: its (moving) body and its carrier."""
     if slides:
         s = linkage.sliders[which]
         return linkage.index[s.moving], linkage.index[s.base]
@@ -37,9 +41,10 @@ def ends_of(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
 
 
 def frames(linkage: Linkage) -> tuple[int, Ints]:
-    """Number of frames, and the frame of every item: 0 is the ground's.
+    """Number of frames, and the frame of every item, (items + ground,); 0 is the ground's.
 
-    Pins and particles have no angle; the ground's frame serves, their chains do not depend on it.
+    Items that slide on each other share a frame. Pins and particles have no angle and are given the
+    ground's frame, on which their positions do not depend.
     """
     index = linkage.index
     joined = _Sets(len(index))
@@ -57,15 +62,17 @@ def frames(linkage: Linkage) -> tuple[int, Ints]:
 
 
 def shortest(gaps: Complex) -> Floats:
-    """(K, K) whole numbers by which gaps (n, K) combine to ones with as few nonzeros as sums and
-    differences of two at a time can make: two loops along the same bodies leave the rest.
+    """Whole numbers (K, K) that combine gaps (n, K) into ones with few nonzeros.
+
+    The combinations are sums and differences of two gaps at a time: where two loops run along the
+    same bodies, their difference no longer contains these.
     """
     count = gaps.shape[1]
     combined, gaps = np.eye(count), gaps.copy()
     size = np.abs(gaps).max(initial=0.0)
-    better = True
-    while better:
-        better = False
+    improved = True
+    while improved:
+        improved = False
         for k in np.argsort(-(gaps != 0.0).sum(axis=0), kind="stable"):
             for sign in (1.0, -1.0):
                 new = gaps[:, k, None] - sign * gaps
@@ -76,7 +83,7 @@ def shortest(gaps: Complex) -> Floats:
                 if entries[j] < (gaps[:, k] != 0.0).sum():
                     gaps[:, k] = new[:, j]
                     combined[:, k] -= sign * combined[:, j]
-                    better = True
+                    improved = True
     return combined
 
 
@@ -87,21 +94,24 @@ class _Sets:
         self._parent = list(range(count))
 
     def of(self, i: int) -> int:
+        """The set of item i, named by one of its items."""
         while self._parent[i] != i:
             i = self._parent[i]
         return i
 
     def join(self, i: int, j: int) -> bool:
-        """Whether they were apart before."""
+        """Join the sets of two items; true if they were different."""
         a, b = self.of(i), self.of(j)
         self._parent[a] = b
         return a != b
 
 
 def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int], ...]]:
-    """Edges of a spanning tree, from the ground outwards, and the (slides, which) that close loops.
+    """Edges of a spanning tree, from the ground outwards, and the members that close loops.
 
-    Sliders come first: bodies of one frame then hang together, and no loop turns against itself.
+    The latter are pairs (slides, which). Sliders are taken into the tree first, so that bodies of
+    one frame are joined by sliders, and a loop equation contains no rotation of a frame against
+    itself.
 
     Raises: LinkageError for bodies that nothing joins to the ground.
     """
@@ -120,6 +130,7 @@ def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[b
             f"no connection or slider joins {', '.join(adrift)} to the ground; add one",
             "not-joined",
         )
+    # Breadth-first from the ground, for the order of the edges.
     neighbours: dict[int, list[tuple[tuple[bool, int, int, int], int]]] = {}
     for m in inside:
         neighbours.setdefault(m[2], []).append((m, m[3]))
@@ -132,6 +143,7 @@ def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[b
                 seen.add(outer)
                 queue.append(outer)
                 order.append((m, inner, outer))
+    # Items beyond each edge, collected from the outermost edges inwards.
     away: dict[int, set[int]] = {outer: {outer} for _, _, outer in order}
     for _, inner, outer in reversed(order):
         if inner != ground:

@@ -1,8 +1,9 @@
-"""Transmission angles: how effectively a link drives the joint that it moves.
+"""Transmission angles, a measure of how effectively a link drives the joint that it moves.
 
-The force of a two-joint link acts along it. The angle is 90 degrees minus that between the link and
-the way its far joint goes: 90 is best, at 0 the link cannot move the joint (a dead point). For a
-four-bar it is the textbooks' angle between coupler and follower (Alt, 1932).
+The force of a link with two joints acts along it. The transmission angle is 90 degrees minus the
+angle between the link and the velocity of its far joint: 90 is best, at 0 the link cannot move the
+joint (a dead point). For a four-bar it is the textbooks' angle between coupler and follower (Alt,
+1932).
 """
 
 from __future__ import annotations
@@ -14,15 +15,15 @@ from loads.motion.mobility import is_particle
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
-MIN_BODY_SPEED = 1e-9  # of the fastest body: what moves less does not
+MIN_BODY_SPEED = 1e-9  # of the fastest body: a slower one is at rest
 
 
 def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
-    """(T,) rad by link and joint, for links with two joints, neither at a body that stands still.
+    """Transmission angles, (T,) rad, by link and joint.
 
-    Drives are taken one at a time, the others locked: bodies that only they move stand still, too.
-    The way of a joint does not depend on the speed, so a rest is no exception. Where several drives
-    move a link, the smallest angle.
+    They are of links with two joints, neither of them at a body at rest. Drives are taken one at a
+    time with the others locked; where several move a link, the angle is the smallest. It depends on
+    the direction of velocities only, so it is also defined while the linkage is at rest.
     """
     linkage, loops = motion.linkage, motion.loops
     out: dict[tuple[str, str], Floats] = {}
@@ -30,7 +31,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
         unit = np.zeros_like(motion.speeds)
         unit[:, k] = 1.0
         rates = motion.solve(loops.drive_side(unit))
-        still = _standing(motion, rates)
+        still = _at_rest(motion, rates)
         drivers = (drive.base, drive.moving if isinstance(drive, Slider) else drive.body)
         for body, ends in _links(motion, rates, still).items():
             angles = _angles(motion, rates, body, ends)
@@ -41,8 +42,8 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
     return out
 
 
-def _standing(motion: Motion, rates: Floats) -> set[str]:
-    """The ground, and the bodies that do not move at these rates (T, n)."""
+def _at_rest(motion: Motion, rates: Floats) -> set[str]:
+    """The ground, and the bodies that do not move at rates (T, n) of the coordinates."""
     linkage, loops = motion.linkage, motion.loops
     speed = np.abs(loops.velocities(motion.pose, rates, loops.centres)).max(axis=0)
     for i in range(len(linkage.bodies)):
@@ -55,21 +56,23 @@ def _standing(motion: Motion, rates: Floats) -> set[str]:
 def _angles(
     motion: Motion, rates: Floats, body: str, ends: tuple[Joint, Joint]
 ) -> tuple[Floats, ...]:
-    """(T,) of a link at both ends."""
+    """Transmission angles of a link at both its ends, (T,) rad each."""
     loops = motion.loops
     index = np.array([motion.linkage.index[body]] * 2)
     points = loops.points(index, np.array([complex(*j.at) for j in ends]))
-    place = loops.place(motion.pose, points)
-    way = loops.velocities(motion.pose, rates, points)
-    line = (place[:, 1] - place[:, 0])[:, None]
+    position = loops.place(motion.pose, points)
+    velocity = loops.velocities(motion.pose, rates, points)
+    line = (position[:, 1] - position[:, 0])[:, None]
     with np.errstate(invalid="ignore", divide="ignore"):
-        sine = np.abs(np.real(np.conj(line) * way)) / (np.abs(line) * np.abs(way))
+        sine = np.abs(np.real(np.conj(line) * velocity)) / (np.abs(line) * np.abs(velocity))
     return tuple(np.arcsin(np.minimum(sine, 1.0)).T)
 
 
 def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Joint, Joint]]:
-    """Moving bodies with exactly two joints, at none of which anything stands still and at both of
-    which they turn, that slide on nothing.
+    """Links with a transmission angle, and their two joints.
+
+    They are the moving bodies that have exactly two joints and slide on nothing, whose joints touch
+    no body at rest, and which turn relative to another body at both joints.
     """
     linkage, out = motion.linkage, {}
     for body in linkage.bodies:
@@ -83,19 +86,20 @@ def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Jo
 
 
 def _turns_at(motion: Motion, rates: Floats, link: Body, joint: Joint) -> bool:
-    """Whether the link turns against another body there; else they move as one."""
+    """Whether a link turns relative to another body at a joint; else they move as one."""
     linkage = motion.linkage
     spins = [
         _spin(motion, rates, b.name)
         for b in linkage.bodies
         if b.name in _bodies(joint) and b != link and not is_particle(linkage, b.name)
     ]
-    mine = _spin(motion, rates, link.name)
+    link_spin = _spin(motion, rates, link.name)
     least = MIN_BODY_SPEED * np.abs(rates * motion.loops.scale).max() / linkage.length_scale
-    return any(float(np.abs(spin - mine).max()) > least for spin in spins)
+    return any(float(np.abs(spin - link_spin).max()) > least for spin in spins)
 
 
 def _spin(motion: Motion, rates: Floats, body: str) -> Floats:
+    """Angular velocity of a body, (T,), at rates (T, n) of the coordinates."""
     f = motion.loops.frame[motion.linkage.index[body]]
     return rates[:, f - 1] if f else np.zeros(len(rates))
 
@@ -103,8 +107,9 @@ def _spin(motion: Motion, rates: Floats, body: str) -> Floats:
 def _moved_by(
     linkage: Linkage, link: str, end: Joint, still: set[str], drivers: tuple[str, str]
 ) -> bool:
-    """Whether the link moves what is at this end: the drive does not reach it another way, or
-    reaches both ends.
+    """Whether a link moves the bodies at this end.
+
+    It does if the drive does not reach them in another way, or reaches both ends of the link.
     """
     other = next(j for j in linkage.joints_on(link) if j != end)
     blocked = still | {link}
@@ -131,4 +136,5 @@ def _reached(linkage: Linkage, end: Joint, blocked: set[str], drivers: tuple[str
 
 
 def _bodies(joint: Joint) -> list[str]:
+    """The bodies at a joint, with the one that carries the pin."""
     return [c.body for c in joint.connections] + ([joint.fixed_in] if joint.fixed_in else [])

@@ -1,1 +1,1 @@
-"""Files of the user, read strictly: CSV tables, and nothing but regular files."""
+"""Strict reading of the user's files: CSV tables, and only regular files."""

@@ -1,4 +1,4 @@
-"""Tables in CSV, read strictly: nothing is guessed."""
+"""Strict reading of CSV tables: nothing is guessed."""
 
 from __future__ import annotations
 
@@ -18,30 +18,35 @@ from pinbase.errors import CodedError
 MAX_TABLE_BYTES = 64 * MB
 MAX_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
 MAX_COLUMNS = 1_000
-MAX_LINE_CHARACTERS = 1_000_000  # characters
-SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # that other programs write
+MAX_LINE_CHARACTERS = 1_000_000
+SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # those that other programs write
 DECIMAL_COMMA_PATTERN = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 THOUSANDS_PATTERN = re.compile(r"[-+]?\d{1,3},\d{3}")
 WITH_UNIT_PATTERN = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?\s*(?:[^\W\d_]|[/^*·. ])+\d?")
-MINUS = "\N{MINUS SIGN}"  # which reports print
-MAX_SHOWN_CHARACTERS = 40  # characters of a cell
-MAX_CELL_VALUE = 1e18  # the fourth power is still a number; as for quantities of a study
+MINUS = "\N{MINUS SIGN}"  # as reports print it
+MAX_SHOWN_CHARACTERS = 40  # of a cell, in messages
+MAX_CELL_VALUE = 1e18  # its fourth power is still finite; the limit for a study's quantities, too
 
 
 class TableError(CodedError, ValueError):
-    """An unusable table; the message names the file, the line and what would be right."""
+    """A table cannot be used; the message names the file, the line and what would be right."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """Cells of a row by column, without surrounding blanks; where: file and line."""
+    """A row of a table.
+
+    where: file and line, for messages.
+    cells: text by column, without surrounding blanks.
+    comma: whether numbers may have a decimal comma.
+    """
 
     where: str
     cells: dict[str, str]
-    comma: bool = False  # whether decimals are written with one
+    comma: bool = False
 
     def number(self, column: str) -> float:
-        """A cell's number. Raises: TableError unless it is finite and at most MAX_CELL_VALUE."""
+        """The number in a cell. Raises: TableError unless finite and at most MAX_CELL_VALUE."""
         text = self.cells[column]
         if self.comma and DECIMAL_COMMA_PATTERN.fullmatch(text):
             text = text.replace(",", ".")
@@ -60,7 +65,7 @@ class Row:
 
 
 def _remedy(text: str) -> str:
-    """What would be right instead of a cell that is not a number, if that can be told."""
+    """The end of a message: the right way to write a cell that is not a number, if known."""
     point = text.replace(",", ".")
     if THOUSANDS_PATTERN.fullmatch(text):
         return f"; write {text.replace(',', '')}, or {point} with a point"
@@ -68,9 +73,8 @@ def _remedy(text: str) -> str:
         return f"; write {point}, with a point"
     if text.startswith(MINUS):
         return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:MAX_SHOWN_CHARACTERS]}"
-    short = (
-        len(text) <= MAX_SHOWN_CHARACTERS
-    )  # the pattern takes the square of a hostile cell's length
+    # Matching takes time with the square of the length, so hostile cells are not tried.
+    short = len(text) <= MAX_SHOWN_CHARACTERS
     return "; cells have no units" if short and WITH_UNIT_PATTERN.fullmatch(text) else ""
 
 
@@ -81,9 +85,13 @@ def read_table(
     free: bool = False,
     numbered: bool = False,
 ) -> Iterator[Row]:
-    """The rows of a table with a header. optional: further columns that are allowed; None: any.
-    free: also with semicolons, tabs, or blanks in place of commas, then with decimal commas, and
-    with comments (#). numbered: without a header; the columns are called 1, 2 and so on.
+    """The rows of a CSV table.
+
+    needed: columns that the table must have.
+    optional: further columns that are allowed; None: any.
+    free: whether comments (#) are allowed, and semicolons, tabs or blanks in place of commas, then
+    with decimal commas.
+    numbered: whether the table has no header; its columns are called "1", "2" and so on.
 
     Raises: TableError for a file that is not such a table.
     """
@@ -115,37 +123,38 @@ def read_table(
 
 
 def _lines(path: Path, file: TextIO) -> Iterator[str]:
+    """The lines of a file. Raises: TableError for a line of excessive length."""
     count = 0
     while line := file.readline(MAX_LINE_CHARACTERS + 1):
         count += 1
         if len(line) > MAX_LINE_CHARACTERS:
             raise TableError(
                 f"{path}, line {count}: has more than {MAX_LINE_CHARACTERS:,} characters; is it "
-                f"a table?",
+                "a table?",
                 "not-csv",
             )
         yield line
 
 
 def _uncommented(lines: Iterator[str]) -> tuple[str, Iterator[str]]:
-    """The first line with cells, and all lines with comments left blank, so that they count."""
+    """The first line with cells, and all lines; comments become blank lines, to keep the count."""
     plain = ("\n" if line.lstrip().startswith("#") else line for line in lines)
-    before = list[str]()
+    head = list[str]()
     for line in plain:
-        before.append(line)
+        head.append(line)
         if line.strip():
             break
-    return (before or [""])[-1], chain(before, plain)
+    return (head or [""])[-1], chain(head, plain)
 
 
 def _separator(line: str, numbered: bool) -> str:
-    """What separates the cells of a line; blanks only where there is no header."""
-    found = next((s for s in (";", "\t") if s in line), ",")
-    return " " if numbered and found == "," and "," not in line else found
+    """The character that separates the cells of a line; a blank only where there is no header."""
+    separator = next((s for s in (";", "\t") if s in line), ",")
+    return " " if numbered and separator == "," and "," not in line else separator
 
 
 def _cells(text: Iterator[str], separator: str) -> Iterator[tuple[int, list[str]]]:
-    """The lines with cells, by their numbers."""
+    """The cells of each line that has any, after the line's number."""
     if separator == " ":
         split = ((k, line.split()) for k, line in enumerate(text, 1))
         return ((k, cells) for k, cells in split if cells)
@@ -160,11 +169,15 @@ def _rows(
     separator: str,
     numbered: bool,
 ) -> Iterator[Row]:
+    """The rows from the cells of lines. allowed: columns needed and optional, as of `read_table`.
+
+    Raises: TableError for wrong columns, rows of another length, too many rows or none.
+    """
     first, cells = next(lines, (1, list[str]()))
     columns = [name.strip() for name in cells]
     if numbered:
         columns, lines = [str(k + 1) for k in range(len(cells))], chain([(first, cells)], lines)
-    _require(path, columns, *allowed)
+    _require_columns(path, columns, *allowed)
     count, comma = 0, separator != ","
     for count, (line, cells) in enumerate(lines, 1):
         where = f"{path}, line {line}"
@@ -180,11 +193,13 @@ def _rows(
         raise TableError(f"{path}: the table has no rows below its header", "no-rows")
 
 
-def _require(
+def _require_columns(
     path: Path, columns: list[str], needed: Sequence[str], optional: Sequence[str] | None
 ) -> None:
-    head = ",".join(needed)
-    expected = f"needed: {head}" + (f"; optional: {', '.join(optional)}" if optional else "")
+    """Raises: TableError unless the columns are those needed, with optional ones, each once."""
+    expected = f"needed: {','.join(needed)}" + (
+        f"; optional: {', '.join(optional)}" if optional else ""
+    )
     if len(columns) > MAX_COLUMNS:
         raise TableError(
             f"{path}: has {len(columns):,} columns; the limit is {MAX_COLUMNS:,}",
@@ -208,8 +223,8 @@ def _require(
 def _require_commas(path: Path, columns: list[str], needed: Sequence[str]) -> None:
     """Raises: TableError when another separator would give the columns needed."""
     for separator, name in SEPARATORS.items():
-        found = [each.strip() for column in columns for each in column.split(separator)]
-        if len(found) > len(columns) and set(needed) & set(found):
+        names = [name.strip() for column in columns for name in column.split(separator)]
+        if len(names) > len(columns) and set(needed) & set(names):
             raise TableError(
                 f"{path}: the columns are separated by {name}; separate them by commas, and write "
                 "decimals with a point: 1.5",

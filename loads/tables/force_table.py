@@ -1,5 +1,7 @@
-"""Tables of forces on pins as they come: a row per connection and instant, or a column per
-component; with units in the header, several cases, or the columns of another program.
+"""Tables of forces on pins in the layouts that other programs write.
+
+A table has a row for each connection and instant, or a column for each component of each
+connection; it may have units in its header and several cases.
 """
 
 from __future__ import annotations
@@ -19,17 +21,18 @@ HEADER_PATTERN = re.compile(r"(?P<name>.*?)\s*(?:\[(?P<unit>[^\]]*)\]|\((?P<brac
 WIDE_COLUMN_PATTERN = re.compile(r"(?P<connection>.+?)[. ](?P<component>[fm][xyz])$")
 OWN_TABLE_COLUMNS = {"case", "body"}  # a table with these columns is one of our own outputs
 
-Unit = Callable[[str, str], float]  # SI value of a unit, "" for the table's own, of a dimension
+Unit = Callable[[str, str], float]  # (unit, dimension) -> its SI value; "": the table's default
 
 
 @dataclass(frozen=True)
 class Layout:
-    """How a table is to be understood.
+    """The meaning of a table's columns and labels.
 
-    case: of the rows to read, where it has a column `case`. columns: of our names, their header or
-    their number from 1, with a minus where the sign differs; numbers where it has no header.
-    labels: what a connection is called in its column. step: s, between rows of one connection in a
-    table without times.
+    case: name of the case to read from a table with a column `case`.
+    columns: header of each column by its meaning, preceded by a minus where the sign differs; its
+    number from 1 in a table without a header.
+    labels: text in the column `connection` by the connection's name here.
+    step: time between the rows of one connection in a table without times, s.
     """
 
     case: str
@@ -39,8 +42,9 @@ class Layout:
 
 
 def table_cases(path: Path, columns: Mapping[str, str | int]) -> list[str]:
-    """The names in a table's column `case`, in their order. columns: as of a Layout. Raises:
-    TableError.
+    """The names in a table's column `case`, in their order. columns: as of a Layout.
+
+    Raises: TableError.
     """
     names = dict[str, None]()
     at = str(columns.get("case", "case"))
@@ -52,12 +56,18 @@ def table_cases(path: Path, columns: Mapping[str, str | int]) -> list[str]:
 
 
 def _numbered(columns: Mapping[str, str | int]) -> bool:
+    """Whether columns are stated by number, which means that the table has no header."""
     return bool(columns) and all(isinstance(c, int) for c in columns.values())
 
 
 @dataclass(frozen=True)
 class GivenForce:
-    """Force and moment on one connection, N and N m; time: s, or None."""
+    """Force and moment on a connection, as a row of a table gives them.
+
+    where: file and line, for messages.
+    time: s, or None.
+    values: fx, fy, fz in N, mx, my, mz in N m.
+    """
 
     where: str
     connection: str
@@ -67,16 +77,28 @@ class GivenForce:
 
 @dataclass(frozen=True)
 class _Column:
-    """A column of the file, the factor from its numbers to SI, and what it means to us."""
+    """A column of a table.
+
+    factor: from its numbers to SI, negative where the sign differs.
+    connection: whose component it is, in a table with a column per component; otherwise None.
+    meaning: fx, .., mz, time, case, connection or body.
+    """
 
     header: str
     factor: float
-    connection: str | None  # of a wide table
+    connection: str | None
     meaning: str
 
 
 def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iterator[GivenForce]:
-    """Rows of a table. Raises: TableError."""
+    """The forces in a table.
+
+    unit: gives the SI value of a unit.
+    known: connections of the study; others are an error, except in a table with labels or one that
+    this program wrote, where they are skipped.
+
+    Raises: TableError.
+    """
     names = {label: name for name, label in _labels(layout.labels)}
     count: dict[str, int] = {}
     columns: list[_Column] | None = None
@@ -84,9 +106,9 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
         if columns is None:
             columns = _columns(path, list(row.cells), layout, unit)
         text = {c.meaning: row.cells[c.header] for c in columns if c.connection is None}
-        own = set(row.cells) >= OWN_TABLE_COLUMNS
-        for name, own_columns in _by_connection(row, columns, text, names):
-            if name not in known and (own or layout.labels):
+        is_own_table = set(row.cells) >= OWN_TABLE_COLUMNS
+        for name, components in _by_connection(row, columns, text, names):
+            if name not in known and (is_own_table or layout.labels):
                 continue
             if name not in known:
                 raise TableError(
@@ -96,41 +118,50 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
                 )
             time = _time(row, columns, text, layout, count.setdefault(name, 0))
             count[name] += 1
-            yield GivenForce(row.where, name, time, _values(row, own_columns))
+            yield GivenForce(row.where, name, time, _values(row, components))
 
 
 def _rows(path: Path, layout: Layout) -> Iterator[Row]:
-    """Those of the case, where the table has cases. Raises: TableError where none is."""
+    """The rows of the case, or all rows of a table without cases.
+
+    Raises: TableError where no row has the case.
+    """
     at, numbered = str(layout.columns.get("case", "case")), _numbered(layout.columns)
     cases = _by_case(path, stamp(path), at, numbered)
     if cases is None:
         yield from read_table(path, (), free=True, numbered=numbered)
         return
     if layout.case not in cases:
-        have = ", ".join(sorted(cases)[:6])
+        names = ", ".join(sorted(cases)[:6])
         raise TableError(
-            f"{path}: no row has the case {layout.case!r}; there are {have}", "no-such-case"
+            f"{path}: no row has the case {layout.case!r}; there are {names}", "no-such-case"
         )
     yield from cases[layout.case]
 
 
 @lru_cache(maxsize=1)  # the cases of one table follow each other
 def _by_case(path: Path, _: str, at: str, numbered: bool) -> dict[str, list[Row]] | None:
-    """The rows by the column of the case, `at`; None without it. _: the stamp of the file."""
-    found: dict[str, list[Row]] = {}
+    """The rows of a table by case, or None without a column of cases.
+
+    _: the file's stamp, which makes the cache notice a changed file.
+    at: name of the column of cases.
+    """
+    cases: dict[str, list[Row]] = {}
     for row in read_table(path, (), free=True, numbered=numbered):
         if at not in row.cells:
             return None
-        found.setdefault(row.cells[at], []).append(row)
-    return found or None
+        cases.setdefault(row.cells[at], []).append(row)
+    return cases or None
 
 
 def _labels(labels: Mapping[str, str | int]) -> Iterator[tuple[str, str]]:
+    """Connections and their labels as text."""
     return ((name, str(label)) for name, label in labels.items())
 
 
 def _columns(path: Path, headers: list[str], layout: Layout, unit: Unit) -> list[_Column]:
-    """What the columns mean. Raises: TableError."""
+    """The columns of a table with their meaning and factor to SI. Raises: TableError."""
+    # The header and sign of each column by its meaning: as the layout states, or by the headers.
     chosen: dict[str, tuple[str, float]] = {}
     for meaning, at in layout.columns.items():
         sign, header = (-1.0, str(at)[1:]) if str(at).startswith("-") else (1.0, str(at))
@@ -142,34 +173,35 @@ def _columns(path: Path, headers: list[str], layout: Layout, unit: Unit) -> list
             )
         chosen[meaning] = (header, sign)
     out = []
+    # Name and unit are separate: the layout may state the name, the file's header the unit.
     for meaning, (header, sign) in (chosen or {h: (h, 1.0) for h in headers}).items():
         parts, original = HEADER_PATTERN.fullmatch(meaning), HEADER_PATTERN.fullmatch(header)
         assert parts is not None
         assert original is not None
-        name, of_unit = parts["name"], original["unit"] or original["bracket"] or ""
+        name, unit_name = parts["name"], original["unit"] or original["bracket"] or ""
         wide = WIDE_COLUMN_PATTERN.fullmatch(name)
-        what = wide["component"] if wide else name
-        if what not in (*FORCE_COMPONENTS, "time", "case", "connection", "body"):
+        component = wide["component"] if wide else name
+        if component not in (*FORCE_COMPONENTS, "time", "case", "connection", "body"):
             raise TableError(
                 f"{path}: unknown column {name[:40]!r}; allowed: connection, "
                 f"{', '.join(FORCE_COMPONENTS)}, time, case, body; or B.fx for the force on "
-                f"connection B",
+                "connection B",
                 "unknown-column",
             )
-        known = what in (*FORCE_COMPONENTS, "time")
-        factor = sign * unit(of_unit, COMPONENT_DIMENSIONS[what[0]]) if known else 1.0
-        out.append(_Column(header, factor, wide["connection"] if wide else None, what))
-    _require(path, out)
+        is_number = component in (*FORCE_COMPONENTS, "time")
+        factor = sign * unit(unit_name, COMPONENT_DIMENSIONS[component[0]]) if is_number else 1.0
+        out.append(_Column(header, factor, wide["connection"] if wide else None, component))
+    _require_components(path, out)
     return out
 
 
-def _require(path: Path, columns: list[_Column]) -> None:
-    """Raises: TableError unless every force has x and y, each once."""
+def _require_components(path: Path, columns: list[_Column]) -> None:
+    """Raises: TableError unless every force has x and y components, each once."""
     seen = [(c.connection, c.meaning) for c in columns]
-    for each in seen:
-        if seen.count(each) > 1:
+    for key in seen:
+        if seen.count(key) > 1:
             raise TableError(
-                f"{path}: column {'.'.join(filter(None, each))!r} occurs twice; keep one",
+                f"{path}: column {'.'.join(filter(None, key))!r} occurs twice; keep one",
                 "duplicate-column",
             )
     wide = {c.connection for c in columns if c.connection is not None}
@@ -201,7 +233,10 @@ def _by_connection(
 def _time(
     row: Row, columns: list[_Column], text: dict[str, str], layout: Layout, count: int
 ) -> float | None:
-    """s; none where the cell is empty, as for cases without time in our own tables."""
+    """Time of a row, s; None where its cell is empty, as it is for cases without time.
+
+    count: number of earlier rows of the same connection.
+    """
     if text.get("time"):
         column = next(c for c in columns if c.meaning == "time")
         return row.number(column.header) * column.factor
@@ -209,6 +244,7 @@ def _time(
 
 
 def _values(row: Row, columns: list[_Column]) -> list[float]:
+    """Force and moment of a row, six components in N and N m; zero without a column."""
     by_name = {c.meaning: c for c in columns}
     return [
         row.number(by_name[c].header) * by_name[c].factor if c in by_name else 0.0

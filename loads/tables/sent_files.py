@@ -1,5 +1,6 @@
-"""Files whose contents were sent from another computer, read instead of those that lie at the same
-paths here, which may have other contents.
+"""Files whose contents were sent from another computer.
+
+They are read instead of the files at the same paths on this one, which may differ.
 """
 
 from __future__ import annotations
@@ -19,18 +20,18 @@ _noted: ContextVar[set[Path] | None] = ContextVar("_noted", default=None)
 
 @contextmanager
 def noted_files() -> Iterator[set[Path]]:
-    """The paths of the files that are read meanwhile in this thread."""
-    found = set[Path]()
-    token = _noted.set(found)
+    """Collects the paths of the files that this thread reads inside the `with` block."""
+    paths = set[Path]()
+    token = _noted.set(paths)
     try:
-        yield found
+        yield paths
     finally:
         _noted.reset(token)
 
 
 @contextmanager
 def sent_files(contents: Mapping[str, bytes]) -> Iterator[None]:
-    """Meanwhile, in this thread, files have these contents by their paths; there are no others."""
+    """Inside the `with` block, this thread reads these files only. contents: by path."""
     token = _sent.set(contents)
     try:
         yield
@@ -39,7 +40,7 @@ def sent_files(contents: Mapping[str, bytes]) -> Iterator[None]:
 
 
 def content_sent(path: Path) -> bytes | None:
-    """What was sent as the content of a file; None where files are read as they lie here.
+    """The content that was sent for a file; None where files are read from this computer.
 
     Raises: FileNotFoundError for a file that was not sent.
     """
@@ -54,7 +55,7 @@ def content_sent(path: Path) -> bytes | None:
 
 
 def stamp(path: Path) -> str:
-    """What changes when a file's content does; empty where there is no file."""
+    """A text that changes when a file's content does; empty where there is no file."""
     try:
         content = content_sent(path)
         if content is not None:
@@ -65,16 +66,17 @@ def stamp(path: Path) -> str:
 
 
 def on_disk(path: Path) -> Path:
-    """Where other libraries can read a file: `path` itself, or a copy of what was sent."""
+    """A path at which other libraries can read a file: its own, or a copy's if it was sent."""
     try:
         content = content_sent(path)
-    except FileNotFoundError:  # which whoever reads it reports
+    except FileNotFoundError:  # the reader will report it
         return path
     return path if content is None else _copy(path.name, content)
 
 
 @lru_cache(1)
 def _folder() -> tempfile.TemporaryDirectory[str]:
+    """The folder of copies, removed when the process ends."""
     return tempfile.TemporaryDirectory(prefix="pinstress-sent-")
 
 
@@ -84,6 +86,7 @@ def _copies() -> Path:
 
 @lru_cache(16)
 def _copy(name: str, content: bytes) -> Path:
+    """Path of a copy of content that was sent."""
     path = _copies() / hashlib.sha256(content).hexdigest() / name
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(content)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from assess.opinion.cantilever import beam_check as compare_with_beam
-from assess.strength.records import BeamCheck
+from assess.opinion.records import BeamCheck
 from geometry import Pin
 from loads import GROUND, Lever, Linkage, Slider
 from pinstress.study.model.cases import CaseLoads, at_time

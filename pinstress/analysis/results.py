@@ -18,7 +18,7 @@ from pinstress.study.reading.file import Study
 from reports.data.results import Field, Results
 from reports.format.words import headline
 from reports.tables.all import load_tables, stress_tables
-from reports.tables.table import Table
+from reports.tables.column import Table
 from reports.text.html import safety_factors_html
 from reports.text.summary import summary
 
@@ -55,20 +55,20 @@ class RunResults(Results):
         return safety_factors_html(self)
 
     @property
-    def tables(self) -> dict[str, Table]:
+    def tables(self) -> dict[str, Table[Any]]:
         """All tables of the run by name: columns, and rows with every digit."""
         return {t.name: t for t in (*stress_tables(self), *load_tables(self))}
 
     def to_pandas(self, table: str = "safety_factors") -> pandas.DataFrame:
         """A table as a pandas frame. Raises: ImportError without pandas, ValueError."""
         found, library = self._table(table), _library("pandas")
-        frame: pandas.DataFrame = library.DataFrame(list(found.rows), columns=list(found.columns))
+        frame: pandas.DataFrame = library.DataFrame(list(found.cells()), columns=found.keys)
         return frame
 
     def to_polars(self, table: str = "safety_factors") -> polars.DataFrame:
         """A table as a polars frame. Raises: ImportError without polars, ValueError."""
         found, library = self._table(table), _library("polars")
-        rows, columns = [list(row) for row in found.rows], list(found.columns)
+        rows, columns = [list(row) for row in found.cells()], found.keys
         frame: polars.DataFrame = library.DataFrame(
             rows, schema=columns, orient="row", infer_schema_length=None
         )
@@ -110,7 +110,7 @@ class RunResults(Results):
             render_pin(field, path, self.units, f"pin {pin}, {case} ({field.verdict})")
             return Png(path.read_bytes())
 
-    def _table(self, name: str) -> Table:
+    def _table(self, name: str) -> Table[Any]:
         tables = self.tables
         if name not in tables:
             raise ValueError(f"this run has no table {name!r}; there are {', '.join(tables)}")

@@ -22,8 +22,8 @@ from fea.support.support import PinProblem, Solution
 from geometry import Pin
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
-from pinstress.analysis.assessed.checked import checked
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
+from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.cache import Cache
 from pinstress.analysis.gather import gather
 from pinstress.analysis.gather.gather_surface import surfaces_of
@@ -114,7 +114,7 @@ def _attempt(
             solved = _solve(plan, task, keep, tell)
         else:
             solved = _solve_once(plan, task, keep, cache, tell)
-        return _checked(plan, task, replace(solved, opinions=ask(plan, task, solved, tell)))
+        return _assessed(plan, task, replace(solved, opinions=ask(plan, task, solved, tell)))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
@@ -151,13 +151,13 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) ->
 def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
     name, model = task.pin.name, plan.asked.model
     peaks = tuple(Maximum(name, case.case, model, "failed", reason) for case in task.loads)
-    return _checked(plan, task, PinOutcome(peaks))
+    return _assessed(plan, task, PinOutcome(peaks))
 
 
-def _checked(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
+def _assessed(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
     none = (None,) * len(solved.peaks)
     rows = zip(solved.peaks, solved.joints or none, solved.limits or none, strict=True)
-    return replace(solved, strength=tuple(checked(plan.study, task, *row) for row in rows))
+    return replace(solved, strength=tuple(assessed(plan.study, task, *row) for row in rows))
 
 
 def solutions(

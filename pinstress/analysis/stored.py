@@ -8,16 +8,16 @@ from math import inf
 
 from assess.fatigue.records import PointHistory
 from assess.opinion.opinions import Opinion
+from assess.opinion.records import BeamCheck
 from assess.plastic.records import LimitLoad
-from assess.strength.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Maximum
 from fea.solve.refine import count_loads, sequence_of
 from fea.support.records import JointResult
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
-from pinstress.analysis.assessed.checked import Checked
 from pinstress.analysis.assessed.limits import rung_of
+from pinstress.analysis.assessed.situations import Assessed
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
@@ -51,7 +51,7 @@ class PinOutcome:
     limits: tuple[LimitLoad | None, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
     no_histories: str = ""
-    strength: tuple[Checked, ...] = ()
+    strength: tuple[Assessed, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.data.chart import CHART_NAME, Chart
 from reports.format.file_names import plot_name
+from reports.format.numbers import percent
 from reports.plots.chart import chart_plot
 from reports.plots.draw import draw
 from reports.tables.chart import write_chart_csv
 from reports.text.chart import print_chart
-from reports.text.chart_summary import percent
 
 CHART_CSV = f"{CHART_NAME}.csv"
 

@@ -41,7 +41,7 @@ from pinstress.study.reading.file_names import field_name
 from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
 from reports.page.scripts import REPORT_PAGE
-from reports.tables.table import MAX_CSV_ROWS
+from reports.tables.column import MAX_CSV_ROWS
 from reports.text.loads import print_loads
 from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion

@@ -193,11 +193,11 @@ def _weight(study: Study, name: str) -> float | None:
 
 def _stricter(worst: PinResult) -> str:
     """A hand check with a smaller factor than that of the largest stress, if any."""
-    checks = [c for c in worst.hand_checks if c.factor is not None and c.governs]
-    least = min(checks, key=lambda c: c.factor or 0.0, default=None)
-    if least is None or (least.factor or 0.0) >= (worst.safety_factor or 0.0):
+    checks = [c for c in worst.hand_checks if c.safety_factor is not None and c.governs]
+    least = min(checks, key=lambda c: c.safety_factor or 0.0, default=None)
+    if least is None or (least.safety_factor or 0.0) >= (worst.safety_factor or 0.0):
         return ""
-    return f"{least.name} at {least.at}: {engineering(least.factor)}"
+    return f"{least.method} at {least.at}: {engineering(least.safety_factor)}"
 
 
 def why_missed(results: Results, pin: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+MIN_CHART_ERROR = 1e-12  # replaces an error of zero
 CHART_NAME = "chart"
 
 
@@ -63,3 +64,9 @@ class Chart:
             if not p.failed:
                 out.setdefault((p.model, p.element), []).append(p)
         return out
+
+
+def error(point: ChartPoint) -> float:
+    """Relative error of a point that did not fail, never zero."""
+    assert point.error is not None
+    return max(point.error, MIN_CHART_ERROR)

@@ -4,7 +4,7 @@ with the least margin of safety.
 
 from __future__ import annotations
 
-from assess.strength.margin import PinMargin
+from assess.margin import PinMargin
 from assess.strength.model_stress import YIELD_METHOD
 from reports.data.results import Results
 

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from assess.strength.margin import PinMargin
+from assess.margin import PinMargin
+from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from reports.data.decision import (
     DEPENDS,
@@ -26,8 +27,6 @@ from reports.data.decision import (
     utilisation,
 )
 from reports.data.results import PinResult, Results
-
-FATIGUE_LIFE = "fatigue life"
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal, Self
 
 from assess.fatigue.records import PointFatigue, PointHistory
+from assess.margin import Margin, PinMargin
 from assess.opinion.opinions import Opinion
+from assess.opinion.records import BeamCheck
 from assess.plastic.records import LimitLoad
 from assess.strength.bending_arms import BendingArms
-from assess.strength.margin import PinMargin
-from assess.strength.records import BeamCheck, HandCheck
 from fea.core.peak import Refinement, SingularZone
 from fea.core.places import Places
 from fea.support.records import JointResult
@@ -71,7 +71,6 @@ __all__ = [
     "Floats",
     "GoverningLoad",
     "GuideForces",
-    "HandCheck",
     "LandingRange",
     "LegTable",
     "LinkageMotion",
@@ -194,7 +193,7 @@ class PinResult:
     published_safety_factor: float | None = None
     why: str = ""
     singular_at: tuple[SingularZone, ...] = ()
-    hand_checks: tuple[HandCheck, ...] = ()
+    margins: tuple[Margin, ...] = ()
     max_von_mises_interval: tuple[Stress, Stress] | None = None
     safety_factor_interval: tuple[float, float | None] | None = None
     error_parts: Mapping[str, Stress] = field(default_factory=dict)
@@ -206,6 +205,11 @@ class PinResult:
     required: float | None = None
     depends_on: tuple[Dependence, ...] = ()
     places: Places | None = None
+
+    @property
+    def hand_checks(self) -> tuple[Margin, ...]:
+        """The nominal stresses by hand against yield, each at all of its places."""
+        return tuple(margin for margin in self.margins if margin.listed_by_hand)
 
     @property
     def yield_strength(self) -> float | None:

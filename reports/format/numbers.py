@@ -70,3 +70,15 @@ def ratio(ours: float | None, published: float | None) -> float | None:
 def components(values: Sequence[float], largest: float) -> list[str]:
     """Numbers of a vector as text; what is round-off compared with the largest is zero."""
     return [engineering(v if abs(v) > COMPONENT_ROUND_OFF * largest else 0.0) for v in values]
+
+
+def percent(value: float) -> str:
+    """A relative error as text."""
+    return f"{short(float(f'{100.0 * value:.2g}'))} %"
+
+
+def seconds(value: float | None) -> str:
+    """A time in s or ms."""
+    if value is None:
+        return engineering(None)
+    return f"{engineering(value, 2)} s" if value >= 0.1 else f"{engineering(1e3 * value, 2)} ms"

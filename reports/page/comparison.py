@@ -39,7 +39,9 @@ def write_comparison(
         .render(
             found=found,
             headline=headline(found),
-            sections=[s for s in sections(found) if s[1].body or s[2]],
+            sections=[
+                (name, t.grid(), note) for name, t, note in sections(found) if t.rows or note
+            ],
             plot=drawn,
             caption=plot.caption if plot and drawn else "",
             pictures=pictures,

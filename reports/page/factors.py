@@ -6,23 +6,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from reports.data.changes import command
-from reports.data.decision import limit, outcome, utilisation, worst_first
+from reports.data.decision import limit, outcome, utilisation
 from reports.data.results import PinResult, Results
+from reports.format.files.csv import Cell
+from reports.format.plain import plain
 from reports.format.words import OUTCOME_MEANINGS
+from reports.tables.column import grid_of
 from reports.tables.published import published_maxima
-from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_grid
-from reports.tables.strength.limit_load import LEFT_OUT_NOTE, limit_grid, limit_notes
+from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_table
+from reports.tables.strength.limit_load import LEFT_OUT_NOTE, limit_notes, limits_table
 from reports.tables.strength.limit_load import LIMIT_LOAD_NOTE as PAST_YIELD
-from reports.tables.strength.safety_factors import (
-    TEXT_COLUMNS,
-    display_rows,
-    display_text,
-    reading,
-    safety_factor_row,
-    shown_columns,
-)
+from reports.tables.strength.safety_factors import reading, shown_factors
 from reports.tables.strength.sensitivities import SENSITIVITIES_NOTE as SENSITIVE
-from reports.tables.strength.sensitivities import sensitivities_grid, sensitivity_notes
+from reports.tables.strength.sensitivities import sensitivity_notes, shown_sensitivities
 
 FULL_BAR_UTILISATION = 2.0  # utilisation at the end of a bar
 
@@ -35,39 +31,23 @@ class Bar:
     high: float
 
 
-@dataclass(frozen=True)
-class FactorRow:
-    """A row's texts by column, and what they are sorted by."""
-
-    pin: str
-    outcome: str
-    cells: dict[str, str]
-    keys: dict[str, str]
-    bar: Bar | None
-
-
 def factor_part(results: Results) -> dict[str, Any]:
-    """The table of safety factors, and how to read it."""
-    rows = display_rows(results)
-    columns = shown_columns(rows, results)
-    for name in ("verdict", "model"):  # the result says what matters, each pin's section the rest
-        columns.pop(name)
+    """The table of safety factors, with what each cell is sorted by, and how to read it."""
+    # The result says what matters of the verdict, each pin's section the rest.
+    table = shown_factors(results, without=("verdict", "model"))
     return {
-        "columns": columns,
-        "reading": reading(columns),
-        "numeric": [name for name in columns if name not in TEXT_COLUMNS],
+        "columns": [(c.key, c.headed(results.units), c.numeric) for c in table.columns],
+        "reading": reading(table),
         "rows": [
-            FactorRow(
-                pin.pin,
-                outcome(pin),
-                {name: display_text(name, row) for name in columns},
-                _keys(pin, results),
-                _bar(pin, limit(results)),
-            )
-            for pin, row in zip(worst_first(results), rows, strict=True)
+            {
+                "outcome": outcome(row.pin),
+                "cells": [(c.shown(row), _sorted_by(c.cell(row))) for c in table.columns],
+                "bar": _bar(row.pin, limit(results)),
+            }
+            for row in table.rows
         ],
         "explained": OUTCOME_MEANINGS,
-        "maxima": published_maxima(results),
+        "maxima": grid_of(published_maxima(results), results.units),
     }
 
 
@@ -76,7 +56,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
     if not results.changes:
         return None
     return {
-        "grid": changes_grid(results),
+        "grid": grid_of(changes_table(results), results.units),
         "introduction": REMEDIES_NOTE,
         "notes": change_notes(results),
         "command": command(results.changes, results.study, results.required_safety_factor),
@@ -85,7 +65,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
 
 def sensitivity_part(results: Results) -> dict[str, Any] | None:
     """What a little more of each dimension does; None where no pin has a derivative."""
-    grid = sensitivities_grid(results)
+    grid = grid_of(shown_sensitivities(results), results.units)
     if grid is None:
         return None
     return {"grid": grid, "introduction": SENSITIVE, "notes": sensitivity_notes(results)}
@@ -93,7 +73,7 @@ def sensitivity_part(results: Results) -> dict[str, Any] | None:
 
 def limit_part(results: Results) -> dict[str, Any] | None:
     """Past yield; None where no limit load was computed."""
-    grid = limit_grid(results)
+    grid = grid_of(limits_table(results), results.units)
     if grid is None:
         return None
     return {
@@ -104,10 +84,10 @@ def limit_part(results: Results) -> dict[str, Any] | None:
     }
 
 
-def _keys(pin: PinResult, results: Results) -> dict[str, str]:
-    """For sorting: all digits; empty for no value, and the outcome for the result."""
-    row = {**safety_factor_row(pin, results.required_safety_factor), "result": outcome(pin)}
-    return {name: "" if value is None else str(value) for name, value in row.items()}
+def _sorted_by(value: Cell) -> str:
+    """All digits; empty for no value."""
+    value = plain(value)
+    return "" if value is None else str(value)
 
 
 def _bar(pin: PinResult, required: float) -> Bar | None:

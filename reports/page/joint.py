@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fea.support.records import JointResult, Variation
+from fea.support.records import BandContact, JointResult, Variation
 from reports.data.results import PinResult, Units
-from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import END_DIGITS, joint_range, part_words
+from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order, read_only, texts
+from reports.tables.stress.joint import BAND_COLUMNS
 
 JOINT_TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
+BAND_ORDER = ("connection", "force", "contact_angle", "mean_pressure", "bearing_share")
 FOUNDATION_NOTE = (
     "By a beam on foundations; contact angles are those of plane contact at the largest load per "
     "length."
@@ -36,7 +38,7 @@ def joint_part(pin: PinResult, units: Units) -> JointPart | None:
     if joint is None:
         return None
     title = JOINT_TITLES.get(joint.model, "Range over the joint")
-    bands = _bands(pin, joint, units) if joint.bands else None
+    bands = grid_of(_bands(pin, joint, units), units)
     assumed = joint.range is not None and joint.range.assumed
     return JointPart(title, _sentence(pin, joint, units), bands, _range(joint, units), assumed)
 
@@ -59,52 +61,30 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
     return f"{text}{more}".lstrip(".: ").strip()
 
 
-def _bands(pin: PinResult, joint: JointResult, units: Units) -> Grid:
-    head = [
-        "connection", f"force [{units.force}]", "half contact angle [°]",
-        f"mean pressure [{units.stress}]", f"couple on the link [{units.force}·{units.length}]",
-        f"clearance [{units.length}]", f"outer diameter [{units.length}]",
-    ]  # fmt: skip
-    contact = pin.places.contact if pin.places else None
-    shares = {band.name: band.bearing_share for band in (contact.bands if contact else ())}
-    judged = any(share is not None for share in shares.values())
-    if judged:
-        head.insert(4, "of bearing strength")
-    body = [
-        [
-            band.name,
-            engineering(band.force),
-            engineering(band.contact_angle, 3),
-            engineering(band.mean_pressure),
-            *([_per_cent(shares.get(band.name))] if judged else []),
-            engineering(band.couple),
-            short(band.clearance),
-            short(band.outer_diameter),
-        ]
-        for band in joint.bands
-    ]
-    return Grid(head, body, [False, *[True] * (len(head) - 1)])
-
-
-def _per_cent(share: float | None) -> str:
-    return DASH if share is None else f"{engineering(100.0 * share, 3)} %"
+def _bands(pin: PinResult, joint: JointResult, units: Units) -> Table[PinRow[BandContact]]:
+    rows = [PinRow(pin, units, band) for band in joint.bands]
+    return Table("joint_bands", in_order(BAND_COLUMNS, BAND_ORDER), rows)
 
 
 def _range(joint: JointResult, units: Units) -> Grid | None:
-    if joint.range is None or not joint.range.variations:
+    over = joint.range
+    if over is None:
         return None
-    body = [[v.what, value_words(v, units), *_maximum(v)] for v in joint.range.variations]
-    last = "beneath contact" if joint.range.model == "contact" else "with error"
-    head = ["changed", "to", f"max von Mises [{units.stress}]", last]
-    return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
+    last = "beneath contact" if over.model == "contact" else "with error"
+    columns: list[Column[Variation]] = [
+        *texts("changed=what"),
+        read_only("to", lambda v: value_words(v, units), numeric=False),
+        read_only("max von Mises", lambda v: v.max_von_mises, "stress"),
+        read_only(last, _beside),
+    ]
+    return grid_of(Table("joint_range", columns, over.variations), units)
 
 
-def _maximum(variation: Variation) -> list[str]:
-    """With its range, where it has one, otherwise with what lies beneath contact."""
-    size = engineering(variation.max_von_mises)
+def _beside(variation: Variation) -> str:
+    """The range of a maximum, where it has one, otherwise what lies beneath contact."""
     if variation.interval is None:
-        return [size, engineering(variation.beneath)]
-    return [size, " to ".join(engineering(end, END_DIGITS) for end in variation.interval)]
+        return engineering(variation.beneath)
+    return " to ".join(engineering(end, END_DIGITS) for end in variation.interval)
 
 
 def value_words(variation: Variation, units: Units) -> str:

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from reports.data.results import PinResult, ReactionTable, Results, Units
-from reports.format.grid import Grid
+from reports.data.results import (
+    GoverningLoad,
+    PeakReaction,
+    PinResult,
+    ReactionTable,
+    Results,
+    Units,
+)
 from reports.format.numbers import DASH, components, engineering
 from reports.plots.loads.reactions import NO_PIN_NAME
+from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
-
-TIMING_TEXT_COLUMNS = (True, True, True, False, False, False)
 
 
 @dataclass(frozen=True)
@@ -28,26 +34,12 @@ class DropPart:
     grids: list[Grid]
 
 
-@dataclass(frozen=True)
-class ReactionRow:
-    """A connection's maximum force with its components and time, and its maximum moment."""
-
-    connection: str
-    body: str
-    pin: str
-    shared: bool
-    largest: float
-    components: tuple[float, float, float]
-    time: float | None
-    moment: float
-
-
 def load_part(results: Results) -> dict[str, Any]:
     """Reactions, drops and landings of all cases."""
     return {
         "published": published_reactions(results),
         "timed": any(v.time is not None for v in results.published),
-        "reactions": [(table, _rows(table)) for table in results.reactions],
+        "reactions": [(table, _reactions(table, results.units)) for table in results.reactions],
         "without": NO_PIN_NAME,
         "drops": [
             DropPart(
@@ -64,62 +56,61 @@ def load_part(results: Results) -> dict[str, Any]:
     }
 
 
-def _rows(table: ReactionTable) -> list[ReactionRow]:
-    return [
-        ReactionRow(
-            connection=table.connections[c],
-            body=table.bodies[c],
-            pin=table.pins[c],
-            shared=table.connections[c] in table.shared,
-            largest=peak.force,
-            components=peak.components,
-            time=peak.time,
-            moment=peak.moment,
-        )
-        for c, peak in enumerate(table.largest)
+def _reactions(table: ReactionTable, units: Units) -> Grid:
+    """Each connection's largest force with its components and time, and its largest moment."""
+
+    def name(row: tuple[int, PeakReaction]) -> str:
+        connection = table.connections[row[0]]
+        return connection + " (shared)" * (connection in table.shared)
+
+    def part(k: int) -> Callable[[tuple[int, PeakReaction]], str]:
+        return lambda row: components(row[1].components, row[1].force)[k]
+
+    columns: list[Column[tuple[int, PeakReaction]]] = [
+        read_only("connection", name, numeric=False),
+        read_only("body", lambda row: table.bodies[row[0]], numeric=False),
+        read_only("pin", lambda row: table.pins[row[0]], numeric=False),
+        read_only("force", lambda row: row[1].force, "force"),
+        *(read_only(f"F{x}", part(k)) for k, x in enumerate("xyz")),
     ]
+    if table.times is not None:
+        columns.append(read_only("time", lambda row: row[1].time, "time"))
+    if table.moments.any():
+        columns.append(read_only("moment", lambda row: row[1].moment, "moment"))
+    return Table("reactions", columns, [*enumerate(table.largest)]).grid(units)
 
 
 def loads_at(pin: PinResult, units: Units) -> Grid | None:
     """Force of every body on a pin at the governing instant, world axes; None without loads."""
     if not pin.loads:
         return None
+
+    def part(name: str, k: int) -> Callable[[GoverningLoad], str]:
+        largest = max(float(np.abs(getattr(load, name)).max()) for load in pin.loads)
+        return lambda load: components(getattr(load, name).tolist(), largest)[k]
+
+    couple = f" [{units.force}·{units.length}]"
     turns = any(load.moment.any() for load in pin.loads)
-    head = ["connection", "body", "force", "Fx", "Fy", "Fz"]
-    head[2] += f" [{units.force}]"
-    if turns:
-        head += [f"{m} [{units.force}·{units.length}]" for m in ("Mx", "My", "Mz")]
-    force, moment = (
-        max(float(np.abs(getattr(load, name)).max()) for load in pin.loads)
-        for name in ("force", "moment")
-    )
-    body = []
-    for load in pin.loads:
-        row = [load.connection, load.body or DASH]
-        row += [engineering(float(np.linalg.norm(load.force)))]
-        row += components(load.force.tolist(), force)
-        if turns:
-            row += components(load.moment.tolist(), moment)
-        body.append(row)
-    return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
+    columns: list[Column[GoverningLoad]] = [
+        *texts("connection"),
+        read_only("body", lambda load: load.body or DASH, numeric=False),
+        read_only("force", lambda load: float(np.linalg.norm(load.force)), "force"),
+        *(read_only(f"F{x}", part("force", k)) for k, x in enumerate("xyz")),
+        *(read_only(f"M{x}{couple}", part("moment", k)) for k, x in enumerate("xyz") if turns),
+    ]
+    return Table("loads", columns, pin.loads).grid(units)
+
+
+TIMING_COLUMNS: list[Column[PinResult]] = [
+    *texts("pin case model"),
+    read_only("meshes", lambda p: str(len(p.history)) if p.dofs else DASH),
+    read_only("unknowns, finest mesh", lambda p: f"{p.dofs:,}" if p.dofs else DASH),
+    read_only("seconds", lambda p: engineering(p.seconds, 2)),
+]
 
 
 def timings(results: Results) -> Grid | None:
-    """Meshes, unknowns and seconds of every row; None without rows."""
-    if not results.pins:
-        return None
-    body = [
-        [
-            p.pin,
-            p.case,
-            p.model,
-            str(len(p.history)) if p.dofs else DASH,
-            f"{p.dofs:,}" if p.dofs else DASH,
-            engineering(p.seconds, 2),
-        ]
-        for p in results.pins
-    ]
-    total = sum(p.seconds for p in results.pins)
-    body.append(["all", "", "", "", "", engineering(total, 2)])
-    head = ["pin", "case", "model", "meshes", "unknowns, finest mesh", "seconds"]
-    return Grid(head, body, [not text for text in TIMING_TEXT_COLUMNS])
+    """Meshes, unknowns and seconds of every row, and all seconds; None without rows."""
+    grid = grid_of(Table("timings", TIMING_COLUMNS, results.pins), results.units)
+    total = engineering(sum(p.seconds for p in results.pins), 2)
+    return grid and replace(grid, body=[*grid.body, ["all", "", "", "", "", total]])

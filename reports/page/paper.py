@@ -13,24 +13,18 @@ from reports.data.decision import outcome, worst_first
 from reports.data.envelope import EnvelopeCell, detailed_rows
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
-from reports.format.grid import Grid
 from reports.format.words import headline
 from reports.page.joint import joint_part
 from reports.page.places import places_part
+from reports.tables.column import Column, Grid, Table, grid_of, texts
 from reports.tables.published import published_maxima
-from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_grid
+from reports.tables.strength.changes import REMEDIES_NOTE, change_notes, changes_table
 from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, matrix
-from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
-from reports.tables.strength.margins import governing_grid, not_made_words
-from reports.tables.strength.safety_factors import (
-    TEXT_COLUMNS,
-    display_rows,
-    display_text,
-    reading,
-    shown_columns,
-)
+from reports.tables.strength.fatigue import fatigue_sentence, shown_fatigue
+from reports.tables.strength.margins import governing_table, not_made_words
+from reports.tables.strength.safety_factors import reading, shown_factors
 from reports.tables.strength.sensitivities import SENSITIVITIES_NOTE as SENSITIVE
-from reports.tables.strength.sensitivities import sensitivities_grid
+from reports.tables.strength.sensitivities import shown_sensitivities
 from reports.text.loads_summary import load_parts
 from reports.text.method import METHOD_NOTE
 from reports.text.pin_sentence import drawing_caption, pin_sentence
@@ -44,7 +38,7 @@ MAX_DIMENSIONS = 5  # of a pin's sensitivities
 def document(results: Results, drawings: dict[str, str]) -> Content:
     """The content of report.typ. drawings: of the pins, as SVG."""
     everything, results = results, detailed_rows(results)
-    maxima = published_maxima(results)
+    maxima = grid_of(published_maxima(results), results.units)
     return {
         "title": results.title,
         "study": results.study,
@@ -55,7 +49,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "summary": summary(everything),
         "units": asdict(results.units),
         "factors": _factors(results),
-        "reading": reading(shown_columns(display_rows(results), results)),
+        "reading": reading(shown_factors(results)),
         "envelope": _envelope(everything),
         "margins": _margins(results),
         "changes": _changes(results),
@@ -68,7 +62,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
             {"case": part.case, "notes": part.notes, "grids": [asdict(g) for g in part.grids]}
             for part in load_parts(results)
         ],
-        "provenance": asdict(_provenance(results.provenance)) if results.provenance else None,
+        "provenance": asdict(_provenance(results)) if results.provenance else None,
         "assumptions": results.assumptions,
         "method": METHOD_NOTE,
     }
@@ -77,12 +71,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
 def _factors(results: Results) -> Content | None:
     if not results.pins:
         return None
-    rows = display_rows(results)
-    columns = shown_columns(rows, results)
-    for name in ("verdict", "model"):
-        columns.pop(name)
-    body = [[display_text(name, row) for name in columns] for row in rows]
-    grid = Grid(list(columns.values()), body, [name not in TEXT_COLUMNS for name in columns])
+    grid = shown_factors(results, without=("verdict", "model")).grid(results.units)
     return asdict(grid) | {"outcomes": [outcome(pin) for pin in worst_first(results)]}
 
 
@@ -106,14 +95,14 @@ def _used(cell: EnvelopeCell | None) -> Content | None:
 
 
 def _margins(results: Results) -> Content | None:
-    grid = governing_grid(results)
+    grid = grid_of(governing_table(results), results.units)
     return None if grid is None else {"grid": asdict(grid), "notes": not_made_words(results)}
 
 
 def _fatigue(results: Results) -> Content | None:
     if results.fatigue is None:
         return None
-    grid, notes = fatigue_grid(results), results.fatigue.left_out
+    grid, notes = grid_of(shown_fatigue(results), results.units), results.fatigue.left_out
     said = fatigue_sentence(results.fatigue)
     return {"sentence": said, "grid": grid and asdict(grid), "notes": notes}
 
@@ -123,7 +112,8 @@ def _changes(results: Results) -> Content | None:
         return None
     notes = [REMEDIES_NOTE, *change_notes(results)]
     size = command(results.changes, results.study, results.required_safety_factor)
-    return {"grid": asdict(changes_grid(results)), "notes": notes, "command": size or None}
+    grid = changes_table(results).grid(results.units)
+    return {"grid": asdict(grid), "notes": notes, "command": size or None}
 
 
 def _sensitivities(results: Results) -> Content | None:
@@ -132,7 +122,8 @@ def _sensitivities(results: Results) -> Content | None:
     for pin in worst_first(results):
         worst.setdefault(pin.pin, pin.case)
     governing = tuple(x for x in results.sensitivities if worst.get(x.pin) == x.case)
-    grid = sensitivities_grid(replace(results, sensitivities=governing), MAX_DIMENSIONS)
+    of_worst = replace(results, sensitivities=governing)
+    grid = grid_of(shown_sensitivities(of_worst, MAX_DIMENSIONS), results.units)
     if grid is None:
         return None
     return {"grid": asdict(grid), "introduction": f"{SENSITIVE} Each pin is in its worst case."}
@@ -164,6 +155,10 @@ def _case(pin: PinResult, results: Results) -> Content:
     }
 
 
-def _provenance(found: tuple[Provenance, ...]) -> Grid:
-    body = [[each.key, each.value, each.kind, each.note] for each in found]
-    return Grid(["input", "value", "source", "note"], body, [False] * 4)
+PROVENANCE_COLUMNS: list[Column[Provenance]] = [
+    *texts("input=key value source=kind note"),
+]
+
+
+def _provenance(results: Results) -> Grid:
+    return Table("provenance", PROVENANCE_COLUMNS, results.provenance).grid(results.units)

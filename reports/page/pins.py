@@ -5,20 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.data.decision import outcome
-from reports.data.results import PinResult, Results, Units
-from reports.format.grid import Grid
+from reports.data.results import PinResult, Results
 from reports.format.numbers import ratio
 from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
 from reports.page.places import PlacesPart, places_part
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.viewer import PinView, pin_views
-from reports.tables.strength.hand_checks import hand_check_table
-from reports.tables.strength.margins import margins_grid
-from reports.tables.stress.singular_zones import Zone, pin_zones, zone_table
+from reports.tables.column import Grid, grid_of
+from reports.tables.strength.hand_checks import pin_checks
+from reports.tables.strength.margins import pin_margins
+from reports.tables.stress.singular_zones import pin_zones, shown_zones
 from reports.text.pin_sentence import drawing_caption, pin_sentence
-
-NUMERIC_ZONE_COLUMNS = ("zone", "exponent")
 
 
 @dataclass(frozen=True)
@@ -72,9 +70,9 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
                     p,
                     outcome(p),
                     pin_sentence(p, results.units),
-                    _zones(zones[name][p.case], results.units),
-                    Grid(*hand_check_table(p, results.units)) if p.hand_checks else None,
-                    margins_grid(results, p.pin, p.case),
+                    grid_of(shown_zones(p, zones[name][p.case], results.units), results.units),
+                    pin_checks(p, results.units).grid(results.units) if p.hand_checks else None,
+                    grid_of(pin_margins(results, p.pin, p.case), results.units),
                     loads_at(p, results.units),
                     places_part(p, results.units),
                     joint_part(p, results.units),
@@ -91,10 +89,3 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
         )
         for number, name in enumerate(names, start=1)
     ]
-
-
-def _zones(zones: list[Zone], units: Units) -> Grid | None:
-    if not zones:
-        return None
-    head, body = zone_table(zones, units.length, units.stress)
-    return Grid(head, body, [name in NUMERIC_ZONE_COLUMNS or "[" in name for name in head])

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 from fea.core.places import BENEATH_DISTANCE, ContactEdge, ContactPlace, SectionPlace
 from reports.data.results import PinResult, Units
-from reports.format.grid import Grid
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_text
-from reports.tables.stress.places import factor_at
+from reports.tables.column import Column, Grid, Table, read_only, texts
+from reports.tables.stress.places import PlaceRow, place_rows
 
 MIN_RELATIVE_DISTANCE = 1e-6  # of the place of the largest stress: no distance is smaller
+PLACE_NAMES = {"beneath": "beneath contact"}
 PLACES_NOTE = (
     "The row's stress is the larger of surface and section. Beneath contact: the largest von Mises "
     f"stress of the pin, inside or on its surface, farther than {BENEATH_DISTANCE:g} diameters "
@@ -59,44 +60,30 @@ def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
 
 
 def _grid(pin: PinResult, units: Units) -> Grid:
-    places = pin.places
-    assert places is not None
-    surface, section, contact = places.surface, places.section, places.contact
-    found = [
-        ("surface", surface.max_von_mises, surface.error_estimate, surface.verdict,
-         _at(surface.location), surface.time),
-    ]  # fmt: skip
-    if section is not None:
-        found.append(
-            ("section", section.max_von_mises, section.error_estimate, section.verdict,
-             ["", "", engineering(section.z)], section.time)
-        )  # fmt: skip
-    if contact is not None:
-        found.append(
-            ("beneath contact", contact.beneath, contact.beneath_error, "",
-             _at(contact.beneath_location), contact.beneath_time)
-        )  # fmt: skip
-    timed = any(time is not None for *_, time in found)
-    head = [
-        "place", f"von Mises [{units.stress}]", "±", "safety factor", f"x [{units.length}]", "y",
-        "z", f"t [{units.time}]", "",
-    ]  # fmt: skip
-    body = [
-        [
-            name, engineering(stress), engineering(error, 2),
-            factor_text(factor_at(pin, stress), pin.required or 1.0), *where,
-            DASH if time is None else short(time),
-            ", ".join(filter(None, (verdict, "governs" * (name == places.governs)))),
-        ]
-        for name, stress, error, verdict, where, time in found
-    ]  # fmt: skip
-    if not timed:
-        head, body = head[:7] + head[8:], [row[:7] + row[8:] for row in body]
-    return Grid(head, body, [False, *[True] * (len(head) - 2), False])
+    columns: list[Column[PlaceRow]] = [
+        read_only("place", lambda row: PLACE_NAMES.get(row.place, row.place), numeric=False),
+        read_only("von Mises", lambda row: row.stress, "stress"),
+        read_only("±", lambda row: engineering(row.error, 2)),
+        read_only("safety factor", lambda row: factor_text(row.factor, pin.required or 1.0)),
+        read_only("x", lambda row: _at(row)[0], "length"),
+        read_only("y", lambda row: _at(row)[1]),
+        read_only("z", lambda row: _at(row)[2]),
+        read_only("t", lambda row: row.time, "time", drop_if_empty=True),
+        read_only(" ", _remark, numeric=False),
+    ]
+    return Table("places", columns, place_rows(pin, units)).grid(units)
 
 
-def _at(location: tuple[float, float, float]) -> list[str]:
-    return list(components(location, max(map(abs, location))))
+def _remark(row: PlaceRow) -> str:
+    verdict = getattr(row.of, "verdict", "")
+    return ", ".join(filter(None, (verdict, "governs" * row.governs)))
+
+
+def _at(row: PlaceRow) -> list[str]:
+    """The coordinates that a place has."""
+    known = [x for x in row.at if x is not None]
+    texts = components(known, max(map(abs, known))) if known[1:] else map(engineering, known)
+    return [*[""] * (len(row.at) - len(known)), *texts]
 
 
 def _acting(section: SectionPlace | None, units: Units) -> str:
@@ -138,30 +125,24 @@ def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
 
 def _edges(edges: tuple[ContactEdge, ...], units: Units, least: float) -> Grid:
     """least: a smaller distance is none."""
-    peaks = any(edge.max_pressure is not None for edge in edges)
-    head = [
-        "lug", "edge", f"K [{units.stress}·{units.length}^exponent]", "exponent",
-        f"yield at [{units.length}]",
-    ]  # fmt: skip
-    if peaks:
-        head += [f"peak pressure [{units.stress}]", "±", f"von Mises under it [{units.stress}]"]
-    body = [
-        [
-            edge.band, edge.end, engineering(edge.K, 3), engineering(edge.exponent, 3),
-            _distance(edge.yield_distance, least),
-            *([_peak(edge.max_pressure), engineering(edge.error_estimate, 2),
-               engineering(edge.max_von_mises, 3)] if peaks else []),
-        ]
-        for edge in edges
-    ]  # fmt: skip
-    return Grid(head, body, [False, False, *[True] * (len(head) - 2)])
+    peak: list[Column[ContactEdge]] = [
+        read_only("peak pressure", lambda edge: engineering(edge.max_pressure, 3), "stress"),
+        read_only("±", lambda edge: engineering(edge.error_estimate, 2)),
+        read_only("von Mises under it", lambda edge: engineering(edge.max_von_mises, 3), "stress"),
+    ]
+    columns: list[Column[ContactEdge]] = [
+        *texts("lug=band edge=end"),
+        read_only(
+            f"K [{units.stress}·{units.length}^exponent]", lambda edge: engineering(edge.K, 3)
+        ),
+        read_only("exponent", lambda edge: engineering(edge.exponent, 3)),
+        read_only("yield at", lambda edge: _distance(edge.yield_distance, least), "length"),
+        *(peak if any(edge.max_pressure is not None for edge in edges) else ()),
+    ]
+    return Table("contact_edges", columns, edges).grid(units)
 
 
 def _distance(distance: float | None, least: float) -> str:
     if distance is None:
         return DASH
     return "0" if distance < least else engineering(distance, 2)
-
-
-def _peak(pressure: float | None) -> str:
-    return DASH if pressure is None else engineering(pressure, 3)

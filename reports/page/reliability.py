@@ -5,15 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 
 from reports.data.reliability import Reliability, Risk
-from reports.format.grid import Grid
 from reports.format.template import environment
 from reports.plots.draw import svg
 from reports.plots.reliability import distribution_plot
 from reports.plots.theme import on_paper
-from reports.tables.reliability import drivers_grid, risks_grid, ways_grid
+from reports.tables.column import Column, Table, read_only
+from reports.tables.reliability import drivers_table, risks_table, ways_table
 from reports.text.reliability import remarks, sentence, solved, ways_title
 
 MAX_DISTRIBUTION_PLOTS = 12  # plots
+LAW_COLUMNS: list[Column[tuple[str, str]]] = [
+    read_only("number", lambda parameter: parameter[0], numeric=False),
+    read_only("law", lambda parameter: parameter[1], numeric=False),
+]
 
 
 def write_reliability_page(found: Reliability, path: Path) -> None:
@@ -21,7 +25,7 @@ def write_reliability_page(found: Reliability, path: Path) -> None:
     plots = (
         distribution_plot(found, risk) for risk in _worst_first(found)[:MAX_DISTRIBUTION_PLOTS]
     )
-    laws = Grid(["number", "law"], [list(p) for p in found.parameters], [False, False])
+    laws = Table("laws", LAW_COLUMNS, found.parameters)
     text = (
         environment()
         .get_template("reliability.html.j2")
@@ -29,10 +33,10 @@ def write_reliability_page(found: Reliability, path: Path) -> None:
             found=found,
             sentence=sentence(found, found.risks[0]) if found.risks else "",
             sections=[
-                ("Pins and cases", risks_grid(found)),
-                (ways_title(found), ways_grid(found)),
-                ("What drives it", drivers_grid(found)),
-                ("Random numbers", laws),
+                ("Pins and cases", risks_table(found).grid()),
+                (ways_title(found), ways_table(found).grid()),
+                ("What drives it", drivers_table(found).grid()),
+                ("Random numbers", laws.grid()),
             ],
             remarks=[*remarks(found), solved(found)],
             plots=[

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from operator import mul
 
 from assess.opinion.opinions import BandOpinion, Opinion
 from reports.data.results import Units
-from reports.format.grid import Grid
-from reports.format.numbers import engineering
-from reports.text.chart_summary import percent
+from reports.format.numbers import percent
+from reports.tables.column import Column, Grid, Table, read_only
 from reports.text.second_opinion import outcome_of, sentences
 
 LENGTH_PARTS = (
@@ -19,6 +18,7 @@ LENGTH_PARTS = (
     ("middle half", 0.25, 0.75),
     ("last quarter", 0.75, 1.0),
 )
+BandPart = tuple[BandOpinion, tuple[str, float, float]]  # a band and one of LENGTH_PARTS
 
 
 @dataclass(frozen=True)
@@ -40,15 +40,19 @@ def opinion_part(opinion: Opinion | None, units: Units) -> OpinionPart | None:
 
 def _loads(bands: tuple[BandOpinion, ...], units: Units) -> Grid:
     """Means over the ends and the middle of each band."""
-    body = []
-    for band in bands:
-        elsewhere = [percent(band.elsewhere), "", ""]
-        for (name, low, high), part in zip(LENGTH_PARTS, elsewhere, strict=True):
-            both = (_mean(band.ends, load, low, high) for load in (band.ours, band.theirs))
-            body.append([band.name, name, *map(engineering, both), part])
-    unit = f"[{units.force}/{units.length}]"
-    head = ["connection", "part", f"ours {unit}", f"CalculiX {unit}", "load elsewhere"]
-    return Grid(head, body, [False, False, True, True, True])
+
+    def mean(load: str) -> Callable[[BandPart], float]:
+        return lambda row: _mean(row[0].ends, getattr(row[0], load), *row[1][1:])
+
+    columns: list[Column[BandPart]] = [
+        read_only("connection", lambda row: row[0].name, numeric=False),
+        read_only("part", lambda row: row[1][0], numeric=False),
+        read_only("ours", mean("ours"), "force per length"),
+        read_only("CalculiX", mean("theirs"), "force per length"),
+        read_only("load elsewhere", lambda row: "" if row[1][1] else percent(row[0].elsewhere)),
+    ]
+    rows = [(band, part) for band in bands for part in LENGTH_PARTS]
+    return Table("loads", columns, rows).grid(units)
 
 
 def _mean(ends: Sequence[float], load: Sequence[float], low: float, high: float) -> float:

@@ -5,27 +5,28 @@ from __future__ import annotations
 from typing import Any
 
 from reports.data.results import Results
+from reports.tables.column import grid_of
 from reports.tables.strength.envelope import ENVELOPE_NOTE, cell_text, heat, matrix
-from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence, worst_points
+from reports.tables.strength.fatigue import fatigue_sentence, shown_fatigue, worst_points
 from reports.tables.strength.margins import (
     BENDING_ARMS_NOTE,
     MARGINS_NOTE,
-    arms_grid,
-    governing_grid,
+    governing_table,
     not_made_words,
+    shown_arms,
 )
 
 
 def margin_part(results: Results) -> dict[str, Any] | None:
     """None where no check was made."""
-    grid = governing_grid(results)
+    grid = grid_of(governing_table(results), results.units)
     if grid is None:
         return None
     return {
         "grid": grid,
         "reading": MARGINS_NOTE,
         "not_made": not_made_words(results),
-        "arms": arms_grid(results),
+        "arms": grid_of(shown_arms(results), results.units),
         "arms_reading": BENDING_ARMS_NOTE,
     }
 
@@ -47,6 +48,6 @@ def fatigue_part(results: Results) -> dict[str, Any] | None:
     return {
         "of": results.fatigue,
         "sentence": fatigue_sentence(results.fatigue),
-        "grid": fatigue_grid(results),
+        "grid": grid_of(shown_fatigue(results), results.units),
         "points": worst_points(results.fatigue),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 from typing import Any
@@ -12,12 +13,12 @@ from markupsafe import Markup
 from reports.data.results import Floats, PinResult, PinShape, Results
 from reports.data.surface import SURFACE_SECTORS, HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.drawing.camera import View
-from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
 from reports.format.packed import packed
 from reports.format.ranges import error_words, factor_range
 from reports.format.script_json import script_json
 from reports.format.words import verdict_words
+from reports.tables.column import Column, Grid, Table, read_only
 
 MAX_LOAD_INTEGER = 32767  # loads are integers up to this, scaled by the largest
 MAX_STRESS_INTEGER = (
@@ -31,6 +32,7 @@ PRESSURE_PERCENTILE = 90.0  # per cent of cells under pressure whose colours dif
 SURFACE_MAXIMUM_SHARE = (
     0.999  # of the maximum; if the whole surface is below it, the maximum is inside
 )
+Segment = tuple[str, float, float]  # its name, and between which z
 
 
 @dataclass(frozen=True)
@@ -251,27 +253,37 @@ def _along(
     """The largest stress on each segment's surface outside of what is excluded, and where, for
     every case at its governing instant.
     """
-    units = results.units
-    head = ["segment", f"z from [{units.length}]", f"to [{units.length}]"]
-    for case, _, _ in shown:
-        head += [f"{case.case}: maximum [{units.stress}]", f"at z [{units.length}]"]
-    body, at = [], float(shown[0][2].points[:, 2].min())
+    columns: list[Column[Segment]] = [
+        read_only("segment", lambda row: row[0] or DASH, numeric=False),
+        read_only("z from", lambda row: row[1], "length"),
+        read_only("to", lambda row: row[2], "length"),
+    ]
+
+    def most(case: SurfaceCase, surface: Surface, k: int) -> Callable[[Segment], float | None]:
+        return lambda row: _most(case, surface.points[:, 2], *row[1:])[k]
+
+    for case, _, surface in shown:
+        columns += [
+            read_only(f"{case.case}: maximum", most(case, surface, 0), "stress"),
+            read_only("at z", most(case, surface, 1), "length"),
+        ]
+    rows, at = [], float(shown[0][2].points[:, 2].min())
     for length, _, _, label, _ in shape.segments:
-        row = [label or DASH, engineering(at), engineering(at + length)]
-        for case, _, surface in shown:
-            row += _most(case, surface.points[:, 2], at, at + length)
-        body.append(row)
+        rows.append((label, at, at + length))
         at += length
-    return Grid(head, body, [False, *[True] * (len(head) - 1)])
+    return Table("along", columns, rows).grid(results.units)
 
 
-def _most(case: SurfaceCase, z: Floats, low: float, high: float) -> list[str]:
+def _most(
+    case: SurfaceCase, z: Floats, low: float, high: float
+) -> tuple[float | None, float | None]:
+    """The largest stress between two z, and its z."""
     little = 1e-6 * float(np.ptp(z))
     here = np.flatnonzero((z >= low - little) & (z <= high + little) & ~case.excluded)
     if not len(here):
-        return [DASH, DASH]
+        return None, None
     most = here[case.largest[here].argmax()]
-    return [engineering(float(case.largest[most])), engineering(float(z[most]))]
+    return float(case.largest[most]), float(z[most])
 
 
 def _parts(values: Floats, largest: Floats, whole: int) -> Floats:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import textwrap
 from math import ceil, floor, log10
 
-from reports.data.chart import CHART_NAME, Chart, ChartPoint
+from reports.data.chart import CHART_NAME, Chart, ChartPoint, error
+from reports.format.numbers import percent
 from reports.plots.spec import Plot, Spec, clipped, headed, level, rows
-from reports.text.chart_summary import curve_name, error, failures, percent, reference_line
+from reports.text.chart_summary import curve_name, failures, reference_line
 
 SUBTITLE_LINE_LENGTH = 110  # letters of a line under the title
 AXIS_ROOM_FACTOR = 2.5  # factor beyond the outermost points

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 from reports.data.results import Results
+from reports.tables.column import Table
 from reports.tables.loads.drop import drop_table
 from reports.tables.loads.linkage import linkage_tables
 from reports.tables.loads.motion import (
@@ -18,7 +20,7 @@ from reports.tables.loads.motion import (
 from reports.tables.published import published_reactions_table, published_values_table
 from reports.tables.strength.envelope import envelope_table
 from reports.tables.strength.fatigue import fatigue_tables
-from reports.tables.strength.hand_checks import hand_check_rows
+from reports.tables.strength.hand_checks import hand_checks_table
 from reports.tables.strength.landing import landing_table
 from reports.tables.strength.limit_load import limit_load_table
 from reports.tables.strength.margins import arms_table, margins_table
@@ -28,7 +30,6 @@ from reports.tables.stress.calculix import opinion_tables
 from reports.tables.stress.joint import joint_tables
 from reports.tables.stress.places import place_tables
 from reports.tables.stress.singular_zones import zones_table
-from reports.tables.table import Table
 
 # Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
 CSV_ONLY_TABLES = (
@@ -47,19 +48,19 @@ MAX_SHEET_ROWS = (
 )
 
 
-def sheets(tables: Sequence[Table]) -> list[Table]:
+def sheets(tables: Sequence[Table[Any]]) -> list[Table[Any]]:
     """Those that the workbook has."""
-    return [t for t in tables if t.name not in CSV_ONLY_TABLES and len(t.rows) <= MAX_SHEET_ROWS]
+    return [t for t in tables if t.name not in CSV_ONLY_TABLES and len(t) <= MAX_SHEET_ROWS]
 
 
-def stress_tables(results: Results) -> list[Table]:
+def stress_tables(results: Results) -> list[Table[Any]]:
     """Tables that need stresses, without empty ones; safety factors first."""
     check = results.beam_check
-    rest = [
+    rest: list[Table[Any]] = [
         envelope_table(results),
         margins_table(results),
         arms_table(results),
-        hand_check_rows(results),
+        hand_checks_table(results),
         *place_tables(results),
         zones_table(results),
         landing_table(results),
@@ -67,12 +68,12 @@ def stress_tables(results: Results) -> list[Table]:
     rest += [*joint_tables(results), *opinion_tables(results), *fatigue_tables(results)]
     rest += [limit_load_table(results), sensitivities_table(results)]
     rest += [] if check is None else [beam_check_table(check)]
-    return [safety_factors_table(results), *(table for table in rest if table.rows)]
+    return [safety_factors_table(results), *(table for table in rest if len(table))]
 
 
-def load_tables(results: Results) -> list[Table]:
+def load_tables(results: Results) -> list[Table[Any]]:
     """Tables of the loads, without empty ones."""
-    tables = [published_reactions_table(results), published_values_table(results)]
+    tables: list[Table[Any]] = [published_reactions_table(results), published_values_table(results)]
     tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
     if results.motion_check is not None:
         tables.append(motion_check_table(results.motion_check))
@@ -81,5 +82,5 @@ def load_tables(results: Results) -> list[Table]:
     if results.legs:
         tables.append(leg_table(results.legs))
     # All tables of a linkage, so that every run has the same files.
-    full = [table for table in tables if table.rows]
+    full = [table for table in tables if len(table)]
     return full + (linkage_tables(results) if results.motion else [])

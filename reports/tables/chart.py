@@ -4,25 +4,39 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from reports.data.chart import CHART_NAME, Chart
-from reports.format.files.csv import write_csv
+from reports.data.chart import CHART_NAME, Chart, ChartPoint, error
+from reports.format.numbers import DASH, engineering, percent, seconds
+from reports.tables.column import Column, Table, fields
 
-COLUMNS = (
-    "model", "element", "dofs", "seconds", "peak_memory_mb", "max_von_mises", "relative_error",
-    "within_tolerance", "chosen_by_auto", "failed",
-)  # fmt: skip
+
+def chart_table(chart: Chart) -> Table[ChartPoint]:
+    """A row per mesh; failed ones have a reason instead of numbers."""
+
+    def within(p: ChartPoint) -> bool | None:
+        return None if p.error is None else p.error <= chart.tolerance
+
+    columns: list[Column[ChartPoint]] = [
+        Column("model", lambda p: p.model, heading="Model", numeric=False),
+        Column("element", lambda p: p.element, heading="Element", numeric=False),
+        Column("dofs", lambda p: p.dofs, "", "unknowns",
+               lambda p: f"{p.dofs:,}" if p.dofs and not p.failed else DASH),
+        Column("seconds", lambda p: p.seconds, "", "time",
+               lambda p: DASH if p.failed else seconds(p.seconds)),
+        Column("peak_memory_mb", lambda p: p.memory, "", "memory\n[MB]",
+               lambda p: DASH if p.failed else engineering(p.memory, 2)),
+        Column("max_von_mises", lambda p: p.max_von_mises, "",
+               f"max von\nMises\n[{chart.stress_unit}]",
+               lambda p: DASH if p.failed else engineering(p.max_von_mises)),
+        Column("relative_error", lambda p: p.error, "", "error",
+               lambda p: DASH if p.failed else percent(error(p))),
+        Column("within_tolerance", within),
+        Column("chosen_by_auto", lambda p: p.chosen, "", " ",
+               lambda p: "failed" if p.failed else "auto" * p.chosen, numeric=False),
+        *fields("failed"),
+    ]  # fmt: skip
+    return Table(CHART_NAME, columns, chart.points)
 
 
 def write_chart_csv(chart: Chart, directory: Path) -> None:
-    """Write chart.csv with all digits; failed meshes have a reason instead of numbers."""
-    write_csv(
-        directory / f"{CHART_NAME}.csv",
-        COLUMNS,
-        (
-            (
-                p.model, p.element, p.dofs, p.seconds, p.memory, p.max_von_mises, p.error,
-                None if p.error is None else p.error <= chart.tolerance, p.chosen, p.failed,
-            )
-            for p in chart.points
-        ),
-    )  # fmt: skip
+    """Write chart.csv with all digits."""
+    chart_table(chart).write(directory)

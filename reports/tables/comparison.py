@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 from reports.data.comparison import NOT_SOLVED, UNCHANGED, RowPair, RunComparison, Side, ValuePair
-from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering
+from reports.tables.column import Column, Table, read_only, texts
 
 MAX_SHOWN_FORCES = 30  # forces shown
 CHANGE_DIGITS = 3  # digits
 
 
-def rows_grid(found: RunComparison) -> Grid:
+def rows_table(found: RunComparison) -> Table[RowPair]:
     """Pins and cases, the important changes first; those without any are left out."""
-    maxima = [f"max von Mises {run} [{found.stress}]" for run in "AB"]
-    head = ["pin", "case", *maxima, "change", "factor A → B", "result A → B", "change is"]
-    body = [
-        [
-            row.pin,
-            row.case,
-            *(_range(side) for side in (row.first, row.second)),
-            per_cent(row.change),
-            _from_to(*(DASH if s is None else engineering(s.factor) for s in _sides(row))),
-            _from_to(*(DASH if s is None else s.outcome for s in _sides(row))),
-            row.kind,
-        ]
-        for row in changed_rows(found)
+
+    def both(text: Callable[[Side], str]) -> Callable[[RowPair], str]:
+        return lambda row: _from_to(*(DASH if s is None else text(s) for s in _sides(row)))
+
+    columns: list[Column[RowPair]] = [
+        *texts("pin case"),
+        read_only(f"max von Mises A [{found.stress}]", lambda row: _range(row.first), rank=4),
+        read_only(f"max von Mises B [{found.stress}]", lambda row: _range(row.second), rank=3),
+        read_only("change", lambda row: per_cent(row.change)),
+        read_only("factor A → B", both(lambda side: engineering(side.factor)), rank=1),
+        read_only("result A → B", both(lambda side: side.outcome), rank=2, numeric=False),
+        read_only("change is", lambda row: row.kind, numeric=False),
     ]
-    return Grid(head, body, [False, False, *[True] * 4, False, False])
+    return Table("rows", columns, changed_rows(found))
 
 
 def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
@@ -43,41 +44,48 @@ def changed_rows(found: RunComparison) -> list[RowPair]:
     return [row for row in found.rows if row.kind != UNCHANGED]
 
 
-def inputs_grid(found: RunComparison) -> Grid:
+def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
+    """Values that differ, by `name`."""
+    columns: list[Column[ValuePair]] = [
+        read_only(name, lambda pair: pair.names[0], numeric=False),
+        read_only("A", lambda pair: _text(pair.first), numeric=False),
+        read_only("B", lambda pair: _text(pair.second), numeric=False),
+    ]
+    return Table("pairs", columns, pairs)
+
+
+def inputs_table(found: RunComparison) -> Table[ValuePair]:
     """Values that differ, by key."""
-    return Grid(["input", "A", "B"], _texts(found.inputs or ()), [False, False, False])
+    return _pairs("input", found.inputs or ())
 
 
-def versions_grid(found: RunComparison) -> Grid:
+def versions_table(found: RunComparison) -> Table[ValuePair]:
     """Programs whose versions differ."""
-    return Grid(["program", "A", "B"], _texts(found.versions), [False, False, False])
+    return _pairs("program", found.versions)
 
 
-def forces_grid(found: RunComparison) -> Grid:
+def forces_table(found: RunComparison) -> Table[ValuePair]:
     """Largest forces that differ, the largest changes first."""
-    body = [
-        [*pair.names, engineering(pair.first), engineering(pair.second), per_cent(pair.change)]
-        for pair in found.forces[:MAX_SHOWN_FORCES]
+    columns: list[Column[ValuePair]] = [
+        read_only("case", lambda pair: pair.names[0], numeric=False),
+        read_only("connection", lambda pair: pair.names[1], numeric=False),
+        read_only(f"largest force A [{found.force}]", lambda pair: pair.first),
+        read_only(f"B [{found.force}]", lambda pair: pair.second),
+        read_only("change", lambda pair: per_cent(pair.change)),
     ]
-    head = [
-        "case",
-        "connection",
-        f"largest force A [{found.force}]",
-        f"B [{found.force}]",
-        "change",
-    ]
-    return Grid(head, body, [False, False, True, True, True])
+    return Table("forces", columns, found.forces[:MAX_SHOWN_FORCES])
 
 
-def margins_grid(found: RunComparison) -> Grid:
+def margins_table(found: RunComparison) -> Table[ValuePair]:
     """Least margins of safety that differ."""
-    body = []
-    for pair in found.margins:
-        sides = [pair.first or (None, DASH), pair.second or (None, DASH)]
-        (a, check_a), (b, check_b) = sides
-        body.append([*pair.names, _signed(a), check_a, _signed(b), check_b])
-    head = ["pin", "least margin A", "check A", "least margin B", "check B"]
-    return Grid(head, body, [False, True, False, True, False])
+    columns: list[Column[ValuePair]] = [
+        read_only("pin", lambda pair: pair.names[0], numeric=False),
+        read_only("least margin A", lambda pair: _signed((pair.first or (None,))[0])),
+        read_only("check A", lambda pair: (pair.first or (DASH,))[-1], numeric=False),
+        read_only("least margin B", lambda pair: _signed((pair.second or (None,))[0])),
+        read_only("check B", lambda pair: (pair.second or (DASH,))[-1], numeric=False),
+    ]
+    return Table("margins", columns, found.margins)
 
 
 def left_out(found: RunComparison) -> str:
@@ -86,11 +94,8 @@ def left_out(found: RunComparison) -> str:
     return f"{more} more forces differ by less." if more > 0 else ""
 
 
-def _texts(pairs: tuple[ValuePair, ...]) -> list[list[str]]:
-    return [
-        [*pair.names, *(DASH if x is None else str(x) for x in (pair.first, pair.second))]
-        for pair in pairs
-    ]
+def _text(value: object) -> str:
+    return DASH if value is None else str(value)
 
 
 def _range(side: Side | None) -> str:

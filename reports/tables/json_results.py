@@ -10,19 +10,20 @@ from typing import Any
 from reports.data.decision import DEPENDS, outcome
 from reports.data.headline import headline_json
 from reports.data.results import (
-    Dependence,
+    DriveTable,
     DropRecord,
-    HandCheck,
-    PinResult,
     ReactionTable,
     Results,
     SingularZone,
 )
 from reports.format.numbers import finite
+from reports.format.plain import plain
 from reports.format.words import headline
+from reports.tables.column import Column, Table, fields, json_of
 from reports.tables.strength.fatigue import fatigue_json
 from reports.tables.strength.limit_load import limit_load_json
-from reports.tables.strength.margins import margins_json
+from reports.tables.strength.margins import margins_table
+from reports.tables.strength.safety_factors import FactorRow, safety_factors_table
 from reports.tables.strength.sensitivities import sensitivities_json
 from reports.tables.stress.calculix import opinion_json
 from reports.tables.stress.joint import joint_json
@@ -31,8 +32,44 @@ from reports.tables.stress.places import places_json
 RESULTS_SCHEMA = "pinstress-results/2"
 
 
+def _strength(key: str, name: str) -> Column[SingularZone]:
+    """A number of how strong a singular field is, where that was measured."""
+    return Column(key, lambda zone: getattr(zone.strength, name, None))
+
+
+# The keys of what no table has.
+PIN = fields(
+    "max_von_mises_interval error_parts why location safety_factor_interval dofs seconds history "
+    "held left_out"
+)
+DEPENDENCE = fields("what value over given at flips_at reach safety_factor=factor")
+ZONE: list[Column[SingularZone]] = [
+    *fields("location kind between exponent exponent_theory excluded_radius=excluded governs"),
+    *fields("max_von_mises"),
+    _strength("strength", "along"),
+    _strength("strength_exponent", "exponent"),
+    _strength("notch_stress_intensity", "notch"),
+    *fields("advice"),
+]
+CHECK = fields(
+    "name=method at time stress=demand strength=allowable factor=safety_factor formula "
+    "source=clause basis governs"
+)
+PEAK = fields("connection force time frictionless")
+DRIVE: list[Column[DriveTable]] = [
+    *fields("drive=name kind largest mean rms largest_power stroke"),
+    Column("frictionless", lambda drive: drive.effort and drive.effort.frictionless),
+    Column("position", lambda drive: drive.position[0] if drive.time is None else None),
+]
+DROP = fields(
+    "case clause velocity weight lift load_factor imbalance impulse_time impulse_force "
+    "equal_impulse_time spin_up"
+)
+
+
 def to_json(results: Results) -> dict[str, Any]:
     """The results as plain JSON values; missing numbers are null."""
+    factors = safety_factors_table(results)
     return {
         "schema": RESULTS_SCHEMA,
         "title": results.title,
@@ -43,8 +80,8 @@ def to_json(results: Results) -> dict[str, Any]:
         "tolerance": finite(results.tolerance),
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "headline": _headline(results),
-        "pins": [_pin(pin) for pin in results.pins],
-        "margins": margins_json(results),
+        "pins": [_pin(row, factors) for row in factors.rows],
+        "margins": margins_table(results).records(),
         "changes": [asdict(change) for change in results.changes],
         "sensitivities": sensitivities_json(results),
         "fatigue": fatigue_json(results.fatigue),
@@ -68,90 +105,34 @@ def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
         "case": table.case,
         "note": table.note,
         "shared": list(table.shared),
-        "largest_forces": [
-            {
-                "connection": p.connection,
-                "force": finite(p.force),
-                "time": finite(p.time),
-                "frictionless": finite(p.frictionless),
-            }
-            for p in table.largest
-        ],
-        "drives": [
-            {
-                "drive": d.name,
-                "kind": d.kind,
-                "largest": finite(d.largest),
-                "mean": finite(d.mean),
-                "rms": finite(d.rms),
-                "largest_power": finite(d.largest_power),
-                "stroke": finite(d.stroke),
-                "frictionless": finite(d.effort.frictionless) if d.effort else None,
-                "position": finite(d.position[0]) if d.time is None else None,
-            }
-            for d in results.drive
-            if d.case == table.case
-        ],
-        "unresolved": [[finite(low), finite(high)] for low, high in table.unresolved],
+        "largest_forces": [json_of(PEAK, peak) for peak in table.largest],
+        "drives": [json_of(DRIVE, drive) for drive in results.drive if drive.case == table.case],
+        "unresolved": plain(table.unresolved),
         "power_violation": finite(moved.ledger.violation) if moved else None,
         "largest_condition": finite(moved.worst_condition[0]) if moved else None,
     }
 
 
 def _drop(d: DropRecord) -> dict[str, Any]:
-    single = ("velocity", "weight", "lift", "load_factor", "imbalance", "impulse_time")
-    more = ("impulse_force", "equal_impulse_time", "spin_up")
-    return {
-        "case": d.case,
-        "clause": d.clause,
-        **{name: finite(getattr(d, name)) for name in (*single, *more)},
-        "peaks": {
-            name: {"value": finite(peak.value), "time": finite(peak.time)}
-            for name, peak in d.peaks.items()
-        },
-    }
+    peaks = {name: {"value": peak.value, "time": peak.time} for name, peak in d.peaks.items()}
+    return {**json_of(DROP, d), "peaks": plain(peaks)}
 
 
-def _pin(pin: PinResult) -> dict[str, Any]:
+def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
+    """A pin in a case: the columns of the safety factors that say so, and what no table has."""
+    pin, depends = of.pin, "depends_on" if outcome(of.pin) == DEPENDS else "safe_within"
     return {
-        "pin": pin.pin,
-        "case": pin.case,
-        "model": pin.model,
-        "max_von_mises": finite(pin.max_von_mises),
-        "max_von_mises_interval": _interval(pin.max_von_mises_interval),
-        "error_estimate": finite(pin.error_estimate),
-        "error_parts": {part: finite(value) for part, value in pin.error_parts.items()},
-        "verdict": pin.verdict,
-        "note": pin.note,
-        "why": pin.why,
-        "location": None if pin.location is None else [finite(x) for x in pin.location],
-        "time": finite(pin.time),
-        "safety_factor": finite(pin.safety_factor),
-        "safety_factor_interval": _interval(pin.safety_factor_interval),
+        **json_of([column for column in table.columns if column.in_json], of),
+        **json_of(PIN, pin),
         **places_json(pin),
-        "yields": _truth(pin.yields),
-        "meets_required": _truth(pin.meets_required),
-        "outcome": outcome(pin),
-        "depends_on": [_dependence(d) for d in pin.depends_on if outcome(pin) == DEPENDS],
-        "safe_within": [_dependence(d) for d in pin.depends_on if outcome(pin) != DEPENDS],
-        "dofs": int(pin.dofs),
-        "seconds": finite(pin.seconds),
-        "history": [
-            {
-                "dofs": int(step.dofs),
-                "max_von_mises": finite(step.max_von_mises),
-                "seconds": finite(step.seconds),
-                "strain_energy": finite(step.strain_energy),
-            }
-            for step in pin.history
-        ],
-        "singular_at": [_zone(zone) for zone in pin.singular_at],
-        "hand_checks": [_check(check) for check in pin.hand_checks],
+        "depends_on": [],
+        "safe_within": [],
+        depends: [json_of(DEPENDENCE, each) for each in pin.depends_on],
+        "singular_at": [json_of(ZONE, zone) for zone in pin.singular_at],
+        "hand_checks": [json_of(CHECK, check) for check in pin.hand_checks],
         "joint": joint_json(pin.joint),
         "second_opinion": opinion_json(pin.second_opinion),
         "limit_load": limit_load_json(pin.limit_load),
-        "held": pin.held,
-        "left_out": list(pin.left_out),
     }
 
 
@@ -160,58 +141,3 @@ def _headline(results: Results) -> dict[str, Any] | None:
     if found is not None:
         found["worst"]["factor"] = finite(found["worst"]["factor"])
     return found
-
-
-def _dependence(d: Dependence) -> dict[str, Any]:
-    return {
-        "what": d.what,
-        "value": d.value,
-        "over": d.over,
-        "given": finite(d.given),
-        "at": finite(d.at),
-        "flips_at": finite(d.flips_at),
-        "reach": finite(d.reach),
-        "safety_factor": finite(d.factor),
-    }
-
-
-def _interval(ends: tuple[float, float | None] | None) -> list[float | None] | None:
-    return None if ends is None else [finite(end) for end in ends]
-
-
-def _zone(zone: SingularZone) -> dict[str, Any]:
-    strength = zone.strength
-    return {
-        "location": [finite(x) for x in zone.location],
-        "kind": zone.kind,
-        "between": list(zone.between),
-        "exponent": finite(zone.exponent),
-        "exponent_theory": finite(zone.exponent_theory),
-        "excluded_radius": finite(zone.excluded),
-        "governs": bool(zone.governs),
-        "max_von_mises": finite(zone.max_von_mises),
-        "strength": finite(strength.along if strength else None),
-        "strength_exponent": finite(strength.exponent if strength else None),
-        "notch_stress_intensity": finite(strength.notch if strength else None),
-        "advice": zone.advice,
-    }
-
-
-def _check(check: HandCheck) -> dict[str, Any]:
-    return {
-        "name": check.name,
-        "at": check.at,
-        "time": finite(check.time),
-        "stress": finite(check.stress),
-        "strength": finite(check.strength),
-        "factor": finite(check.factor),
-        "formula": check.formula,
-        "source": check.source,
-        "basis": check.basis,
-        "governs": check.governs,
-    }
-
-
-def _truth(value: bool | None) -> bool | None:
-    # JSON cannot represent a numpy bool.
-    return None if value is None else bool(value)

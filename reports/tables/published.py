@@ -5,25 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.data.results import PublishedValue, ReactionTable, Results
+from reports.data.results import PinResult, PublishedValue, ReactionTable, Results
 from reports.format.files import markdown
-from reports.format.grid import Grid
 from reports.format.numbers import engineering, ratio
 from reports.format.ranges import factor_range
-from reports.tables.table import Table
-
-PUBLISHED_REACTION_COLUMNS = ("case", "connection", "ours", "published", "ratio")
-PUBLISHED_VALUE_COLUMNS = (
-    "case",
-    "time",
-    "quantity",
-    "name",
-    "published",
-    "ours",
-    "ratio",
-    "unit",
-    "reason",
-)
+from reports.tables.column import Column, Table, fields, read_only, texts
 
 
 @dataclass(frozen=True)
@@ -54,36 +40,47 @@ def _rows(table: ReactionTable) -> list[PublishedReaction]:
     return rows
 
 
-def published_reactions_table(results: Results) -> Table:
+def published_reactions_table(results: Results) -> Table[PublishedReaction]:
     """The same as a table."""
-    rows = (
-        [getattr(row, name) for name in PUBLISHED_REACTION_COLUMNS]
-        for row in published_reactions(results)
-    )
-    return Table.of("reactions_published", PUBLISHED_REACTION_COLUMNS, rows)
+    force = f" [{results.units.force}]"  # for people only
+    columns: list[Column[PublishedReaction]] = [
+        *texts("case connection"),
+        Column("ours", lambda row: row.ours, heading=f"ours{force}"),
+        Column("published", lambda row: row.published, heading=f"published{force}"),
+        Column("ratio", lambda row: row.ratio, heading="ours / published"),
+    ]
+    return Table("reactions_published", columns, published_reactions(results))
 
 
 def write_published_reactions(results: Results, directory: Path) -> None:
     """Write reactions_published.md, if there are published reactions."""
-    rows = published_reactions(results)
-    if not rows:
+    table = published_reactions_table(results)
+    if not table.rows:
         return
-    force = results.units.force
-    body = markdown.table(
-        ("case", "connection", f"ours [{force}]", f"published [{force}]", "ours / published"),
-        [
-            [r.case, r.connection, *(engineering(x) for x in (r.ours, r.published, r.ratio))]
-            for r in rows
-        ],
-        (False, False, True, True, True),
-    )
+    body = table.grid(results.units).markdown()
     title = f"# Reactions compared with published values: {markdown.escaped(results.title)}"
     (directory / "reactions_published.md").write_text(f"{title}\n\n{body}\n", encoding="utf-8")
 
 
-def published_values_table(results: Results) -> Table:
+VALUE_COLUMNS: list[Column[PublishedValue]] = [
+    *texts("case"),
+    *fields("time", "time"),
+    Column("quantity", lambda v: v.quantity, "", "quantity",
+           lambda v: f"{v.quantity.replace('_', ' ')} [{v.unit}]", numeric=False),
+    Column("name", lambda v: v.name, heading="of", numeric=False),
+    Column("published", lambda v: v.published, "", "published",
+           lambda v: engineering(v.published, 6)),
+    Column("ours", lambda v: v.ours, "", "ours", lambda v: engineering(v.ours, 6)),
+    Column("ratio", lambda v: ratio(v.ours, v.published), "", "ours / published",
+           lambda v: engineering(ratio(v.ours, v.published), 5)),
+    *fields("unit"),
+    *texts("reason"),
+]  # fmt: skip
+
+
+def published_values_table(results: Results) -> Table[PublishedValue]:
     """Every published value with ours."""
-    return Table.of("published", PUBLISHED_VALUE_COLUMNS, (_cells(v) for v in results.published))
+    return Table("published", VALUE_COLUMNS, results.published)
 
 
 def write_published_values(results: Results, directory: Path) -> None:
@@ -91,58 +88,26 @@ def write_published_values(results: Results, directory: Path) -> None:
     if not results.published:
         return
     title = f"# Comparison with published values: {markdown.escaped(results.title)}"
-    text = f"{title}\n\n{published_table(results.published)}\n"
+    body = published_values_table(results).grid(results.units).markdown()
+    text = f"{title}\n\n{body}\n"
     (directory / "published.md").write_text(text, encoding="utf-8")
 
 
-def _cells(v: PublishedValue) -> tuple[str | float | None, ...]:
-    relative = ratio(v.ours, v.published)
-    return v.case, v.time, v.quantity, v.name, v.published, v.ours, relative, v.unit, v.reason
+MAXIMUM_COLUMNS: list[Column[PinResult]] = [
+    *texts("pin case"),
+    read_only("published max", lambda pin: pin.published_max_von_mises, "stress"),
+    read_only("ours", lambda pin: pin.max_von_mises, "stress"),
+    read_only(
+        "ours / published",
+        lambda pin: engineering(ratio(pin.max_von_mises, pin.published_max_von_mises), 3),
+    ),
+    read_only("published factor", lambda pin: pin.published_safety_factor, rank=1),
+    read_only("our factor", factor_range, rank=2),
+    read_only("our verdict", lambda pin: pin.verdict, rank=3, numeric=False),
+]
 
 
-def published_table(values: tuple[PublishedValue, ...]) -> str:
-    """A Markdown table of published values, ours, their ratio and the reason for the difference."""
-    return markdown.table(
-        ("case", "quantity", "of", "published", "ours", "ours / published", "reason"),
-        [
-            [
-                v.case,
-                f"{v.quantity.replace('_', ' ')} [{v.unit}]",
-                v.name,
-                engineering(v.published, 6),
-                engineering(v.ours, 6),
-                engineering(ratio(v.ours, v.published), 5),
-                v.reason,
-            ]
-            for v in values
-        ],
-        (False, False, False, True, True, True, False),
-    )
-
-
-def published_maxima(results: Results) -> Grid | None:
+def published_maxima(results: Results) -> Table[PinResult]:
     """Published maxima and safety factors compared with ours, in the order of the study."""
     rows = [pin for pin in results.pins if pin.published_max_von_mises is not None]
-    if not rows:
-        return None
-    stress = results.units.stress
-    return Grid(
-        [
-            *("pin", "case", f"published max [{stress}]", f"ours [{stress}]", "ours / published"),
-            *("published factor", "our factor", "our verdict"),
-        ],
-        [
-            [
-                pin.pin,
-                pin.case,
-                engineering(pin.published_max_von_mises),
-                engineering(pin.max_von_mises),
-                engineering(ratio(pin.max_von_mises, pin.published_max_von_mises), 3),
-                engineering(pin.published_safety_factor),
-                factor_range(pin),
-                pin.verdict,
-            ]
-            for pin in rows
-        ],
-        [False, False, True, True, True, True, True, False],
-    )
+    return Table("published_maxima", MAXIMUM_COLUMNS, rows)

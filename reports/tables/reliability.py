@@ -4,86 +4,115 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
-from dataclasses import asdict, is_dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
-from reports.data.reliability import ByErrors, Reliability, Risk, Spread
-from reports.format.files.csv import Cell, write_csv
-from reports.format.grid import Grid
+from reports.data.reliability import ByErrors, Driver, Reliability, Risk, Spread
 from reports.format.numbers import DASH, engineering, finite
+from reports.format.plain import plain
+from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"
 PROBABILITY_DIGITS = 3
 OR_BENEATH_CONTACT = "or beneath contact"  # probability that a row fails, or depends on that
-COLUMNS = (
-    "pin", "case", "result", "verdict", "safety_factor", "limit_factor",
-    "probability", "probability_low", "probability_high", "probability_by",
-    "beneath", "beneath_low", "beneath_high",
-    "sampled", "sampled_low", "sampled_high", "failures", "samples", "unknown",
-    "weighted", "weighted_low", "weighted_high",
-    "form", "form_index", "form_design_points",
-    "mesh_error", "mesh_lower", "mesh_higher", "joint_least", "joint_most",
-    "joint_lower", "joint_higher",
-    "quantile_probability", "quantile", "quantile_low", "quantile_high", "quantile_form", "remark",
-)  # fmt: skip
-DRIVER_COLUMNS = (
-    "pin", "case", "parameter", "form_importance",
-    "sobol_first", "sobol_first_low", "sobol_first_high",
-    "sobol_total", "sobol_total_low", "sobol_total_high",
-)  # fmt: skip
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True)
+class RiskRow:
+    """A pin in a case, with all that was found."""
+
+    risk: Risk
+    found: Reliability
+
+    @property
+    def by(self) -> str:
+        """How its probability was found."""
+        return "importance sampling" if self.risk.by_weights else "plain sampling"
+
+
+@dataclass(frozen=True)
+class DriverRow:
+    """What a parameter contributes to the failure of a pin in a case."""
+
+    risk: Risk
+    driver: Driver
+
+
+def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
+    """A value with the ends of its interval."""
+
+    def end(name: str) -> Callable[[R], float | None]:
+        return lambda row: finite(getattr(spread(row), name, None))
+
+    ends = {key: "value", f"{key}_low": "low", f"{key}_high": "high"}
+    return [Column(name, end(part)) for name, part in ends.items()]
+
+
+def _form(key: str, name: str) -> Column[RiskRow]:
+    """A number of FORM, where that has an answer."""
+    return Column(key, lambda row: getattr(row.risk.form, name, None))
+
+
+def _by(errors: str) -> list[Column[RiskRow]]:
+    """What an error of the stress makes of a probability."""
+
+    def value(row: RiskRow, end: str) -> float | None:
+        return getattr(getattr(getattr(row.risk, errors), end, None), "value", None)
+
+    return [
+        Column(f"{errors}_least", lambda row: getattr(getattr(row.risk, errors), "least", None)),
+        Column(f"{errors}_most", lambda row: getattr(getattr(row.risk, errors), "most", None)),
+        Column(f"{errors}_lower", lambda row: value(row, "lower")),
+        Column(f"{errors}_higher", lambda row: value(row, "higher")),
+    ]
+
+
+COLUMNS: list[Column[RiskRow]] = [
+    *fields("risk.pin risk.case"),
+    Column("result", lambda row: row.risk.result(row.found.probability)),
+    *fields("risk.verdict safety_factor=risk.factor limit_factor=found.limit"),
+    *_ends("probability", lambda row: row.risk.probability),
+    *fields("probability_by=by"),
+    *_ends("beneath", lambda row: row.risk.beneath),
+    *_ends("sampled", lambda row: row.risk.sampled),
+    *fields("risk.failures found.samples risk.unknown"),
+    *_ends("weighted", lambda row: row.risk.weighted),
+    _form("form", "probability"),
+    _form("form_index", "index"),
+    _form("form_design_points", "points"),
+    *(replace(c, key="mesh_error" if c.key == "mesh_most" else c.key) for c in _by("mesh")[1:]),
+    *_by("joint"),
+    *fields("quantile_probability=found.probability"),
+    *_ends("quantile", lambda row: row.risk.quantile),
+    _form("quantile_form", "quantile"),
+    Column("remark", lambda row: remark(row.risk)),
+]
+DRIVER_COLUMNS: list[Column[DriverRow]] = [
+    *texts("risk.pin risk.case driver.parameter"),
+    Column("form_importance", lambda row: row.driver.importance, "", "importance (FORM)",
+           lambda row: _per_cent(row.driver.importance)),
+    *_ends("sobol_first", lambda row: row.driver.first),
+    *_ends("sobol_total", lambda row: row.driver.total),
+    read_only("Sobol index", lambda row: _share(row.driver.first), rank=1),
+    read_only("total Sobol index", lambda row: _share(row.driver.total), rank=2),
+]  # fmt: skip
 
 
 def write_reliability(found: Reliability, directory: Path) -> None:
     """Write reliability.csv, drivers.csv and reliability.json with all digits."""
-    write_csv(directory / "reliability.csv", COLUMNS, (_cells(found, r) for r in found.risks))
-    write_csv(directory / "drivers.csv", DRIVER_COLUMNS, _driver_cells(found))
-    content = {"schema": RELIABILITY_SCHEMA, **_plain(found)}
+    Table("reliability", COLUMNS, [RiskRow(risk, found) for risk in found.risks]).write(directory)
+    drivers = [DriverRow(risk, driver) for risk in found.risks for driver in risk.drivers]
+    Table("drivers", DRIVER_COLUMNS, drivers).write(directory)
+    content = {"schema": RELIABILITY_SCHEMA, **plain(found)}
     for risk, made in zip(found.risks, content["risks"], strict=True):
         made |= {"result": risk.result(found.probability), "by_weights": risk.by_weights}
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     path = directory / "reliability.json"
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
-
-
-def _plain(value: Any) -> Any:
-    """As JSON: what is not finite is null."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return _plain(asdict(value))
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
-    return finite(value) if isinstance(value, float) else value
-
-
-def _cells(found: Reliability, risk: Risk) -> list[Cell]:
-    form = risk.form
-    return [
-        risk.pin,
-        risk.case,
-        risk.result(found.probability),
-        risk.verdict,
-        risk.factor,
-        found.limit,
-        *_ends(risk.probability),
-        "importance sampling" if risk.by_weights else "plain sampling",
-        *_ends(risk.beneath),
-        *_ends(risk.sampled),
-        risk.failures,
-        found.samples,
-        risk.unknown,
-        *_ends(risk.weighted),
-        *((None,) * 3 if form is None else (finite(form.probability), finite(form.index),
-                                            form.points)),
-        *_errors(risk.mesh)[1:],
-        *_errors(risk.joint),
-        found.probability,
-        *_ends(risk.quantile),
-        None if form is None else finite(form.quantile),
-        remark(risk),
-    ]  # fmt: skip
 
 
 def remark(risk: Risk) -> str:
@@ -101,25 +130,6 @@ def remark(risk: Risk) -> str:
     if risk.unknown:
         said.append(f"{risk.unknown} designs have no result and count both ways")
     return "; ".join(said)
-
-
-def _ends(value: Spread | None) -> tuple[float | None, ...]:
-    if value is None:
-        return None, None, None
-    return finite(value.value), finite(value.low), finite(value.high)
-
-
-def _errors(found: ByErrors | None) -> tuple[float | None, ...]:
-    if found is None:
-        return None, None, None, None
-    return found.least, found.most, found.lower.value, found.higher.value
-
-
-def _driver_cells(found: Reliability) -> Iterator[list[Cell]]:
-    for risk in found.risks:
-        for each in risk.drivers:
-            yield [risk.pin, risk.case, each.parameter, each.importance,
-                   *_ends(each.first), *_ends(each.total)]  # fmt: skip
 
 
 def chance(value: float | None) -> str:
@@ -147,51 +157,52 @@ def factor_interval(value: Spread | None) -> str:
     return f"{engineering(value.value, PROBABILITY_DIGITS)} ({' to '.join(ends)})"
 
 
-def risks_grid(found: Reliability) -> Grid:
-    """A row per pin and case; with what lies beneath contact, where that is ever more."""
-    deep = found.deep
+def risks_table(found: Reliability) -> Table[Risk]:
+    """A row per pin and case, for people; what lies beneath contact only where it is ever more."""
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
-    head = ["pin", "case", "result", "FoS", f"FoS at probability {p} ({per_cent})",
-            f"P(FoS < {engineering(found.limit, PROBABILITY_DIGITS)}) ({per_cent})",
-            *[OR_BENEATH_CONTACT] * deep, "by mesh error", "over joint"]  # fmt: skip
-    body = [
-        [
-            risk.pin,
-            risk.case,
-            risk.result(found.probability),
-            engineering(risk.factor),
-            factor_interval(risk.quantile),
-            chance_range(risk.probability),
-            *[chance_range(risk.beneath or risk.probability)] * deep,
-            *(_by_errors(each) for each in (risk.mesh, risk.joint)),
-        ]
-        for risk in found.risks
+    limit = engineering(found.limit, PROBABILITY_DIGITS)
+    beneath: list[Column[Risk]] = [
+        read_only(OR_BENEATH_CONTACT, lambda risk: chance_range(risk.beneath or risk.probability))
     ]
-    return Grid(head, body, [False, False, False, *[True] * (len(head) - 3)])
+    columns: list[Column[Risk]] = [
+        *texts("pin case"),
+        read_only("result", lambda risk: risk.result(found.probability), numeric=False),
+        read_only("FoS", lambda risk: risk.factor, rank=1),
+        read_only(
+            f"FoS at probability {p} ({per_cent})",
+            lambda risk: factor_interval(risk.quantile), rank=2
+        ),
+        read_only(f"P(FoS < {limit}) ({per_cent})", lambda risk: chance_range(risk.probability)),
+        *beneath * found.deep,
+        read_only("by mesh error", lambda risk: _by_errors(risk.mesh), rank=3),
+        read_only("over joint", lambda risk: _by_errors(risk.joint), rank=4),
+    ]  # fmt: skip
+    return Table("risks", columns, found.risks)
 
 
-def ways_grid(found: Reliability) -> Grid:
+def ways_table(found: Reliability) -> Table[Risk]:
     """The same by each way of finding it."""
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
-    head = ["pin", "case", f"plain sampling ({per_cent})", "failures",
-            f"importance sampling ({per_cent})", "FORM", "reliability index",
-            f"FoS at {p}, plain", "FoS, importance", "FoS, FORM"]  # fmt: skip
-    body = []
-    for risk in found.risks:
-        form = risk.form
-        body.append([
-            risk.pin,
-            risk.case,
-            chance_range(risk.sampled),
-            f"{risk.failures:,} of {found.samples:,}",
-            chance_range(risk.weighted),
-            chance(form.probability) if form else DASH,
-            engineering(finite(form.index), 4) if form else DASH,
-            factor_interval(risk.quantile_sampled),
-            factor_interval(risk.quantile_weighted),
-            engineering(finite(form.quantile), PROBABILITY_DIGITS) if form else DASH,
-        ])  # fmt: skip
-    return Grid(head, body, [False, False, *[True] * 8])
+
+    def form(name: str, text: Callable[[float | None], str]) -> Callable[[Risk], str]:
+        return lambda risk: text(getattr(risk.form, name)) if risk.form else DASH
+
+    columns: list[Column[Risk]] = [
+        *texts("pin case"),
+        read_only(f"plain sampling ({per_cent})", lambda risk: chance_range(risk.sampled)),
+        read_only("failures", lambda risk: f"{risk.failures:,} of {found.samples:,}"),
+        read_only(f"importance sampling ({per_cent})", lambda risk: chance_range(risk.weighted)),
+        read_only("FORM", form("probability", chance)),
+        read_only("reliability index", form("index", engineering), rank=1),
+        read_only(
+            f"FoS at {p}, plain", lambda risk: factor_interval(risk.quantile_sampled), rank=4
+        ),
+        read_only("FoS, importance", lambda risk: factor_interval(risk.quantile_weighted), rank=3),
+        read_only(
+            "FoS, FORM", form("quantile", lambda x: engineering(x, PROBABILITY_DIGITS)), rank=2
+        ),
+    ]
+    return Table("ways", columns, found.risks)
 
 
 def _by_errors(found: ByErrors | None) -> str:
@@ -209,16 +220,15 @@ def change(found: ByErrors) -> str:
     return f"{least:+.2g} to {most:+.2g} %".replace("-", "−")
 
 
-def drivers_grid(found: Reliability) -> Grid:
-    """What drives each row, the most important first."""
-    body = []
-    for risk in found.risks:
-        known = [d for d in risk.drivers if d.importance is not None or d.first is not None]
-        for each in sorted(known, key=lambda d: -(d.importance or 0.0)):
-            body.append([risk.pin, risk.case, each.parameter, _per_cent(each.importance),
-                         _share(each.first), _share(each.total)])  # fmt: skip
-    head = ["pin", "case", "parameter", "importance (FORM)", "Sobol index", "total Sobol index"]
-    return Grid(head, body, [False, False, False, True, True, True])
+def drivers_table(found: Reliability) -> Table[DriverRow]:
+    """What drives each row, the most important first, for people."""
+    rows = [
+        DriverRow(risk, each)
+        for risk in found.risks
+        for each in sorted(risk.drivers, key=lambda d: -(d.importance or 0.0))
+        if each.importance is not None or each.first is not None
+    ]
+    return Table("drivers", DRIVER_COLUMNS, rows)
 
 
 def _per_cent(value: float | None) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from reports.data.results import Results
 from reports.format.files.csv import Cell, harmless
 from reports.format.words import RESULT_ROWS_NOTE, VERDICT_MEANINGS
-from reports.tables.table import Table
+from reports.tables.column import Table
 
 if TYPE_CHECKING:
     import xlsxwriter
@@ -40,7 +40,7 @@ FORMATS_BY_POWER = {
 
 
 def write_workbook(
-    results: Results, tables: Sequence[Table], path: Path, left_out: Sequence[str] = ()
+    results: Results, tables: Sequence[Table[Any]], path: Path, left_out: Sequence[str] = ()
 ) -> None:
     """Write tables, numbers as numbers, and a first sheet that says what they are. left_out: names
     of tables that are CSV files only.
@@ -93,25 +93,23 @@ def _about(
         sheet.write_string(row, 1, text, wrap)
 
 
-def _sheet(book: xlsxwriter.Workbook, table: Table, results: Results, bold: Any) -> None:
+def _sheet(book: xlsxwriter.Workbook, table: Table[Any], results: Results, bold: Any) -> None:
     sheet = book.add_worksheet(table.name[:31])  # no more fits a sheet's name
     sheet.freeze_panes(1, 0)
-    head = [_heading(table, name, results) for name in table.columns]
+    quoted = book.add_format({"quote_prefix": True})
+    units = [column.unit(results.units) for column in table.filed]
+    pairs = zip(table.keys, units, strict=True)
+    head = [f"{key} [{unit}]" if unit else key for key, unit in pairs]
     for i, name in enumerate(head):
         sheet.write_string(0, i, name, bold)
-    quoted = book.add_format({"quote_prefix": True})
-    for i, column in enumerate(zip(*table.rows, strict=True) if table.rows else ()):
-        shape = book.add_format({"num_format": _format(column)})
-        sheet.set_column(i, i, _width(head[i], column))
-        for row, value in enumerate(column, start=1):
+    for i, column in enumerate(table.filed):
+        values = table.values(column)
+        shape = book.add_format({"num_format": _format(values)})
+        sheet.set_column(i, i, _width(head[i], values))
+        for row, value in enumerate(values, start=1):
             _write(sheet, row, i, value, shape, quoted)
-    if table.rows:
-        sheet.autofilter(0, 0, len(table.rows), len(head) - 1)
-
-
-def _heading(table: Table, column: str, results: Results) -> str:
-    unit = table.unit(column, results.units)
-    return f"{column} [{unit}]" if unit else column
+    if len(table):
+        sheet.autofilter(0, 0, len(table), len(table.filed) - 1)
 
 
 def _write(sheet: Any, row: int, column: int, value: Cell, shape: Any, quoted: Any) -> None:

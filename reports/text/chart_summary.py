@@ -6,10 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from reports.data.chart import Chart, ChartPoint
-from reports.format.numbers import engineering, short
+from reports.data.chart import Chart, ChartPoint, error
+from reports.format.numbers import engineering, percent, seconds
 
-MIN_CHART_ERROR = 1e-12  # replaces an error of zero
 FOUNDATION_MODEL = "foundation"  # whose error is not that of a mesh
 HARMONIC_MODEL_NAMES = {
     "harmonic": "the harmonic model",
@@ -39,12 +38,6 @@ class Cost:
     seconds: float
     memory: float
     at_most: bool = False
-
-
-def error(point: ChartPoint) -> float:
-    """Relative error of a point that did not fail, never zero."""
-    assert point.error is not None
-    return max(point.error, MIN_CHART_ERROR)
 
 
 def staying(curve: Curve, wanted: float) -> Curve:
@@ -180,18 +173,6 @@ def label(point: ChartPoint) -> str:
         return point.model
     dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
     return f"{point.model} ({point.element}{dofs})"
-
-
-def percent(value: float) -> str:
-    """A relative error as text."""
-    return f"{short(float(f'{100.0 * value:.2g}'))} %"
-
-
-def seconds(value: float | None) -> str:
-    """A time in s or ms."""
-    if value is None:
-        return engineering(None)
-    return f"{engineering(value, 2)} s" if value >= 0.1 else f"{engineering(1e3 * value, 2)} ms"
 
 
 def reference_line(chart: Chart) -> str:

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison
 from reports.format.files import markdown
-from reports.format.grid import Grid
+from reports.tables.column import Table
 from reports.tables.comparison import (
-    forces_grid,
-    inputs_grid,
+    forces_table,
+    inputs_table,
     left_out,
-    margins_grid,
+    margins_table,
     per_cent,
-    rows_grid,
-    versions_grid,
+    rows_table,
+    versions_table,
 )
-from reports.text.fitted_table import Column, fitted_table
+from reports.text.fitted_table import print_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-ROW_COLUMN_RANKS = 0, 0, 4, 3, 0, 1, 2, 0  # of the columns of rows: which are left out first
 COMPARISON_NOTE = (
     "A change is beyond the errors if the ranges of the two maxima, by their errors, do not "
     "overlap; the range over the joint is not part of them. Similar runs have similar errors, so a "
@@ -48,14 +47,14 @@ def headline(found: RunComparison) -> str:
     return f"{count}: {said}. Largest change of a maximum: {where}."
 
 
-def sections(found: RunComparison) -> Iterator[tuple[str, Grid, str]]:
+def sections(found: RunComparison) -> Iterator[tuple[str, Table[Any], str]]:
     """Title, table and remark of all that differs."""
     remark = NO_INPUTS_NOTE if found.inputs is None else "" if found.inputs else SAME_INPUTS_NOTE
-    yield "Inputs that differ", inputs_grid(found), remark
-    yield "Safety factors", rows_grid(found), COMPARISON_NOTE
-    yield "Margins of safety that differ", margins_grid(found), ""
-    yield "Forces that differ", forces_grid(found), left_out(found)
-    yield "Versions that differ", versions_grid(found), ""
+    yield "Inputs that differ", inputs_table(found), remark
+    yield "Safety factors", rows_table(found), COMPARISON_NOTE
+    yield "Margins of safety that differ", margins_table(found), ""
+    yield "Forces that differ", forces_table(found), left_out(found)
+    yield "Versions that differ", versions_table(found), ""
 
 
 def print_comparison(found: RunComparison, console: Console) -> None:
@@ -64,22 +63,13 @@ def print_comparison(found: RunComparison, console: Console) -> None:
 
     for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
         console.print(Text(f"{letter}: {folder}, {title}"))
-    for title, grid, remark in sections(found):
-        if not grid.body and not remark:
-            continue
-        console.print(Text(title, "bold"))
-        if grid.body:
-            console.print(fitted_table(_columns(grid), console.width))
+    for title, table, remark in sections(found):
+        if not table.rows and remark:
+            console.print(Text(title, "bold"))
+        print_table(console, title, table)
         if remark:
             console.print(Text(remark))
     console.print(Text(headline(found), "bold"))
-
-
-def _columns(grid: Grid) -> list[Column]:
-    ranks = ROW_COLUMN_RANKS if len(grid.head) == len(ROW_COLUMN_RANKS) else (0,) * len(grid.head)
-    cells = zip(*grid.body, strict=True)
-    parts = zip(grid.head, cells, ranks, grid.numeric, strict=True)
-    return [Column(head, each, rank, numeric) for head, each, rank, numeric in parts]
 
 
 def write_markdown(found: RunComparison, path: Path) -> None:
@@ -88,11 +78,11 @@ def write_markdown(found: RunComparison, path: Path) -> None:
     for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
         parts.append(f"{letter}: {markdown.escaped(folder)}, {markdown.escaped(title)}")
     parts.append(headline(found))
-    for title, grid, remark in sections(found):
-        if grid.body or remark:
+    for title, table, remark in sections(found):
+        if table.rows or remark:
             parts.append(f"## {title}")
-        if grid.body:
-            parts.append(markdown.table(grid.head, grid.body, grid.numeric))
+        if table.rows:
+            parts.append(table.grid().markdown())
         if remark:
             parts.append(remark)
     path.write_text("\n\n".join(parts) + "\n", encoding="utf-8", newline="\n")

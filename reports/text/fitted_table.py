@@ -2,64 +2,80 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, TypeVar
+
+from reports.data.results import Units
+from reports.tables.column import Column, Table
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.console import Console
+    from rich.table import Table as RichTable
 
 COLUMN_GAP = 2  # blanks between columns
 
+R = TypeVar("R")
+Shown = tuple[Column[R], str, list[str]]  # a column, its heading and its texts
 
-@dataclass(frozen=True)
-class Column:
-    """A heading, a cell of text per row, and a colour per row, if any. rank: columns with the
-    highest are left out first, those of rank 0 never. numeric: flush right.
+
+def fitting(shown: Sequence[Shown[R]], width: int, gap: int = COLUMN_GAP) -> list[Shown[R]]:
+    """The columns that have room side by side, in their order: those with the highest rank are
+    left out first, those of rank 0 never.
     """
-
-    heading: str
-    cells: Sequence[str]
-    rank: int = 0
-    numeric: bool = True
-    colours: Sequence[str] = ()
-
-    @property
-    def width(self) -> int:
-        """Of its longest line, in characters."""
-        lines = (line for text in (self.heading, *self.cells) for line in text.split("\n"))
-        return max(len(line) for line in lines)
-
-
-def fitting(columns: Sequence[Column], width: int) -> list[Column]:
-    """The columns that have room side by side, in their order."""
-    kept = list(columns)
-    while sum(column.width + COLUMN_GAP for column in kept) - COLUMN_GAP > width:
-        worst = max(kept, key=lambda column: column.rank)
-        if not worst.rank:
+    kept = list(shown)
+    while sum(_width(each) + gap for each in kept) - gap > width:
+        worst = max(kept, key=lambda each: each[0].rank)
+        if not worst[0].rank:
             break
         kept.remove(worst)
     return kept
 
 
-def fitted_table(columns: Sequence[Column], width: int) -> Table:
-    """A table of the columns that have room; names too long for any terminal are folded."""
-    from rich.table import Table
+def _width(shown: Shown[R]) -> int:
+    """The longest line of a column, in characters."""
+    _, heading, texts = shown
+    return max(len(line) for text in (heading, *texts) for line in text.split("\n"))
+
+
+def fitted_table(
+    table: Table[R],
+    units: Units | None,
+    width: int,
+    colours: Mapping[str, Sequence[str]] | None = None,
+    gap: int = COLUMN_GAP,
+) -> RichTable:
+    """A table of the columns that have room; names too long for any terminal are folded.
+
+    colours: of the rows of a column, by its heading. gap: blanks between columns.
+    """
+    from rich.table import Table as RichTable
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, padding=(0, COLUMN_GAP, 0, 0), header_style="bold")
-    kept = fitting(columns, width)
-    for column in kept:
-        side = "right" if column.numeric else "left"
+    made = RichTable(box=None, pad_edge=False, padding=(0, gap, 0, 0), header_style="bold")
+    shown = [(c, c.headed(units), texts) for c, texts in table.for_people()]
+    kept = fitting(shown, width, gap)
+    for column, heading, _ in kept:
         # As Text: a unit in square brackets is no markup.
-        table.add_column(
-            Text(column.heading),
-            justify=side,  # type: ignore[arg-type]
+        made.add_column(
+            Text(heading),
+            justify="right" if column.numeric else "left",
             no_wrap=column.numeric,
             overflow="fold",
         )
-    for k in range(len(columns[0].cells)):
-        table.add_row(
-            *(Text(c.cells[k], c.colours[k] if c.colours else "") for c in kept),
-        )
-    return table
+    tints = [(colours or {}).get(heading, [""] * len(table.rows)) for _, heading, _ in kept]
+    for k in range(len(table.rows)):
+        cells = zip(kept, tints, strict=True)
+        made.add_row(*(Text(texts[k], tint[k]) for (_, _, texts), tint in cells))
+    return made
+
+
+def print_table(console: Console, title: str, table: Table[R], units: Units | None = None) -> bool:
+    """Print a table under its title, if it has rows; returns whether it has."""
+    from rich.text import Text
+
+    if not table.rows:
+        return False
+    if title:
+        console.print(Text(title, "bold"))
+    console.print(fitted_table(table, units, console.width))
+    return True

@@ -7,12 +7,7 @@ from html import escape
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import Results
 from reports.format.words import headline
-from reports.tables.strength.safety_factors import (
-    TEXT_COLUMNS,
-    display_rows,
-    display_text,
-    shown_columns,
-)
+from reports.tables.strength.safety_factors import shown_factors
 from reports.text.summary import summary
 
 HEADING_CELL_HTML = '<th style="text-align:{0}">{1}</th>'
@@ -21,21 +16,15 @@ BODY_CELL_HTML = '<td style="text-align:{0}">{1}</td>'
 
 def safety_factors_html(results: Results) -> str:
     """Title, the worst row in a sentence, safety factor table with verdicts, and summary."""
-    detailed = detailed_rows(results)
-    rows = display_rows(detailed)
-    columns = shown_columns(rows, detailed)
-    sides = {name: "left" if name in TEXT_COLUMNS else "right" for name in columns}
-    head = "".join(
-        HEADING_CELL_HTML.format(sides[name], escape(text)) for name, text in columns.items()
-    )
-    body = "".join(
-        "<tr>"
-        + "".join(
-            BODY_CELL_HTML.format(sides[name], escape(display_text(name, row))) for name in columns
-        )
-        + "</tr>"
-        for row in rows
-    )
+    grid = shown_factors(detailed_rows(results)).grid(results.units)
+    sides = ["right" if numeric else "left" for numeric in grid.numeric]
+
+    def cells(html: str, texts: list[str]) -> str:
+        pairs = zip(sides, texts, strict=True)
+        return "".join(html.format(side, escape(text)) for side, text in pairs)
+
+    head = cells(HEADING_CELL_HTML, grid.head)
+    body = "".join(f"<tr>{cells(BODY_CELL_HTML, row)}</tr>" for row in grid.body)
     return (
         f"<p><b>{escape(results.title)}</b></p>"
         f"<p>{escape(headline(results))}</p>"

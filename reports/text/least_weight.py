@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from reports.format.numbers import DASH, engineering, short
-from reports.text.fitted_table import Column, fitted_table
+from reports.tables.column import Column, Table, read_only, texts
+from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -64,32 +65,30 @@ def print_light(
 
     length, unit, heavy = units
     what = "weight" if heavy else "volume"
-    console.print(fitted_table(_columns(rows, f"{what} [{unit}]"), console.width))
+    tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
+    table = light_table(rows, f"{what} [{unit}]")
+    console.print(fitted_table(table, None, console.width, tints))
     for line in (*_total(rows, required, what, unit), *_details(rows, length)):
         console.print(Text(line))
 
 
-def _columns(rows: Sequence[LightRow], heavy: str) -> list[Column]:
-    colours = ["yellow" if row.why else "green" for row in rows]
-    return [
-        Column("Pin", [row.pin for row in rows], 0, False),
-        Column("Result", ["not decided" if r.why else "safe" for r in rows], 0, False, colours),
-        Column("FoS", [row.factor for row in rows], 0),
-        *_at(rows),
-        Column(heavy, [_heavy(row.weights[0]) for row in rows], 1),
-        Column("scaled", [_heavy(row.weights[1]) for row in rows], 0),
-        Column("least", [_heavy(row.weights[2]) for row in rows], 0),
-        Column("saved", [_saved(row.saved) for row in rows], 0),
-        Column("residual", [_residual(row.residual) for row in rows], 0),
-        Column("governs", [row.governs for row in rows], 2, False),
-        Column("FoS before", [engineering(row.factor_before) for row in rows], 3),
-        Column("designs", [str(row.solved) for row in rows], 4),
+def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
+    """A row per pin. weight: its heading, with the unit."""
+    columns: list[Column[LightRow]] = [
+        *texts("Pin=pin"),
+        read_only("Result", lambda row: "not decided" if row.why else "safe", numeric=False),
+        read_only("FoS", lambda row: row.factor),
+        read_only("FoS at p", lambda row: row.at, drop_if_empty=True),
+        read_only(weight, lambda row: _heavy(row.weights[0]), rank=1),
+        read_only("scaled", lambda row: _heavy(row.weights[1])),
+        read_only("least", lambda row: _heavy(row.weights[2])),
+        read_only("saved", lambda row: _saved(row.saved)),
+        read_only("residual", lambda row: _residual(row.residual)),
+        read_only("governs", lambda row: row.governs, rank=2, numeric=False),
+        read_only("FoS before", lambda row: row.factor_before, rank=3),
+        read_only("designs", lambda row: str(row.solved), rank=4),
     ]
-
-
-def _at(rows: Sequence[LightRow]) -> Iterator[Column]:
-    if any(row.at is not None for row in rows):
-        yield Column("FoS at p", [engineering(row.at) for row in rows], 0)
+    return Table("least_weight", columns, rows)
 
 
 def _heavy(weight: float | None) -> str:

@@ -4,31 +4,33 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from reports.data.results import ReactionTable, Results
+from reports.data.results import PeakReaction, ReactionTable, Results
 from reports.format.numbers import DASH, engineering, short
+from reports.tables.column import Column, Table, read_only
 from reports.tables.loads.drop import drop_words
+from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 
+COLUMNS: list[Column[tuple[ReactionTable, int, PeakReaction]]] = [
+    read_only("Case", lambda row: row[0].case, numeric=False),
+    read_only("Connection", lambda row: row[2].connection, numeric=False),
+    read_only("Pin", lambda row: row[0].pins[row[1]] or DASH, numeric=False),
+    read_only("Body", lambda row: row[0].bodies[row[1]] or DASH, numeric=False),
+    read_only("maximum\nforce\n", lambda row: row[2].force, "force"),
+    read_only("t\n", lambda row: engineering(row[2].time), "time"),
+]
+
+
 def print_loads(results: Results, console: Console) -> None:
     """Print the maximum force of every connection in every case, then drives and checks."""
-    from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
-    for heading in ("Case", "Connection", "Pin", "Body"):
-        table.add_column(heading, overflow="fold")
-    units = results.units
-    for heading in (f"maximum\nforce\n[{units.force}]", f"t\n[{units.time}]"):
-        table.add_column(Text(heading), justify="right", no_wrap=True)
-    for case in results.reactions:
-        for c, peak in enumerate(case.largest):
-            names = (case.case, peak.connection, case.pins[c] or DASH, case.bodies[c] or DASH)
-            numbers = engineering(peak.force), engineering(peak.time)
-            table.add_row(*(Text(n) for n in names), *numbers)
-    console.print(table)
+    rows = [(case, c, peak) for case in results.reactions for c, peak in enumerate(case.largest)]
+    table = Table("loads", COLUMNS, rows)
+    console.print(fitted_table(table, results.units, console.width, gap=1))
     for line in remarks(results):
         console.print(Text(line))
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from reports.data.results import DriveTable, LinkageMotion, ReactionTable, Results
+from reports.data.results import DriveTable, LinkageMotion, PeakReaction, ReactionTable, Results
 from reports.format.files import markdown
-from reports.format.grid import Grid
 from reports.format.numbers import engineering, short
+from reports.tables.column import Column, Grid, Table, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
 from reports.text.loads import unresolved
 
-NAME_COLUMNS = ("connection", "body", "pin")
 MIN_TRANSMISSION_ANGLE = 40.0  # transmission angle in degrees below which forces increase rapidly
 
 
@@ -37,7 +36,7 @@ def write_loads_summary(results: Results, path: Path) -> None:
         parts.append(f"## {markdown.escaped(part.case)}")
         for grid in part.grids:
             head = [markdown.escaped(n).replace("\\[", "[").replace("\\]", "]") for n in grid.head]
-            parts.append(markdown.table(head, grid.body, grid.numeric))
+            parts.append(replace(grid, head=head).markdown())
         if part.notes:
             parts.append("\n".join(f"- {markdown.escaped(note)}" for note in part.notes))
     path.write_text("\n\n".join(parts) + "\n", encoding="utf-8", newline="\n")
@@ -61,44 +60,53 @@ def _part(table: ReactionTable, results: Results) -> LoadsPart:
 
 
 def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) -> Grid:
-    units = results.units
-    head = ["connection", "body", "pin", f"maximum force [{units.force}]"]
     moving, at_drive = table.times is not None, table.position is not None and len(drives) == 1
-    if moving:
-        head.append(f"time [{units.time}]")
-    if at_drive:
-        unit = "°" if drives[0].kind == "rotary" else units.length
-        head.append(f"drive {drives[0].name} [{unit}]")
     rubs = any(peak.frictionless is not None for peak in table.largest)
-    head += [f"without friction [{units.force}]"] * rubs
-    body = []
-    for c, peak in enumerate(table.largest):
-        row = [peak.connection, table.bodies[c], table.pins[c], engineering(peak.force)]
-        row += [engineering(peak.time)] * moving + [engineering(peak.position)] * at_drive
-        row += [engineering(peak.frictionless)] * rubs
-        body.append(row)
-    return Grid(head, body, [name not in NAME_COLUMNS for name in head])
+    unit = "°" if drives and drives[0].kind == "rotary" else results.units.length
+    columns: list[Column[tuple[int, PeakReaction]]] = [
+        read_only("connection", lambda row: row[1].connection, numeric=False),
+        read_only("body", lambda row: table.bodies[row[0]], numeric=False),
+        read_only("pin", lambda row: table.pins[row[0]], numeric=False),
+        read_only("maximum force", lambda row: row[1].force, "force"),
+    ]
+    if moving:
+        columns.append(read_only("time", lambda row: engineering(row[1].time), "time"))
+    if at_drive:
+        columns.append(read_only(f"drive {drives[0].name} [{unit}]", lambda row: row[1].position))
+    if rubs:
+        columns.append(read_only("without friction", lambda row: row[1].frictionless, "force"))
+    return Table("forces", columns, [*enumerate(table.largest)]).grid(results.units)
 
 
 def _drives(drives: list[DriveTable], results: Results) -> Grid:
     force, length, time = results.units.force, results.units.length, results.units.time
-    moving = drives[0].time is not None
-    head = ["drive", "quantity"]
-    head += ["mean", "RMS", "maximum", "stroke"] if moving else ["value", "position"]
-    head.append(f"power [{force}·{length}/{time}]")
-    body = []
-    for d in drives:
-        rotary = d.kind == "rotary"
-        unit = "°" if rotary else length
-        row = [d.name, f"torque [{force}·{length}]" if rotary else f"force [{force}]"]
-        if moving:
-            row += [engineering(x) for x in (d.mean, d.rms, d.largest)]
-            row += [f"{engineering(d.stroke)} {unit}", engineering(d.largest_power)]
-        else:
-            row += [engineering(d.force[0]), f"{engineering(d.position[0])} {unit}"]
-            row.append(engineering(d.power[0]))
-        body.append(row)
-    return Grid(head, body, [False] * 2 + [True] * (len(head) - 2))
+
+    def quantity(d: DriveTable) -> str:
+        return f"torque [{force}·{length}]" if d.kind == "rotary" else f"force [{force}]"
+
+    def place(d: DriveTable, value: float) -> str:
+        return f"{engineering(value)} {'°' if d.kind == 'rotary' else length}"
+
+    power = f"power [{force}·{length}/{time}]"
+    columns: list[Column[DriveTable]] = [
+        *texts("drive=name"),
+        read_only("quantity", quantity, numeric=False),
+    ]
+    if drives[0].time is not None:
+        columns += [
+            read_only("mean", lambda d: d.mean),
+            read_only("RMS", lambda d: d.rms),
+            read_only("maximum", lambda d: d.largest),
+            read_only("stroke", lambda d: place(d, d.stroke)),
+            read_only(power, lambda d: d.largest_power),
+        ]
+    else:
+        columns += [
+            read_only("value", lambda d: d.force[0]),
+            read_only("position", lambda d: place(d, d.position[0])),
+            read_only(power, lambda d: d.power[0]),
+        ]
+    return Table("drives", columns, drives).grid(results.units)
 
 
 def _checks(motion: LinkageMotion, results: Results) -> list[str]:

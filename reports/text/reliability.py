@@ -6,25 +6,20 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from reports.data.reliability import Reliability, Risk
-from reports.format.grid import Grid
 from reports.format.numbers import engineering
 from reports.tables.reliability import (
     chance,
     chance_range,
     change,
-    drivers_grid,
+    drivers_table,
     remark,
-    risks_grid,
-    ways_grid,
+    risks_table,
+    ways_table,
 )
-from reports.text.fitted_table import Column, fitted_table
+from reports.text.fitted_table import print_table
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-# Of the columns: which are left out first.
-RISK_COLUMN_RANKS, BENEATH_RISK_COLUMN_RANKS = (0, 0, 0, 1, 2, 0, 3, 4), (0, 0, 0, 1, 2, 0, 0, 3, 4)
-SAMPLING_COLUMN_RANKS, DRIVER_COLUMN_RANKS = (0, 0, 0, 0, 0, 0, 1, 4, 3, 2), (0, 0, 0, 0, 1, 2)
 
 
 def sentence(found: Reliability, risk: Risk) -> str:
@@ -75,16 +70,9 @@ def print_reliability(found: Reliability, console: Console) -> None:
 
     for risk in found.risks[:1]:
         console.print(Text(sentence(found, risk), "bold"))
-    for title, grid, ranks in (
-        ("", risks_grid(found), BENEATH_RISK_COLUMN_RANKS if found.deep else RISK_COLUMN_RANKS),
-        (ways_title(found), ways_grid(found), SAMPLING_COLUMN_RANKS),
-        ("What drives it", drivers_grid(found), DRIVER_COLUMN_RANKS),
-    ):
-        if not grid.body:
-            continue
-        if title:
-            console.print(Text(title, "bold"))
-        console.print(fitted_table(_columns(grid, ranks), console.width))
+    print_table(console, "", risks_table(found))
+    print_table(console, ways_title(found), ways_table(found))
+    print_table(console, "What drives it", drivers_table(found))
     for line in (*remarks(found), solved(found)):
         console.print(Text(line))
 
@@ -92,9 +80,3 @@ def print_reliability(found: Reliability, console: Console) -> None:
 def ways_title(found: Reliability) -> str:
     """Of the table of all ways: what lies beneath contact is no part of it."""
     return "By each way of finding it" + ", of surface and section" * found.deep
-
-
-def _columns(grid: Grid, ranks: tuple[int, ...]) -> list[Column]:
-    cells = zip(*grid.body, strict=True)
-    parts = zip(grid.head, cells, ranks, grid.numeric, strict=True)
-    return [Column(head, each, rank, numeric) for head, each, rank, numeric in parts]

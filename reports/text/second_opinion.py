@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from assess.opinion.opinions import (
@@ -15,16 +15,16 @@ from assess.opinion.opinions import (
     Opinion,
 )
 from reports.data.results import Results, Units
-from reports.format.numbers import DASH, engineering
-from reports.tables.stress.calculix import opinions_of
-from reports.text.chart_summary import percent
+from reports.format.numbers import DASH, engineering, percent
+from reports.tables.column import Column, Table, read_only, texts
+from reports.tables.stress.calculix import opinions_of, over_answer
+from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
 
 AGREES, DIFFERS, NOT_COMPARED = "agrees", "differs", "not compared"
+OUTCOME_COLOURS = {AGREES: "green", DIFFERS: "red", NOT_COMPARED: "yellow"}
 
 
 def outcome_of(opinion: Opinion) -> str:
@@ -101,16 +101,13 @@ def print_second_opinion(results: Results, console: Console) -> None:
     opinions, units = opinions_of(results), results.units
     pressed = [o for o in opinions if o.contact or _in_lugs(results, o)]
     others = [o for o in opinions if o not in pressed]
-    for rows, headings, cells in (
-        (others, _headings(units), _cells),
-        (pressed, _contact_headings(units), _contact_cells),
-    ):
+    for rows, columns in ((others, MESH_COLUMNS), (pressed, CONTACT_COLUMNS)):
         if rows:
-            table = _table(headings)
-            for o in rows:
-                table.add_row(Text(o.pin, "bold"), Text(o.case), *cells(o), _word(o))
+            table = Table("second_opinion", [*NAMES, *columns, WORD], rows)
+            tints = [OUTCOME_COLOURS[outcome_of(o)] for o in rows]
+            colours = {"Pin": ["bold"] * len(rows), WORD.heading.strip(): tints}
             console.print()
-            console.print(table)
+            console.print(fitted_table(table, units, console.width, colours, gap=1))
     console.print(Text(summary(others, pressed)))
 
 
@@ -119,67 +116,43 @@ def _in_lugs(results: Results, opinion: Opinion) -> bool:
     return joint is not None and joint.model != "prescribed"
 
 
-def _table(headings: Sequence[str]) -> Table:
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
-    table.add_column("Pin", overflow="fold", min_width=3)
-    table.add_column("Case", overflow="fold", min_width=7)
-    for heading in (*headings, ""):
-        table.add_column(Text(heading), justify="right", no_wrap=True)
-    return table
-
-
-def _headings(units: Units) -> tuple[str, ...]:
-    return (
-        *("unknowns", "displace-\nments\ndiffer", "von Mises\nstresses\ndiffer"),
-        *(f"CalculiX's\nmaximum\n[{units.stress}]", f"result\n[{units.stress}]", "±", "ratio"),
-    )
-
-
-def _cells(o: Opinion) -> tuple[str, ...]:
-    same = str(o.unknowns or DASH), _small(o.displacement), _small(o.stress)
-    return (*same, *_stresses(o))
-
-
-def _contact_headings(units: Units) -> tuple[str, ...]:
-    return (
-        *("unknowns", f"CalculiX's\nmoment\n[{units.force}·{units.length}]", "over\nours"),
-        *("load\nelsewhere", f"stress at\nour point\n[{units.stress}]"),
-        *(f"result\n[{units.stress}]", "±", "ratio", "its mesh\nchanges it"),
-    )
-
-
-def _contact_cells(o: Opinion) -> tuple[str, ...]:
-    c = o.contact
-    if c is None:
-        return (*(DASH,) * 5, *_stresses(o)[1:], DASH)
-    moments = engineering(c.moment), engineering(1.0 + c.moment_difference, 3)
-    return (
-        *(str(o.unknowns), *moments, percent(c.elsewhere), *_stresses(o)),
-        percent(abs(c.stress_change)),
-    )
-
-
-def _stresses(o: Opinion) -> tuple[str, str, str, str]:
-    ratio = engineering(None if o.deviation is None else 1.0 + o.deviation, 3)
-    return engineering(o.theirs), engineering(o.answer), engineering(o.error, 2), ratio
-
-
-def _word(o: Opinion) -> Text:
-    from rich.text import Text
-
-    word = outcome_of(o)
-    return Text(word, {AGREES: "green", DIFFERS: "red", NOT_COMPARED: "yellow"}[word])
-
-
 def _small(value: float | None) -> str:
     return DASH if value is None else f"{value:.0e}"
 
 
 def _signed(value: float | None) -> str:
     return DASH if value is None else f"{100.0 * value:+.1f} %"
+
+
+def _in_contact(text: Callable[[ContactOpinion], str]) -> Callable[[Opinion], str]:
+    return lambda o: text(o.contact) if o.contact else DASH
+
+
+NAMES: list[Column[Opinion]] = [
+    *texts("Pin=pin Case=case"),
+]
+WORD: Column[Opinion] = read_only(" ", lambda o: outcome_of(o))
+STRESSES: list[Column[Opinion]] = [
+    read_only("result\n", lambda o: o.answer, "stress"),
+    read_only("±", lambda o: engineering(o.error, 2)),
+    read_only("ratio", lambda o: engineering(over_answer(o), 3)),
+]
+MESH_COLUMNS: list[Column[Opinion]] = [
+    read_only("unknowns", lambda o: str(o.unknowns or DASH)),
+    read_only("displace-\nments\ndiffer", lambda o: _small(o.displacement)),
+    read_only("von Mises\nstresses\ndiffer", lambda o: _small(o.stress)),
+    read_only("CalculiX's\nmaximum\n", lambda o: o.theirs, "stress"),
+    *STRESSES,
+]
+CONTACT_COLUMNS: list[Column[Opinion]] = [
+    read_only("unknowns", lambda o: str(o.unknowns) if o.contact else DASH),
+    read_only("CalculiX's\nmoment\n", lambda o: o.contact and o.contact.moment, "moment"),
+    read_only("over\nours", _in_contact(lambda c: engineering(1.0 + c.moment_difference, 3))),
+    read_only("load\nelsewhere", _in_contact(lambda c: percent(c.elsewhere))),
+    read_only("stress at\nour point\n", lambda o: o.theirs if o.contact else None, "stress"),
+    *STRESSES,
+    read_only("its mesh\nchanges it", _in_contact(lambda c: percent(abs(c.stress_change)))),
+]
 
 
 def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from reports.data.results import Units
 from reports.format.numbers import DASH, engineering, short
-from reports.text.fitted_table import Column, fitted_table
+from reports.tables.column import Column, Table, read_only, texts
+from reports.text.fitted_table import fitted_table
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -45,7 +46,8 @@ def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console:
     """Print a row per pin and the number of pins that reach the factor."""
     from rich.text import Text
 
-    console.print(fitted_table(_columns(rows, units), console.width))
+    tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
+    console.print(fitted_table(sizes_table(rows), units, console.width, tints))
     count = sum(not row.why for row in rows)
     console.print(
         Text(
@@ -69,24 +71,19 @@ def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
         yield f"A hand check gives a smaller factor: {', '.join(strict)}."
 
 
-def _columns(rows: Sequence[SizeRow], units: Units) -> list[Column]:
-    def column(
-        heading: str, cell: Callable[[SizeRow], str], rank: int, numeric: bool = True
-    ) -> Column:
-        return Column(heading, [cell(row) for row in rows], rank, numeric)
-
-    colours = ["yellow" if row.why else "green" for row in rows]
-    return [
-        column("Pin", lambda row: row.pin, 0, False),
-        Column("Result", [row.result for row in rows], 0, False, colours),
-        column("FoS", lambda row: row.factor, 0),
-        column(f"new [{units.length}]", lambda row: _joined(row.after) or "unchanged", 0, False),
-        column(f"before [{units.length}]", lambda row: _joined(row.before), 4, False),
-        column("FoS before", lambda row: engineering(row.factor_before), 5),
-        column(f"weight [{units.force}]", lambda row: " → ".join(map(_heavy, row.weights)), 2),
-        column("L/d", lambda row: engineering(row.slenderness, 2), 1),
-        column("governs", lambda row: row.governs, 3, False),
+def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
+    """A row per pin."""
+    columns: list[Column[SizeRow]] = [
+        *texts("Pin=pin Result=result"),
+        read_only("FoS", lambda row: row.factor),
+        read_only("new", lambda row: _joined(row.after) or "unchanged", "length", numeric=False),
+        read_only("before", lambda row: _joined(row.before), "length", rank=4, numeric=False),
+        read_only("FoS before", lambda row: row.factor_before, rank=5),
+        read_only("weight", lambda row: " → ".join(map(_heavy, row.weights)), "force", rank=2),
+        read_only("L/d", lambda row: engineering(row.slenderness, 2), rank=1),
+        read_only("governs", lambda row: row.governs, rank=3, numeric=False),
     ]
+    return Table("sizes", columns, rows)
 
 
 def _joined(diameters: tuple[float, ...] | None) -> str:

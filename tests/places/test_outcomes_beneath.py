@@ -28,7 +28,7 @@ from reports.data.results import LandingRange, PinResult, Results
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
 from reports.tables.strength.envelope import envelope_table
-from reports.tables.strength.safety_factors import safety_factor_rows
+from reports.tables.strength.safety_factors import safety_factors_table
 from reports.text.pin_sentence import pin_sentence
 from reports.text.summary import summary
 from tests.conftest import ROOT
@@ -102,12 +102,10 @@ def test_it_is_said_wherever_an_outcome_is(capsys: pytest.CaptureFixture[str]) -
     assert "0 of 1 pin is safe in all cases" in summary(results)
     assert "depends: A (beneath contact)" in summary(results)
     assert clause in pin_sentence(made, results.units)
-    (cells,) = safety_factor_rows(results)
-    assert (cells["outcome"], cells["meets_required"]) == ("depends", "no")
+    (cells,) = safety_factors_table(results).records()
+    assert (cells["outcome"], cells["meets_required"]) == ("depends", False)
     assert cells["depends_on"] == "stress beneath contact (FoS 1.39, too low to a depth of 0.30 in)"
-    table = envelope_table(results)
-    said = {line[table.columns.index("outcome")] for line in table.rows}
-    assert said <= {"depends"}
+    assert {row["outcome"] for row in envelope_table(results).records()} <= {"depends"}
     assert report_violations(results) == EXIT_REQUIREMENT_MISSED
     assert f"Safe as described, {clause}: A (x)." in capsys.readouterr().err
 

@@ -20,7 +20,7 @@ from reports.data.comparison import (
 )
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
-from reports.tables.comparison import inputs_grid, rows_grid
+from reports.tables.comparison import inputs_table, rows_table
 from reports.tables.json_results import to_json
 from reports.text.comparison import headline, write_markdown
 from tests.support.results.made_up_run import make_results
@@ -104,7 +104,7 @@ def test_other_units_are_no_change(run: dict[str, Any]) -> None:
 def test_inputs_that_differ_by_key(run: dict[str, Any]) -> None:
     other = copy.deepcopy(run)
     other["inputs"] = {"pin.A.fillet": "4", "units": "in-lbf-s", "pin.A.weight": "2"}
-    grid = inputs_grid(compare(run, other))
+    grid = inputs_table(compare(run, other)).grid()
     assert grid.body == [["pin.A.fillet", "3", "4"], ["pin.A.weight", "–", "2"]]
     del other["inputs"]
     assert compare(run, other).inputs is None
@@ -124,4 +124,4 @@ def test_pages_escape_what_studies_say(run: dict[str, Any], tmp_path: Path) -> N
     assert page.count("data:image/png") == 1
     assert "\\|pin\\*" in (tmp_path / "page.md").read_text()
     assert headline(found) in page
-    assert len(rows_grid(found).body) == 2
+    assert len(rows_table(found)) == 2

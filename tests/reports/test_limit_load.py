@@ -14,7 +14,7 @@ from pinstress.analysis.serialise import pack, unpack
 from reports.data.results import Results
 from reports.plots.strength.limit_load import limit_plot
 from reports.tables.json_results import to_json
-from reports.tables.strength.limit_load import limit_grid, limit_load_table, limit_word
+from reports.tables.strength.limit_load import limit_load_table, limit_word, limits_table
 from reports.vtk.fields import write_flow
 from tests.support.each import each
 
@@ -73,19 +73,19 @@ def test_the_cache_gives_back_what_it_took() -> None:
 def test_tables_json_and_plot_are_in_the_units_of_the_study(results: Results) -> None:
     none = to_json(results)["pins"][0]["limit_load"]
     assert none is None
-    assert limit_grid(results) is None
-    assert limit_load_table(results).rows == ()
+    assert not limits_table(results).rows
+    assert not limit_load_table(results).rows
     first = replace(results.pins[0], limit_load=FOUND)
     with_one = replace(results, pins=(first, *results.pins[1:]))
     written = to_json(with_one)["pins"][0]["limit_load"]
     assert (written["lower"], written["upper"], written["carries"]) == (0.88, 0.91, False)
     assert [mesh["unknowns"] for mesh in written["meshes"]] == [900, 3000]
-    grid = limit_grid(with_one)
-    assert grid is not None
+    grid = limits_table(with_one).grid(results.units)
     assert grid.body[0][:4] == [first.pin, first.case, "collapses", "0.880 to 0.910"]
     table = limit_load_table(with_one)
-    assert len(table.rows) == 3
-    assert table.unit("displacement", results.units) == results.units.length
+    assert len(table) == 3
+    (displacement,) = (c for c in table.columns if c.key == "displacement")
+    assert displacement.unit(results.units) == results.units.length
     plot = limit_plot(first, results.units)
     assert plot is not None
     rows = plot.spec["data"]["values"].splitlines()[1:]

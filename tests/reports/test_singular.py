@@ -11,8 +11,9 @@ import meshio
 import numpy as np
 import pytest
 
+from assess.margin import Margin
 from reports.data.decision import outcome
-from reports.data.results import Field, HandCheck, PinResult, Results, SingularZone, Units
+from reports.data.results import Field, PinResult, Results, SingularZone, Units
 from reports.files import write_reports
 from reports.tables.json_results import to_json
 from reports.text.summary import summary
@@ -24,7 +25,9 @@ ZONE = SingularZone(
     "a fillet <script>alert(1)</script>",
 )  # fmt: skip
 LOGARITHM = replace(ZONE, kind="the edge of a load", exponent=None, exponent_theory=0.0)
-CHECK = HandCheck("bending", "A", 0.0, 1.5, 1234.5, 225e3, "M c / I", "=Shigley")
+CHECK = Margin(
+    "bending", "=Shigley", "hand", "limit", 1.0, 1234.5, 225e3, at="A", time=1.5, formula="M c / I"
+)
 
 
 @pytest.fixture
@@ -37,7 +40,7 @@ def singular(results: Results) -> Results:
         yields=False,
         decided=None,
         singular_at=(ZONE, LOGARITHM),
-        hand_checks=(CHECK,),
+        margins=(CHECK,),
         why="harmonic: a beam is never known to 2.0%",
     )
     return replace(results, pins=(first, *results.pins[1:]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from dataclasses import replace
 from io import StringIO
+from operator import itemgetter
 from pathlib import Path
 from typing import get_args
 
@@ -16,10 +17,11 @@ from reports.data.decision import outcome
 from reports.data.results import Results
 from reports.format.words import OUTCOME_MEANINGS, VERDICT_MEANINGS, verdict_words
 from reports.plots.strength.landing import landing_plot
+from reports.tables.column import Column, Table, read_only
 from reports.tables.json_results import to_json
 from reports.tables.strength.landing import landing_table, write_landing
 from reports.tables.strength.safety_factors import safety_factors_table, write_safety_factors
-from reports.text.fitted_table import Column, fitted_table, fitting
+from reports.text.fitted_table import fitted_table, fitting
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
 from tests.support.each import each
@@ -143,12 +145,14 @@ def test_the_terminal_fits_and_says_what_each_factor_is_worth(found: Results, wi
 
 
 def test_columns_without_room_are_left_out_and_none_is_broken() -> None:
-    columns = [
-        Column("name", ["a", "long name"], numeric=False),
-        Column("first", ["12345", "1"], 1),
-        Column("second", ["1", "2"], 2),
+    columns: list[Column[tuple[str, str, str]]] = [
+        read_only("name", itemgetter(0), numeric=False),
+        read_only("first", itemgetter(1), rank=1),
+        read_only("second", itemgetter(2), rank=2),
     ]
-    widths = {width: [c.heading for c in fitting(columns, width)] for width in (80, 20, 16, 5)}
+    table = Table("made_up", columns, [("a", "12345", "1"), ("long name", "1", "2")])
+    shown = [(column, column.heading, texts) for column, texts in table.for_people()]
+    widths = {width: [head for _, head, _ in fitting(shown, width)] for width in (80, 20, 16, 5)}
     assert widths == {
         80: ["name", "first", "second"],
         20: ["name", "first"],
@@ -156,7 +160,7 @@ def test_columns_without_room_are_left_out_and_none_is_broken() -> None:
         5: ["name"],
     }
     out = StringIO()
-    Console(file=out, width=16).print(fitted_table(columns, 16))
+    Console(file=out, width=16).print(fitted_table(table, None, 16))
     assert [line.split() for line in out.getvalue().splitlines()] == [
         ["name", "first"], ["a", "12345"], ["long", "name", "1"],
     ]  # fmt: skip

@@ -177,8 +177,8 @@ def test_the_edge_of_a_lug_is_drawn_like_the_others(found: Results) -> None:
 
 def test_advice_and_names_are_shown_and_not_run(found: Results, tmp_path: Path) -> None:
     zone = replace(zones()[0], kind=EVIL, between=(EVIL, EVIL), advice=EVIL)
-    check = replace(found.pins[0].hand_checks[0], name=EVIL, at=EVIL, formula=EVIL, source=EVIL)
-    made = row(EVIL, "singular", 2.0, None, singular_at=(zone,), hand_checks=(check,), why=EVIL)
+    check = replace(found.pins[0].hand_checks[0], method=EVIL, at=EVIL, formula=EVIL, clause=EVIL)
+    made = row(EVIL, "singular", 2.0, None, singular_at=(zone,), margins=(check,), why=EVIL)
     page = write_reports(replace(found, pins=(made,)), tmp_path)
     assert EVIL not in page.read_text(encoding="utf-8")
     assert parse(page).text.count(EVIL) >= 10

@@ -22,7 +22,7 @@ import pinstress
 from assess.fatigue.fkm import FkmMaterial, p_ram_life
 from pinstress.analysis.results import RunResults
 from reports.tables.json_results import to_json
-from reports.tables.strength.fatigue import fatigue_grid, fatigue_sentence
+from reports.tables.strength.fatigue import fatigue_sentence, shown_fatigue
 
 STUDY = """
 title = "A pin without a clamp"
@@ -92,13 +92,12 @@ def test_a_case_that_could_not_be_solved_leaves_the_pin_undecided(run: Run, spec
     assert _margin(results) == (None, "a solution of case jam")
     told = to_json(results)["fatigue"]
     assert told["not_decided"] == results.fatigue.not_decided
-    rows = results.tables["fatigue"]
-    assert {row[rows.columns.index("not_decided")] for row in rows.rows} == {
+    assert {row["not_decided"] for row in results.tables["fatigue"].records()} == {
         "case jam was not solved (rigid)"
     }
-    grid = fatigue_grid(results)
-    assert grid is not None
-    assert all(row[3].startswith("≥") for row in grid.body)
+    table = shown_fatigue(results)
+    assert table is not None
+    assert all(row[3].startswith("≥") for row in table.grid(results.units).body)
 
 
 def test_in_equilibrium_the_case_takes_most_of_the_life(run: Run) -> None:

@@ -20,10 +20,11 @@ from scipy.optimize import linprog, minimize_scalar
 from assess.plastic.hinge import beam_bounds
 from assess.plastic.limit_load import bracket
 from assess.plastic.solve import MESH_SIZES, limit_load
-from assess.strength.collapse import collapse_margin
-from assess.strength.situation import LoadFactors
+from assess.situation import Situation, SolvedRow
+from assess.strength.collapse import collapse
 from fea.beam.plastic_interaction import bending_and_axial_use
 from fea.beam.round_section import Circle
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment
 from tests.support.each import each
@@ -143,7 +144,9 @@ def test_a_cantilever_with_an_axial_force_misses_its_margin() -> None:
     assert found.lower is not None
     assert found.upper is not None
     assert 0.99 * exact < found.lower <= exact * (1.0 + 1e-5) <= found.upper < 1.03 * exact
-    assert collapse_margin(found, LoadFactors(), None).margin == pytest.approx(-0.067, abs=0.01)
+    row = SolvedRow(Maximum("P", "c", "solid", "converged", ""), found)
+    (margin,) = collapse(Situation(None, STEEL, row=row))
+    assert margin.margin == pytest.approx(-0.067, abs=0.01)
 
 
 def test_a_tube_of_20_by_14_with_an_axial_force_is_not_said_to_carry_its_loads() -> None:

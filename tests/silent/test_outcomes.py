@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from assess.strength.margin import Margin, PinMargin
+from assess.margin import Margin, PinMargin
 from fea.support.records import JointRange, JointResult, Variation
 from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
@@ -24,7 +24,7 @@ from reports.data.headline import headline_json, worst_checks
 from reports.data.results import LandingRange, PinResult, Results
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
-from reports.tables.strength.safety_factors import safety_factor_rows
+from reports.tables.strength.safety_factors import safety_factors_table
 from reports.text.summary import summary
 from tests.conftest import ROOT
 from tests.support.results.judged_results import judged, row
@@ -64,8 +64,8 @@ def test_safe_as_described_but_not_within_the_range_of_the_joint(clevis: Results
     assert found["pins"][0]["depends_on"][0]["flips_at"] == 0.1
     assert found["headline"]["depends"] == ["P"]
     assert found["headline"]["failing"] == []
-    (cells,) = safety_factor_rows(clevis)
-    assert (cells["outcome"], cells["meets_required"]) == ("depends", "no")
+    (cells,) = safety_factors_table(clevis).records()
+    assert (cells["outcome"], cells["meets_required"]) == ("depends", False)
     assert str(cells["depends_on"]).startswith("the range of the joint (clearance 0.1 mm")
 
 
@@ -204,7 +204,7 @@ def made_safe() -> PinResult:
 
 def test_the_headline_is_the_worst_of_all_checks() -> None:
     """FoS 4.462 of 1.5 beside 4.525 times the allowable fatigue damage: 1 / 4.525 - 1 = -0.779."""
-    fatigue = Margin("fatigue life", "critical plane", "limit", 4.525e-6, 1e-6, 1.0, "1")
+    fatigue = Margin("fatigue life", "critical plane", "fatigue", "limit", 1.0, 4.525e-6, 1e-6, "1")
     results = replace(only(made_safe()), margins=(PinMargin("A", "", fatigue),))
     assert headline(results) == "Pin A fails: fatigue life, margin of safety −0.779."
     assert "0 of 1 pin is safe in all cases (required factor 1.5); fails: A (fatigue life)." in (
@@ -220,8 +220,8 @@ def test_the_headline_is_the_worst_of_all_checks() -> None:
 
 
 def test_comparisons_and_checks_without_data_do_not_count() -> None:
-    weak = Margin("bending, for comparison", "", "limit", 2.0, 1.0, 1.0, governs=False)
-    open_ = Margin("bearing", "", "limit", None, None, 1.0, needs="bearing_strength")
+    weak = Margin("bending, for comparison", "", "hand", "limit", 1.0, 2.0, 1.0, governs=False)
+    open_ = Margin("bearing", "", "hand", "limit", 1.0, None, None, needs="bearing_strength")
     results = replace(
         only(made_safe()), margins=(PinMargin("A", "x", weak), PinMargin("A", "x", open_))
     )
@@ -230,7 +230,7 @@ def test_comparisons_and_checks_without_data_do_not_count() -> None:
 
 def test_rupture_within_the_error_is_not_decided() -> None:
     """The margin takes the upper end of the maximum; the lower end meets it: 1.004 / 1.01 < 1."""
-    rupture = Margin("von Mises stress, rupture", "", "ultimate", 1.004, 1.5, 1.5)
+    rupture = Margin("von Mises stress, rupture", "", "model", "ultimate", 1.5, 1.004, 1.5)
     results = replace(only(made_safe()), margins=(PinMargin("A", "x", rupture),))
     assert worst_checks(results)["A"].outcome == "not decided"
     sure = replace(rupture, demand=1.02)
@@ -244,7 +244,7 @@ def test_one_margin_of_a_row_has_one_meaning() -> None:
     results = run(study)
     (found,) = results.pins
     (m,) = (m.margin for m in results.margins if m.margin.method == "von Mises stress, yield")
-    (cells,) = safety_factor_rows(results)
+    (cells,) = safety_factors_table(results).records()
     assert found.max_von_mises is not None
     assert m.factor == 10.0
     low = (found.safety_factor or 0.0) / (1.0 + (found.error_estimate or 0.0) / found.max_von_mises)
@@ -279,7 +279,7 @@ def test_a_sweep_says_what_a_run_says(clevis: Results) -> None:
     results = run(contact)
     (pin,) = results.pins
     assert row_.outcome == outcome(pin) == "depends"
-    assert row_.depends_on == safety_factor_rows(results)[0]["depends_on"]
+    assert row_.depends_on == safety_factors_table(results).records()[0]["depends_on"]
 
 
 def test_designs_of_equal_forces_are_judged_each_by_its_own_impulse() -> None:

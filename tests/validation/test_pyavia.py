@@ -39,7 +39,7 @@ def lowest_point() -> tuple[float, float]:
         fallen = 0.5 * MASS * SPEED**2 + MASS * GRAVITY * (1.0 - LIFT) * (s + tyre)
         return fallen - 0.5 * LEAF.stiffness * s**2 - float(TYRE.energy(np.array([tyre]))[0])
 
-    tyre = brentq(excess, 0.01, TYRE.most, xtol=1e-14)
+    tyre = brentq(excess, 0.01, TYRE.max_deflection, xtol=1e-14)
     return strut(tyre), tyre
 
 

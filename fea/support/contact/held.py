@@ -52,7 +52,7 @@ ROUGH = Resolution(4, 24, 8)  # may decide a required factor
 MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 
 
-class Contact:
+class ContactSupport:
     """Lugs in contact on cells of one resolution (fea.support.support.Support). finer: the next
     resolution, None for the last.
     """

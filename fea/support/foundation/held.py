@@ -50,7 +50,7 @@ FOUNDATION_OMISSIONS = (
 MIN_GOVERNING_RATIO = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
 
 
-class Foundation:
+class FoundationSupport:
     """Lugs as springs along a beam (fea.support.support.Support)."""
 
     def hold(

@@ -9,7 +9,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from assess.strength.records import BeamCheck
+from assess.opinion.records import BeamCheck
 from fea.core.peak import Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
@@ -18,7 +18,7 @@ from fea.support.records import JointResult
 from fea.support.support import Solution
 from geometry import Cut, CutPin, Flat, Hole, Passage, Pin, Slot
 from geometry.shape.cut_edges import drawn
-from pinstress.analysis.assessed.checked import Checked, factor_assumption
+from pinstress.analysis.assessed.situations import Assessed, factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.analysis.gather.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
@@ -132,7 +132,7 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
 def _results(
     study: Study,
     loads: dict[str, CaseLoads],
-    rows: list[tuple[Task, Maximum, JointResult | None, Checked]],
+    rows: list[tuple[Task, Maximum, JointResult | None, Assessed]],
     beam: BeamCheck | None,
     published: Published,
     tolerance: float,
@@ -154,7 +154,7 @@ def _results(
             for name in table.pin
             if name in tasks
         ),
-        margins=tuple(margin for found in strength for margin in found.margins),
+        margins=tuple(margin for found in strength for margin in found.worst),
         arms=tuple(found.arms for found in strength if found.arms),
         **mechanics(study, loads, published),
         beam_check=beam,
@@ -184,7 +184,7 @@ def _pin_result(
     task: Task,
     peak: Maximum,
     joint: JointResult | None,
-    found: Checked,
+    found: Assessed,
     published: Published,
 ) -> plain.PinResult:
     strength = task.material.yield_strength
@@ -222,7 +222,7 @@ def _pin_result(
         published_safety_factor=theirs[1],
         why=peak.why,
         singular_at=peak.singular_at,
-        hand_checks=found.hand_checks,
+        margins=found.margins,
         max_von_mises_interval=peak.interval,
         safety_factor_interval=_factors(peak, strength),
         error_parts={} if peak.parts is None else asdict(peak.parts),

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass
 from math import inf
 
+from assess.checks import margins_of
 from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
 from assess.fatigue.fkm import FkmMaterial
 from assess.fatigue.proportional import SIGNED_SHEAR_RULE
 from assess.fatigue.records import PointFatigue, PointHistory
 from assess.fatigue.sn_curve import SnCurve
-from assess.strength.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
+from assess.margin import PinMargin, worst_places
+from assess.situation import PinFatigue, Situation
 from fea.core.peak import meets_limit
 from fea.support.lugs.lug import Lug
 from pinbase.errors import ArgumentError
+from pinstress.analysis.assessed.situations import load_factors
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.schema.fatigue import FatigueTable, SnTable
 from pinstress.study.schema.pins import MaterialTable
-from reports.data.headline import FATIGUE_LIFE
 from reports.data.results import Fatigue
 
 FACTORS_NOT_APPLIED_NOTE = (
@@ -77,37 +79,22 @@ def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, lis
     needs = {pin: open_.needs for pin, open_ in opens.items() if pin not in failing}
     key = "fkm" if table.method == "fkm-p-ram" else "fatigue"
     needs |= {pin: f"material.{plan.study.table.pin[pin].material}.{key}" for pin in without}
-    return fatigue, list(_margins(fatigue, needs))
+    return fatigue, _margins(plan, fatigue, needs)
 
 
-def _margins(found: Fatigue, needs: dict[str, str]) -> Iterator[PinMargin]:
-    """Of each pin's worst point: damage per unit against what the design life allows; needs: of
-    pins that have none.
+def _margins(plan: Plan, found: Fatigue, needs: dict[str, str]) -> list[PinMargin]:
+    """The margins of checks over all cases of a pin, the worst pin first. needs: what is missing of
+    pins whose damage is not decided.
     """
-    if not found.life:
-        return
-    worst: dict[str, PointFatigue] = {}
-    for point in found.points:
-        worst.setdefault(point.pin, point)
-    for pin, point in worst.items():
-        if pin in needs:
-            continue
-        allowed = 1.0 / found.life
-        margin = Margin(
-            FATIGUE_LIFE,
-            point.method,
-            "limit",
-            point.damage,
-            allowed,
-            1.0,
-            RATIO_DIMENSION,
-            at=f"point {point.point}",
-            basis=f"damage per {found.unit}",
-        )
-        yield PinMargin(pin, "", margin)
-    for pin, what in needs.items():
-        none = skipped(FATIGUE_LIFE, found.method, "limit", 1.0, what)
-        yield PinMargin(pin, "", replace(none, dimension=RATIO_DIMENSION))
+    tasks = {task.pin.name: task for task in plan.tasks}
+    damaged = dict.fromkeys(p.pin for p in found.points if p.pin not in needs)
+    margins = []
+    for pin in (*damaged, *needs):
+        points = tuple(p for p in found.points if p.pin == pin)
+        fatigue = PinFatigue(points, found.life, found.unit, found.method, needs.get(pin, ""))
+        s = Situation(None, tasks[pin].material, factors=load_factors(plan.study), fatigue=fatigue)
+        margins += [PinMargin(pin, "", m) for m in worst_places(margins_of(s, "pin"))]
+    return margins
 
 
 def _material(plan: Plan, pin: str) -> FatigueMaterial:

@@ -39,8 +39,8 @@ from pinstress.explore.size.pin_shape import (
     kind_of,
 )
 from pinstress.explore.size.pin_stress import (
-    PinProblem,
     PinStress,
+    SizingProblem,
     SolvedPin,
 )
 from pinstress.explore.size.scaled_study import resized_study
@@ -228,7 +228,7 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
     )  # fmt: skip
 
 
-def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> PinProblem | str:
+def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingProblem | str:
     """What is posed of a pin, or why nothing can be."""
     table = study.table.pin[pin]
     if table.geometry is not None:
@@ -245,13 +245,13 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> PinProble
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
     asked = replace(plan.asked, goal="value")
-    return PinProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
+    return SizingProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
 
 
 class _Search:
     """The pin as a problem for pinstress.explore.size.optimise."""
 
-    def __init__(self, problem: PinProblem, stress: PinStress, aim: WeightGoal) -> None:
+    def __init__(self, problem: SizingProblem, stress: PinStress, aim: WeightGoal) -> None:
         self.problem, self.stress, self.aim = problem, stress, aim
         self.shape = problem.shape
 

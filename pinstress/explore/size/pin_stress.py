@@ -64,7 +64,7 @@ Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class PinProblem:
+class SizingProblem:
     """A pin of a study under loads that do not change: its shape, what is asked, by case the loads
     and the part of the required factor that is needed there, mostly 1.
     """
@@ -124,7 +124,7 @@ class PinStress:
     cases in which no singularity may govern, none to begin with.
     """
 
-    def __init__(self, problem: PinProblem, tell: Tell) -> None:
+    def __init__(self, problem: SizingProblem, tell: Tell) -> None:
         self.problem, self._tell = problem, tell
         self._raw: dict[str, Any] = raw_study(problem.study)
         shape = problem.shape

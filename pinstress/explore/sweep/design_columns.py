@@ -8,24 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pinstress.explore.sweep.table import METADATA_KEY, RESULT_COLUMNS
 from reports.data.results import Floats
+from reports.tables.column import in_order
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-METADATA_KEY = b"pinstress"
-# Texts of every row
-ROW_COLUMNS = "pin", "case", "outcome", "depends_on", "verdict", "reason", "code", "governs"
-COLUMN_TITLES = {
-    "mass": "mass",
-    "max_von_mises": "maximum von Mises",
-    "error_estimate": "± of maximum",
-    "safety_factor": "safety factor",
-    "governing_time": "governing time",
-    "surface": "surface von Mises",
-    "section": "section von Mises",
-    "beneath": "beneath contact",
-    "beneath_error": "± of beneath contact",
+ROW_COLUMNS = ("pin", "case", *(c.key for c in RESULT_COLUMNS if not c.numeric))  # texts
+COLUMN_TITLES = {  # in the order of the page
+    c.key: c.heading for c in in_order(RESULT_COLUMNS, ("mass",)) if c.numeric
 }
 
 

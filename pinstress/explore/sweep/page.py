@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pinstress.explore.sweep.design_columns import DesignColumn, Designs, designs_of
-from reports.format.grid import Grid
 from reports.format.numbers import DASH, short
 from reports.format.packed import packed
 from reports.format.script_json import script_json
 from reports.format.template import environment
 from reports.format.words import VERDICT_MEANINGS
 from reports.plots.theme import style_sheet
+from reports.tables.column import Grid
 
 if TYPE_CHECKING:
     import pyarrow as pa

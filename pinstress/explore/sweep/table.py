@@ -17,28 +17,26 @@ from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.folder.inside import write_inside
+from reports.tables.column import Column, fields
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 METADATA_KEY = b"pinstress"  # of the schema, a JSON text
-RESULT_DIMENSIONS = {  # by column: the dimension, or None of a text; SI in a DesignRow
-    "max_von_mises": "stress",
-    "error_estimate": "stress",
-    "safety_factor": "",
-    "outcome": None,
-    "depends_on": None,
-    "verdict": None,
-    "governing_time": "time",
-    "mass": "mass",
-    "reason": None,
-    "code": None,
-    "governs": None,
-    "surface": "stress",
-    "section": "stress",
-    "beneath": "stress",
-    "beneath_error": "stress",
-}
+# Of a design's row, in SI; texts are not numeric. What people read has a heading.
+RESULT_COLUMNS: list[Column[DesignRow]] = [
+    *fields("max_von_mises", "stress", heading="maximum von Mises"),
+    *fields("error_estimate", "stress", heading="± of maximum"),
+    *fields("safety_factor", heading="safety factor"),
+    *fields("outcome depends_on verdict", numeric=False),
+    *fields("governing_time", "time", heading="governing time"),
+    *fields("mass", "mass", heading="mass"),
+    *fields("reason code governs", numeric=False),
+    *fields("surface", "stress", heading="surface von Mises"),
+    *fields("section", "stress", heading="section von Mises"),
+    *fields("beneath", "stress", heading="beneath contact"),
+    *fields("beneath_error", "stress", heading="± of beneath contact"),
+]
 
 
 def table_of(
@@ -59,10 +57,10 @@ def table_of(
     for k, parameter in enumerate(parameters):
         factor = parameter.number.factor
         columns.append([float(values[k]) / factor for _, values, _ in flat])
-    for name, dimension in RESULT_DIMENSIONS.items():
-        factor = study.system.factor(dimension) if dimension else 1.0
-        cells = [getattr(row, name) for _, _, row in flat]
-        if dimension is not None:
+    for column in RESULT_COLUMNS:
+        cells = [column.cell(row) for _, _, row in flat]
+        if column.numeric:
+            factor = study.system.factor(str(column.dimension)) if column.dimension else 1.0
             cells = [None if cell is None else cell / factor for cell in cells]
         columns.append(cells)
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
@@ -117,11 +115,16 @@ def facts(table: pa.Table) -> dict[str, Any]:
 def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
     import pyarrow as pa
 
-    fields = [_field("design", pa.int64()), _field("pin", pa.string()), _field("case", pa.string())]
-    fields += [_field(p.key, pa.float64(), p.number.unit) for p in parameters]
-    for name, dimension in RESULT_DIMENSIONS.items():
-        unit = unit_of(study.system, dimension) if dimension else ""
-        fields.append(_field(name, pa.string() if dimension is None else pa.float64(), unit))
+    schema_fields = [
+        _field("design", pa.int64()),
+        _field("pin", pa.string()),
+        _field("case", pa.string()),
+    ]
+    schema_fields += [_field(p.key, pa.float64(), p.number.unit) for p in parameters]
+    for column in RESULT_COLUMNS:
+        unit = unit_of(study.system, str(column.dimension)) if column.dimension else ""
+        kind = pa.float64() if column.numeric else pa.string()
+        schema_fields.append(_field(column.key, kind, unit))
     stated = {
         "study": study.name,
         "title": study.table.title,
@@ -131,7 +134,7 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
         "required_safety_factor": study.table.analysis.required_safety_factor,
     }
     return pa.schema(
-        fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}
+        schema_fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}
     )
 
 

@@ -158,5 +158,5 @@ def _own_weight(
             own = motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
             across = np.zeros((len(reactions), 3))
             across[:, :2] = np.array(motion.linkage.gravity) - own
-            return reactions.turned_back(across, connection)
+            return reactions.to_pin_axes(across, connection)
     return np.zeros(3)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from assess.strength.records import COMPARISON_WINDOW
+from assess.opinion.records import COMPARISON_WINDOW
 from reports.data.results import BeamCheck, Units
 from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short

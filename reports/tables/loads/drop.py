@@ -2,64 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from reports.data.drop import DropRecord
+from reports.data.drop import DropPeak, DropRecord
 from reports.data.results import Results
-from reports.format.files.csv import Cell
-from reports.format.grid import Grid
 from reports.format.numbers import engineering
-from reports.tables.table import Table
+from reports.tables.column import ArrayTable, Column, Grid, Table, fields, read_only, texts
 
-COLUMNS = {  # of landing.csv: attributes of a record
-    "time": "time",
-    "stroke": "stroke",
-    "tyre_deflection": "deflection",
-    "vertical": "vertical",
-    "drag": "drag",
-    "strut_force": "strut",
-    "leg_drag": "leg_drag",
-    "sprung_velocity": "sink_velocity",
-}
+COLUMNS: list[Column[DropRecord]] = [  # of landing.csv
+    *fields("case"),
+    *fields("time", "time"),
+    *fields("stroke tyre_deflection=deflection", "length"),
+    *fields("vertical drag strut_force=strut leg_drag", "force"),
+    *fields("sprung_velocity=sink_velocity", "velocity"),
+]
 
 
-def drop_table(results: Results) -> Table:
-    """landing.csv: a row per instant."""
-    energies = [f"{name}_energy" for name in results.drops[0].energies]
-    return Table.of("landing", ["case", *COLUMNS, *energies], _rows(results))
+def drop_table(results: Results) -> Table[DropRecord]:
+    """landing.csv: a line per instant."""
 
+    def energy(name: str) -> Column[DropRecord]:
+        return Column(f"{name}_energy", lambda d: d.energies[name], "moment")
 
-def _rows(results: Results) -> Iterator[list[Cell]]:
-    for d in results.drops:
-        columns = [*(getattr(d, name) for name in COLUMNS.values()), *d.energies.values()]
-        for values in zip(*columns, strict=True):
-            yield [d.case, *(float(value) for value in values)]
+    columns = [*COLUMNS, *map(energy, results.drops[0].energies)]
+    return ArrayTable("landing", columns, results.drops)
 
 
 def peak_grid(d: DropRecord, results: Results) -> Grid:
     """Largest values of a drop with their times."""
     units = {"force": results.units.force, "length": results.units.length}
-    rows = [
-        [p.name, units[p.dimension], engineering(p.value), engineering(p.time)]
-        for p in d.peaks.values()
-        if p.value
+    columns: list[Column[DropPeak]] = [
+        *texts("largest=name"),
+        read_only("unit", lambda p: units[p.dimension], numeric=False),
+        read_only("value", lambda p: p.value),
+        read_only("time", lambda p: engineering(p.time), "time"),
     ]
-    head = ["largest", "unit", "value", f"time [{results.units.time}]"]
-    return Grid(head, rows, [False, False, True, True])
+    return Table("peaks", columns, [p for p in d.peaks.values() if p.value]).grid(results.units)
 
 
 def impulse_grid(d: DropRecord, results: Results) -> Grid:
     """The estimate by an impulse next to the drop."""
-    force, time = results.units.force, results.units.time
-    peak = d.peaks["vertical"].value
+    time, peak = results.units.time, d.peaks["vertical"].value
+    columns: list[Column[tuple[str, float, str]]] = [
+        read_only("by", lambda row: row[0], numeric=False),
+        read_only("vertical force", lambda row: row[1], "force"),
+        read_only("of the drop", lambda row: row[2]),
+    ]
     rows = [
-        [f"impulse m V / t, t = {engineering(d.impulse_time)} {time}",
-         engineering(d.impulse_force), engineering(d.impulse_force / peak, 3)],
-        ["drop", engineering(peak), "1"],
-        [f"impulse with the peak of the drop, t = {engineering(d.equal_impulse_time)} {time}",
-         engineering(peak), "1"],
+        (f"impulse m V / t, t = {engineering(d.impulse_time)} {time}",
+         d.impulse_force, engineering(d.impulse_force / peak, 3)),
+        ("drop", peak, "1"),
+        (f"impulse with the peak of the drop, t = {engineering(d.equal_impulse_time)} {time}",
+         peak, "1"),
     ]  # fmt: skip
-    return Grid(["by", f"vertical force [{force}]", "of the drop"], rows, [False, True, True])
+    return Table("impulses", columns, rows).grid(results.units)
 
 
 def drop_words(d: DropRecord, results: Results) -> list[str]:

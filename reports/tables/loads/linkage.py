@@ -2,97 +2,107 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
-from reports.data.results import LinkageMotion, Results
-from reports.format.files.csv import Cell
-from reports.tables.table import Table
+from reports.data.results import Floats, LinkageMotion, Results
+from reports.tables.column import ArrayTable, Column, Table, fields
 
-BODY_COLUMNS = ("x", "y", "angle_deg", "vx", "vy", "omega", "ax", "ay", "alpha")
-JOINT_COLUMNS = ("x", "y", "vx", "vy", "ax", "ay")
-PATH_COLUMNS = ("x", "y", "vx", "vy", "speed", "curvature")
-LINKAGE_CHECK_COLUMNS = (
-    "shaking_fx",
-    "shaking_fy",
-    "shaking_moment",
-    "condition",
-    "power_drives",
-    "power_gravity",
-    "power_applied",
-    "power_friction",
-    "kinetic_rate",
-)
+Names = Callable[[LinkageMotion], Iterable[str]]
 
 
-def linkage_tables(results: Results) -> list[Table]:
-    """Motion, joints, transmission, linkage, sliders and, where points are named, paths of all
-    cases.
-    """
-    paths = [("paths", ("case", "time", "point", *PATH_COLUMNS), _paths)]
+def _columns(key: str, names: Names) -> list[Column[LinkageMotion]]:
+    """Case, time and name of a line for each of `names` at every instant."""
     return [
-        Table.of(name, columns, (row for m in results.motion for row in rows(m)))
-        for name, columns, rows in (
-            ("motion", ("case", "time", "body", *BODY_COLUMNS), _bodies),
-            ("joints", ("case", "time", "joint", *JOINT_COLUMNS), _joints),
-            ("transmission", ("case", "time", "link", "degrees"), _transmission),
-            ("linkage", ("case", "time", *LINKAGE_CHECK_COLUMNS), _checks),
-            ("sliders", ("case", "time", "slider", "normal", "couple", "friction"), _sliders),
-            *(paths if any(m.paths for m in results.motion) else ()),
-        )
+        *fields("case"),
+        Column(
+            "time", lambda m: None if m.time is None else m.time.repeat(len([*names(m)])), "time"
+        ),
+        Column(key, lambda m: [*names(m)] * len(m.condition)),
     ]
 
 
-def _instants(motion: LinkageMotion) -> Iterator[tuple[int, list[Cell]]]:
-    for t in range(len(motion.condition)):
-        yield t, [motion.case, None if motion.time is None else float(motion.time[t])]
+def _flat(key: str, values: Callable[[LinkageMotion], Floats], dimension: str) -> Column[Any]:
+    """Values (T, N) of N names, all names of an instant together."""
+    return Column(key, lambda m: values(m).ravel(), dimension)
 
 
-def _bodies(m: LinkageMotion) -> Iterator[list[Cell]]:
-    for t, head in _instants(m):
-        for b, body in enumerate(m.bodies):
-            turn = (m.angle, m.angular_velocity, m.angular_acceleration)
-            line: list[Cell] = []
-            for vector, scalar in zip((m.centre, m.velocity, m.acceleration), turn, strict=True):
-                line += [float(vector[t, b, 0]), float(vector[t, b, 1]), float(scalar[t, b])]
-            yield [*head, body, *line]
+def _of_each(
+    key: str, values: Callable[[LinkageMotion], list[Floats]], dimension: str
+) -> Column[Any]:
+    """The same of values (T,) of each name."""
+    return Column(key, lambda m: np.array(values(m)).T.ravel(), dimension)
 
 
-def _joints(m: LinkageMotion) -> Iterator[list[Cell]]:
-    for t, head in _instants(m):
-        for j, joint in enumerate(m.joints):
-            vectors = (m.joint_position, m.joint_velocity, m.joint_acceleration)
-            yield [*head, joint, *(float(x) for v in vectors for x in v[t, j])]
+def _xy(keys: tuple[str, str], name: str, dimension: str) -> list[Column[Any]]:
+    """Both components of vectors (T, N, 2)."""
+
+    def component(k: int) -> Callable[[LinkageMotion], Floats]:
+        return lambda m: getattr(m, name)[:, :, k]
+
+    return [_flat(key, component(k), dimension) for k, key in enumerate(keys)]
 
 
-def _transmission(m: LinkageMotion) -> Iterator[list[Cell]]:
-    for t, head in _instants(m):
-        for link, degrees in m.transmission.items():
-            yield [*head, link, float(degrees[t])]
+BODY_COLUMNS = [
+    *_columns("body", lambda m: m.bodies),
+    *_xy(("x", "y"), "centre", "length"),
+    _flat("angle_deg", lambda m: m.angle, "degrees"),
+    *_xy(("vx", "vy"), "velocity", "velocity"),
+    _flat("omega", lambda m: m.angular_velocity, "rate of turn"),
+    *_xy(("ax", "ay"), "acceleration", "acceleration"),
+    _flat("alpha", lambda m: m.angular_acceleration, "rate of rate of turn"),
+]
+JOINT_COLUMNS = [
+    *_columns("joint", lambda m: m.joints),
+    *_xy(("x", "y"), "joint_position", "length"),
+    *_xy(("vx", "vy"), "joint_velocity", "velocity"),
+    *_xy(("ax", "ay"), "joint_acceleration", "acceleration"),
+]
+TRANSMISSION_COLUMNS = [
+    *_columns("link", lambda m: m.transmission),
+    _of_each("degrees", lambda m: [*m.transmission.values()], "degrees"),
+]
+CHECK_COLUMNS: list[Column[LinkageMotion]] = [
+    *fields("case"),
+    *fields("time", "time"),
+    Column("shaking_fx", lambda m: m.shaking_force[:, 0], "force"),
+    Column("shaking_fy", lambda m: m.shaking_force[:, 1], "force"),
+    *fields("shaking_moment", "moment"),
+    *fields("condition"),
+    *fields("power_drives=ledger.drives power_gravity=ledger.gravity", "power"),
+    *fields("power_applied=ledger.applied power_friction=ledger.friction", "power"),
+    *fields("ledger.kinetic_rate", "power"),
+]
+SLIDER_COLUMNS = [
+    *_columns("slider", lambda m: m.slider_forces),
+    _of_each("normal", lambda m: [f.normal for f in m.slider_forces.values()], "force"),
+    _of_each("couple", lambda m: [f.couple for f in m.slider_forces.values()], "moment"),
+    _of_each("friction", lambda m: [f.friction for f in m.slider_forces.values()], "force"),
+]
+PATH_COLUMNS = [
+    *_columns("point", lambda m: m.paths),
+    _of_each("x", lambda m: [p.position[:, 0] for p in m.paths.values()], "length"),
+    _of_each("y", lambda m: [p.position[:, 1] for p in m.paths.values()], "length"),
+    _of_each("vx", lambda m: [p.velocity[:, 0] for p in m.paths.values()], "velocity"),
+    _of_each("vy", lambda m: [p.velocity[:, 1] for p in m.paths.values()], "velocity"),
+    _of_each("speed", lambda m: [p.speed for p in m.paths.values()], "velocity"),
+    _of_each("curvature", lambda m: [p.curvature for p in m.paths.values()], "curvature"),
+]
 
 
-def _sliders(m: LinkageMotion) -> Iterator[list[Cell]]:
-    for t, head in _instants(m):
-        for slider, forces in m.slider_forces.items():
-            yield [
-                *head,
-                slider,
-                *map(float, (forces.normal[t], forces.couple[t], forces.friction[t])),
-            ]
-
-
-def _paths(m: LinkageMotion) -> Iterator[list[Cell]]:
-    for t, head in _instants(m):
-        for name, p in m.paths.items():
-            at, along = p.position[t], p.velocity[t]
-            bend = float(p.curvature[t]) if np.isfinite(p.curvature[t]) else None
-            yield [*head, name, *map(float, (*at, *along, p.speed[t])), bend]
-
-
-def _checks(m: LinkageMotion) -> Iterator[list[Cell]]:
-    p = m.ledger
-    for t, head in _instants(m):
-        powers = (p.drives, p.gravity, p.applied, p.friction, p.kinetic_rate)
-        shaking = (*m.shaking_force[t], m.shaking_moment[t], m.condition[t])
-        yield [*head, *(float(x) for x in shaking), *(float(x[t]) for x in powers)]
+def linkage_tables(results: Results) -> list[Table[LinkageMotion]]:
+    """Motion, joints, transmission, linkage, sliders and, where points are named, paths of all
+    cases.
+    """
+    paths = {"paths": PATH_COLUMNS} if any(m.paths for m in results.motion) else {}
+    every = {
+        "motion": BODY_COLUMNS,
+        "joints": JOINT_COLUMNS,
+        "transmission": TRANSMISSION_COLUMNS,
+        "linkage": CHECK_COLUMNS,
+        "sliders": SLIDER_COLUMNS,
+        **paths,
+    }
+    return [ArrayTable(name, columns, results.motion) for name, columns in every.items()]

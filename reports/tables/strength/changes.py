@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from reports.data.changes import Remedy
 from reports.data.results import Results
-from reports.format.grid import Grid
 from reports.format.numbers import DASH, engineering, short
+from reports.tables.column import Column, Table, read_only, texts
 
 REMEDIES_NOTE = (
     "Each of these alone brings the pin to the required factor in the worst of its cases, if "
@@ -27,25 +27,18 @@ SINGULARITY_REMEDIES = {
 }
 
 
-def changes_grid(results: Results) -> Grid:
+COLUMNS: tuple[Column[Remedy], ...] = (
+    *texts("pin case"),
+    read_only("× diameters", lambda c: engineering(c.diameter_factor, 3), drop_if_empty=True),
+    read_only("yield strength", lambda c: c.yield_strength, "stress", drop_if_empty=True),
+    read_only("× loads", lambda c: _loads(c), drop_if_empty=True),
+    read_only("impulse time", lambda c: _time(c), "time", rank=1, drop_if_empty=True),
+)
+
+
+def changes_table(results: Results) -> Table[Remedy]:
     """A row for each pin, the worst first."""
-    units = results.units
-    columns = {
-        "pin": [c.pin for c in results.changes],
-        "case": [c.case for c in results.changes],
-        "× diameters": [engineering(c.diameter_factor, 3) for c in results.changes],
-        f"yield strength [{units.stress}]": [
-            engineering(c.yield_strength) for c in results.changes
-        ],
-        "× loads": [_loads(c) for c in results.changes],
-        f"impulse time [{units.time}]": [_time(c) for c in results.changes],
-    }
-    shown = {head: cells for head, cells in columns.items() if {*cells} != {DASH}}
-    return Grid(
-        [*shown],
-        [list(row) for row in zip(*shown.values(), strict=True)],
-        [False, False, *[True] * (len(shown) - 2)],
-    )
+    return Table("changes", COLUMNS, results.changes)
 
 
 def change_notes(results: Results) -> list[str]:

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
 
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note
-from reports.data.results import Results
-from reports.format.files.csv import Cell
-from reports.format.numbers import DASH, finite
-from reports.tables.table import Table
+from reports.data.results import PeakReaction, Results, Units
+from reports.format.numbers import DASH
+from reports.tables.column import Column, Table, fields, unit_columns
 
-COLUMNS = (
-    *("pin", "case", "connection", "force", "moment"),
-    *("max_von_mises", "safety_factor", "utilisation_high", "outcome", "governs"),
-    *("force_unit", "length_unit", "stress_unit"),
-)
 FULL_COLOUR_UTILISATION = 1.0  # utilisation at which a cell has its full colour
 ENVELOPE_NOTE = (
     "Utilisation of each pin in each case: required over actual factor of safety (1 where none is "
@@ -24,20 +19,38 @@ ENVELOPE_NOTE = (
 )
 
 
-def envelope_table(results: Results) -> Table:
+@dataclass(frozen=True)
+class EnvelopeRow:
+    """A pin in a case, with the largest load on one of its connections, if there are any."""
+
+    cell: EnvelopeCell
+    load: PeakReaction | None
+    units: Units
+
+
+def _load(name: str) -> Callable[[EnvelopeRow], float | None]:
+    return lambda row: getattr(row.load, name, None)
+
+
+COLUMNS: tuple[Column[EnvelopeRow], ...] = (
+    *fields("pin=cell.result.pin case=cell.result.case"),
+    Column("connection", lambda row: row.load.connection if row.load else ""),
+    Column("force", _load("force"), "force"),
+    Column("moment", _load("moment"), "moment"),
+    *fields("cell.result.max_von_mises", "stress"),
+    *fields("cell.result.safety_factor utilisation_high=cell.used cell.outcome cell.governs"),
+    *unit_columns("force length stress"),
+)
+
+
+def envelope_table(results: Results) -> Table[EnvelopeRow]:
     """The largest force and moment on each connection, with the pin's results in the case."""
-    units = (results.units.force, results.units.length, results.units.stress)
-    rows = []
-    for cell in envelope(results):
-        r = cell.result
-        answer = (
-            *(finite(r.max_von_mises), finite(r.safety_factor), finite(cell.used)),
-            *(cell.outcome, "yes" if cell.governs else "no"),
-        )
-        loads: list[tuple[Cell, ...]] = [(x.connection, x.force, x.moment) for x in cell.largest]
-        for load in loads or [("", None, None)]:
-            rows.append((r.pin, r.case, *load, *answer, *units))
-    return Table.of("envelope", COLUMNS, rows)
+    rows = [
+        EnvelopeRow(cell, load, results.units)
+        for cell in envelope(results)
+        for load in cell.largest or (None,)
+    ]
+    return Table("envelope", COLUMNS, rows)
 
 
 @dataclass(frozen=True)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from assess.fatigue.records import PointFatigue
+from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from reports.data.results import Fatigue, Results
 from reports.format.files.csv import Cell
-from reports.format.grid import Grid
-from reports.format.numbers import DASH, engineering, finite
-from reports.tables.table import Table
+from reports.format.numbers import DASH, engineering
+from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only, texts
 
 LIFE_PROBABILITIES = ("10 %", "50 %", "90 %")
 METHOD_NAMES = {
@@ -19,53 +19,75 @@ METHOD_NAMES = {
     "critical-plane": "Findley's critical plane",
     "fkm-p-ram": "P_RAM of the FKM guideline for local strains",
 }
-HISTORY_COLUMNS = ("pin", "case", "time", "point", "von_mises", "signed")
-POINT_COLUMNS = ("pin", "point", "x", "y", "z", "chosen")
-COLUMNS = (
-    *("pin", "point", "x", "y", "z", "method", "damage", "life", "life_10", "life_50", "life_90"),
-    *("utilisation", "amplitude", "mean_stress", "note", "normal_x", "normal_y", "normal_z"),
-    "not_decided",
-)
 
 
-def fatigue_tables(results: Results) -> list[Table]:
+@dataclass(frozen=True)
+class FatigueRow:
+    """A point of a pin, none where the fatigue of the pin is not known."""
+
+    pin: str
+    point: PointFatigue | None
+    fatigue: Fatigue
+
+
+HISTORY_COLUMNS: list[Column[tuple[PointHistory, CaseHistory]]] = [
+    Column("pin", lambda row: row[0].pin),
+    Column("case", lambda row: row[1].case),
+    Column("time", lambda row: row[1].times, "time"),
+    Column("point", lambda row: row[0].point),
+    Column("von_mises", lambda row: row[1].von_mises, "stress"),
+    Column("signed", lambda row: row[1].signed, "stress"),
+]
+POINT_COLUMNS: list[Column[PointHistory]] = [
+    *fields("pin point"),
+    *(Column(x, lambda row, k=k: row.location[k], "length") for k, x in enumerate("xyz")),  # type: ignore[misc]
+    *fields("chosen"),
+]
+
+
+def _of(key: str, cell: Callable[[PointFatigue], Cell], dimension: str = "") -> Column[FatigueRow]:
+    """A column that is empty where there is no point."""
+    return Column(key, lambda row: None if row.point is None else cell(row.point), dimension)
+
+
+def _part(name: str, k: int) -> Callable[[PointFatigue], Cell]:
+    """One of several values of a point, which may have none."""
+    return lambda point: (getattr(point, name) or (None,) * 3)[k]
+
+
+COLUMNS: list[Column[FatigueRow]] = [
+    *fields("pin"),
+    _of("point", lambda p: p.point),
+    *(_of(x, _part("location", k), "length") for k, x in enumerate("xyz")),
+    _of("method", lambda p: p.method),
+    _of("damage", lambda p: p.damage),
+    _of("life", lambda p: p.life),
+    *(_of(f"life_{p}", _part("lives", k)) for k, p in enumerate(("10", "50", "90"))),
+    _of("utilisation", lambda p: p.utilisation),
+    _of("amplitude", lambda p: p.amplitude, "stress"),
+    _of("mean_stress", lambda p: p.mean, "stress"),
+    _of("note", lambda p: p.note),
+    *(_of(f"normal_{x}", _part("normal", k)) for k, x in enumerate("xyz")),
+    Column("not_decided", lambda row: row.fatigue.not_decided.get(row.pin, "")),
+]
+
+
+def fatigue_tables(results: Results) -> list[Table[Any]]:
     """Histories, their points, and damage."""
+    histories = [(h, case) for h in results.histories for case in h.cases]
     return [
-        Table.of("stress_history", HISTORY_COLUMNS, _history(results)),
-        Table.of("critical_points", POINT_COLUMNS, _points(results)),
-        Table.of("fatigue", COLUMNS, _rows(results.fatigue)),
+        ArrayTable("stress_history", HISTORY_COLUMNS, histories),
+        Table("critical_points", POINT_COLUMNS, results.histories),
+        Table("fatigue", COLUMNS, _rows(results.fatigue)),
     ]
 
 
-def _history(results: Results) -> Iterator[list[Cell]]:
-    for h in results.histories:
-        for case in h.cases:
-            times = [None] * len(case.signed) if case.times is None else case.times.tolist()
-            values = (case.von_mises.tolist(), case.signed.tolist())
-            for time, von_mises, signed in zip(times, *values, strict=True):
-                yield [h.pin, case.case, time, h.point, von_mises, signed]
-
-
-def _points(results: Results) -> Iterator[list[Cell]]:
-    for h in results.histories:
-        yield [h.pin, h.point, *h.location, h.chosen]
-
-
-def _rows(fatigue: Fatigue | None) -> Iterator[list[Cell]]:
+def _rows(fatigue: Fatigue | None) -> list[FatigueRow]:
     if fatigue is None:
-        return
-    for p in fatigue.points:
-        lives = p.lives or (None,) * len(LIFE_PROBABILITIES)
-        yield [
-            *(p.pin, p.point, *p.location, p.method, p.damage, p.life, *lives),
-            *(p.utilisation, p.amplitude, p.mean, p.note),
-            *(p.normal or (None,) * 3),
-            fatigue.not_decided.get(p.pin, ""),
-        ]
-    shown = {p.pin for p in fatigue.points}
-    for pin, reason in fatigue.not_decided.items():
-        if pin not in shown:
-            yield [pin, *(None,) * (len(COLUMNS) - 2), reason]
+        return []
+    assessed = {p.pin for p in fatigue.points}
+    rows = [FatigueRow(p.pin, p, fatigue) for p in fatigue.points]
+    return rows + [FatigueRow(x, None, fatigue) for x in fatigue.not_decided if x not in assessed]
 
 
 def worst_points(fatigue: Fatigue) -> list[PointFatigue]:
@@ -73,39 +95,48 @@ def worst_points(fatigue: Fatigue) -> list[PointFatigue]:
     return list({p.pin: p for p in reversed(fatigue.points)}.values())[::-1]
 
 
-def fatigue_grid(results: Results) -> Grid | None:
+def shown_fatigue(results: Results) -> Table[PointFatigue] | None:
     """Each pin's worst point; None where nothing is assessed."""
     fatigue = results.fatigue
     if fatigue is None or not fatigue.points:
         return None
-    unit, stress = fatigue.unit, results.units.stress
-    head = ["Pin", "point", f"z [{results.units.length}]", f"damage per {unit}", f"life [{unit}s]"]
-    worst = worst_points(fatigue)
+    unit, open_pins, worst = fatigue.unit, fatigue.not_decided, worst_points(fatigue)
+
+    def least(p: PointFatigue) -> str:
+        return "≥ " if p.pin in open_pins else ""
+
+    def damage(p: PointFatigue) -> str:
+        return least(p) + _or_infinite(p.damage) if p.damage or least(p) else "none"
+
+    def life(p: PointFatigue) -> str:
+        if p.pin not in open_pins:
+            return life_words(p.life)
+        return DASH if p.life is None else f"≤ {life_words(p.life)}"
+
+    def life_at(k: int) -> Callable[[PointFatigue], str]:
+        most = dict.fromkeys(open_pins, "≤ ")
+        return lambda p: most.get(p.pin, "") + life_words(p.lives[k]) if p.lives else DASH
+
     scattered = any(p.lives for p in fatigue.points)
-    instead = any(p.method != fatigue.method for p in worst)
-    head += [f"at {p}" for p in LIFE_PROBABILITIES] if scattered else []
-    head += ["utilisation"] if fatigue.life is not None else []
-    head += [f"amplitude [{stress}]", f"mean [{stress}]"]
-    head += ["method"] if instead else []
-    head += ["normal of the plane"] if any(p.normal for p in worst) else []
-    body = []
-    for p in worst:
-        least, most = ("≥ ", "≤ ") if p.pin in fatigue.not_decided else ("", "")
-        lives = [most + life_words(x) for x in p.lives] or [DASH] * len(LIFE_PROBABILITIES)
-        damage = least + _or_infinite(p.damage) if p.damage or least else "none"
-        body.append(
-            [
-                *(p.pin, str(p.point), engineering(p.location[2], 3)),
-                *(damage, DASH if most and p.life is None else most + life_words(p.life)),
-                *(lives if scattered else []),
-                *([least + _per_cent(p.utilisation)] if fatigue.life is not None else []),
-                *(engineering(p.amplitude, 3), engineering(p.mean, 3)),
-                *([p.method] if instead else []),
-                *([", ".join(f"{x:.2f}" for x in p.normal) if p.normal else DASH]
-                  if head[-1] == "normal of the plane" else []),
-            ]
-        )  # fmt: skip
-    return Grid(head, body, [False, *[True] * (len(head) - 1)])
+    columns = [
+        *texts("Pin=pin"),
+        read_only("point", lambda p: str(p.point)),
+        read_only("z", lambda p: engineering(p.location[2], 3), "length"),
+        read_only(f"damage per {unit}", damage),
+        read_only(f"life [{unit}s]", life),
+        *[read_only(f"at {at}", life_at(k)) for k, at in enumerate(LIFE_PROBABILITIES)] * scattered,
+        *[read_only("utilisation", lambda p: least(p) + _per_cent(p.utilisation))]
+        * (fatigue.life is not None),
+        read_only("amplitude", lambda p: engineering(p.amplitude, 3), "stress"),
+        read_only("mean", lambda p: engineering(p.mean, 3), "stress"),
+        *[read_only("method", lambda p: p.method)] * any(p.method != fatigue.method for p in worst),
+        read_only("normal of the plane", _normal, drop_if_empty=True),
+    ]
+    return Table("fatigue", columns, worst)
+
+
+def _normal(p: PointFatigue) -> str:
+    return ", ".join(f"{x:.2f}" for x in p.normal) if p.normal else DASH
 
 
 def life_words(life: float | None) -> str:
@@ -166,36 +197,19 @@ def _so_far(pin: str, fatigue: Fatigue) -> str:
     return f"; the design life uses at least {_per_cent(worst.utilisation)}"
 
 
+# The keys of results.json.
+FATIGUE = fields(
+    "unit occurrences method failure_probability=probability design_life=life left_out not_decided"
+)
+POINT: list[Column[PointFatigue]] = [
+    *fields("pin point location cases method damage life utilisation amplitude mean note"),
+    *fields("plane_normal=normal"),
+    Column("life_at_probability", lambda p: dict(zip(("10", "50", "90"), p.lives, strict=False))),
+]
+
+
 def fatigue_json(fatigue: Fatigue | None) -> dict[str, Any] | None:
     """As in results.json."""
     if fatigue is None:
         return None
-    return {
-        "unit": fatigue.unit,
-        "occurrences": fatigue.occurrences,
-        "method": fatigue.method,
-        "failure_probability": finite(fatigue.probability),
-        "design_life": finite(fatigue.life),
-        "points": [_point(p) for p in fatigue.points],
-        "left_out": list(fatigue.left_out),
-        "not_decided": dict(fatigue.not_decided),
-    }
-
-
-def _point(p: PointFatigue) -> dict[str, Any]:
-    lives = {name: finite(x) for name, x in zip(("10", "50", "90"), p.lives, strict=False)}
-    return {
-        "pin": p.pin,
-        "point": p.point,
-        "location": [finite(x) for x in p.location],
-        "cases": list(p.cases),
-        "method": p.method,
-        "damage": finite(p.damage),
-        "life": finite(p.life),
-        "life_at_probability": lives,
-        "utilisation": finite(p.utilisation),
-        "amplitude": finite(p.amplitude),
-        "mean": finite(p.mean),
-        "note": p.note,
-        "plane_normal": None if p.normal is None else [finite(x) for x in p.normal],
-    }
+    return {**json_of(FATIGUE, fatigue), "points": [json_of(POINT, p) for p in fatigue.points]}

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
+from typing import Any
 
-from reports.data.results import HandCheck, PinResult, Results, Units
+from assess.margin import Margin
+from reports.data.results import PinResult, Results, Units
 from reports.format.files import markdown
-from reports.format.files.csv import Cell
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_range
 from reports.format.words import verdict_words
-from reports.tables.table import Table
+from reports.tables.column import PIN_AND_CASE, Column, Table, fields, unit_columns
 
-CHECK_FIELDS = ("name", "at", "time", "stress", "strength", "factor", "formula", "source")
-# The model's result for the same pin, with its verdict.
-MODEL_FIELDS = ("model", "max_von_mises", "safety_factor", "verdict")
-NUMERIC_CHECK_COLUMNS = ("stress", "strength", "factor", "time")
 HAND_CHECKS_NOTE = (
     "Hand checks use nominal stresses: from beam theory or averaged over a section, without stress "
     "concentration at corners and edges. They cover the whole pin, including excluded zones such "
@@ -27,25 +26,63 @@ HAND_CHECKS_NOTE = (
 )
 
 
-RANGE_END_COLUMNS = ("safety_factor_low", "safety_factor_high")  # of a singular row's factor
-LATER_CHECK_FIELDS = ("basis", "governs")  # later than the others, so last
-COLUMNS = (
-    "pin",
-    "case",
-    "check",
-    *CHECK_FIELDS[1:],
-    *MODEL_FIELDS,
-    "stress_unit",
-    "time_unit",
-    *RANGE_END_COLUMNS,
-    *LATER_CHECK_FIELDS,
-)
+@dataclass(frozen=True)
+class CheckRow:
+    """A hand check of a pin in a case; without a check, the model's result for people."""
+
+    pin: PinResult
+    check: Margin | None
+    units: Units
 
 
-def hand_check_rows(results: Results) -> Table:
+def _check(
+    name: str, dimension: str, heading: str, model: Callable[[CheckRow], str], **more: Any
+) -> Column[CheckRow]:
+    """An attribute of the check: "attribute" or "key=attribute". model: what people read of the
+    model's result there.
+    """
+    key, _, attribute = name.rpartition("=")
+
+    def text(row: CheckRow) -> str:
+        return model(row) if row.check is None else of_check.shown(row)
+
+    of_check = Column[CheckRow](
+        key or attribute, attrgetter(f"check.{attribute}"), dimension, heading, **more
+    )
+    return replace(of_check, text=text)
+
+
+COLUMNS: list[Column[CheckRow]] = [
+    *PIN_AND_CASE,
+    Column("check", lambda row: row.check and row.check.method, "", "check",
+           lambda row: row.check.shown if row.check else _model(row.pin), numeric=False),
+    _check("at", "", "location", lambda row: _location(row), numeric=False),
+    _check(
+        "time", "time", "time",
+        lambda row: DASH if row.pin.time is None else short(row.pin.time), drop_if_empty=True
+    ),
+    _check("stress=demand", "stress", "stress", lambda row: engineering(row.pin.max_von_mises)),
+    _check("strength=allowable", "stress", "strength", lambda row: "yield"),
+    _check("factor=safety_factor", "", "factor", lambda row: _factor(row.pin)),
+    _check("formula", "", "stress from", lambda row: "elasticity", numeric=False),
+    _check("source=clause", "", "source", lambda row: DASH, numeric=False),
+    # The model's result for the same pin, with its verdict.
+    *fields("pin.model"),
+    *fields("pin.max_von_mises", "stress"),
+    *fields("pin.safety_factor pin.verdict"),
+    *unit_columns("stress time"),
+    Column("safety_factor_low", lambda row: (row.pin.safety_factor_interval or (None,))[0]),
+    Column("safety_factor_high", lambda row: (row.pin.safety_factor_interval or (None,))[-1]),
+    *fields("check.basis check.governs"),
+]  # fmt: skip
+
+
+def hand_checks_table(results: Results) -> Table[CheckRow]:
     """Every check of every pin and case, with all digits."""
-    rows = _rows([pin for pin in results.pins if pin.hand_checks], results.units)
-    return Table.of("hand_checks", COLUMNS, rows)
+    rows = [
+        CheckRow(pin, check, results.units) for pin in results.pins for check in pin.hand_checks
+    ]
+    return Table("hand_checks", COLUMNS, rows)
 
 
 def write_hand_checks(results: Results, directory: Path) -> None:
@@ -56,71 +93,29 @@ def write_hand_checks(results: Results, directory: Path) -> None:
     units = results.units
     parts = [f"# Hand checks: {markdown.escaped(results.title)}", HAND_CHECKS_NOTE]
     for pin in checked:
-        title, (head, body, numeric) = f"{pin.pin}, {pin.case}", hand_check_table(pin, units)
-        parts += [f"## {markdown.escaped(title)}", markdown.table(head, body, numeric)]
+        title, table = f"{pin.pin}, {pin.case}", pin_checks(pin, units)
+        parts += [f"## {markdown.escaped(title)}", table.grid(units).markdown()]
     (directory / "hand_checks.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
-def hand_check_table(pin: PinResult, units: Units) -> tuple[list[str], list[list[str]], list[bool]]:
-    """Head, rows and numeric columns for display: the model's result, then every check.
-
-    The time column is omitted if no row has a time.
-    """
-    headings = {
-        "name": "check",
-        "at": "location",
-        "time": f"time [{units.time}]",
-        "stress": f"stress [{units.stress}]",
-        "strength": f"strength [{units.stress}]",
-        "factor": "factor",
-        "formula": "stress from",
-        "source": "source",
-    }
-    if pin.time is None and all(check.time is None for check in pin.hand_checks):
-        headings.pop("time")
-    rows = [_model(pin, units), *(_check(check) for check in pin.hand_checks)]
-    names = list(headings)
-    body = [[row[name] for name in names] for row in rows]
-    return list(headings.values()), body, [name in NUMERIC_CHECK_COLUMNS for name in names]
+def pin_checks(pin: PinResult, units: Units) -> Table[CheckRow]:
+    """For people: the model's result, then every check."""
+    rows = [CheckRow(pin, check, units) for check in (None, *pin.hand_checks)]
+    return Table("hand_checks", COLUMNS, rows)
 
 
-def _model(pin: PinResult, units: Units) -> dict[str, str]:
-    where = DASH
-    if pin.location is not None:
-        place = components(pin.location, max(map(abs, pin.location)))
-        where = f"x, y, z = {', '.join(place)} {units.length}"
+def _model(pin: PinResult) -> str:
     outside = ", outside the excluded zones" if pin.verdict == "singular" else ""
-    verdict = verdict_words(pin.verdict, pin.yields)
-    return {
-        "name": f"{pin.model} model, maximum von Mises stress{outside}",
-        "at": where,
-        "time": DASH if pin.time is None else short(pin.time),
-        "stress": engineering(pin.max_von_mises),
-        "strength": "yield",
-        "factor": f"{factor_range(pin)} ({verdict})",
-        "formula": "elasticity",
-        "source": DASH,
-    }
+    return f"{pin.model} model, maximum von Mises stress{outside}"
 
 
-def _check(check: HandCheck) -> dict[str, str]:
-    return {
-        "name": check.shown,
-        "at": check.at,
-        "time": DASH if check.time is None else short(check.time),
-        "stress": engineering(check.stress),
-        "strength": engineering(check.strength),
-        "factor": engineering(check.factor),
-        "formula": check.formula,
-        "source": check.source,
-    }
+def _location(row: CheckRow) -> str:
+    location = row.pin.location
+    if location is None:
+        return DASH
+    place = components(location, max(map(abs, location)))
+    return f"x, y, z = {', '.join(place)} {row.units.length}"
 
 
-def _rows(checked: list[PinResult], units: Units) -> Iterator[list[Cell]]:
-    for pin in checked:
-        model = [getattr(pin, name) for name in MODEL_FIELDS]
-        for check in pin.hand_checks:
-            own = [getattr(check, name) for name in CHECK_FIELDS]
-            ends = pin.safety_factor_interval or (None, None)
-            added = [getattr(check, name) for name in LATER_CHECK_FIELDS]
-            yield [pin.pin, pin.case, *own, *model, units.stress, units.time, *ends, *added]
+def _factor(pin: PinResult) -> str:
+    return f"{factor_range(pin)} ({verdict_words(pin.verdict, pin.yields)})"

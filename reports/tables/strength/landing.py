@@ -2,21 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from reports.data.results import LandingRange, Results
 from reports.format.files import markdown
-from reports.format.files.csv import Cell
-from reports.format.grid import Grid
 from reports.format.numbers import engineering, short
-from reports.tables.table import Table
-
-COLUMNS = (
-    *("pin", "case", "impulse_time", "velocity_change", "force", "max_von_mises"),
-    *("safety_factor", "meets_required", "verdict", "safety_factor_low", "safety_factor_high"),
-    "pulse",
-)
+from reports.tables.column import Column, Grid, Table, fields, read_only, texts
 
 LANDING_NOTE = (
     "An unconverged row decides nothing. Factors of a singular row are those outside the excluded "
@@ -25,9 +17,56 @@ LANDING_NOTE = (
 )
 
 
-def landing_table(results: Results) -> Table:
+@dataclass(frozen=True)
+class LandingPoint:
+    """Point number k of the range of a pin in a case."""
+
+    of: LandingRange
+    k: int
+    required: float | None
+
+    @property
+    def factor(self) -> float | None:
+        """The factor of safety."""
+        factors = self.of.safety_factor
+        return None if factors is None else float(factors[self.k])
+
+    @property
+    def meets(self) -> bool | None:
+        """Whether the required factor is met with the error."""
+        if self.factor is None or self.required is None:
+            return None
+        return _meets(self.of, self.factor / self.required)
+
+    def end(self, k: int) -> float | None:
+        """An end of the interval of a singular row's factor."""
+        if self.factor is None or self.of.spread is None:
+            return None
+        return self.of.spread[k] * self.factor
+
+
+def _array(key: str, dimension: str) -> Column[LandingPoint]:
+    return Column(key, lambda row: float(getattr(row.of, key)[row.k]), dimension)
+
+
+COLUMNS: list[Column[LandingPoint]] = [
+    *fields("of.pin of.case"),
+    _array("impulse_time", "time"),
+    _array("velocity_change", "velocity"),
+    _array("force", "force"),
+    _array("max_von_mises", "stress"),
+    *fields("safety_factor=factor meets_required=meets of.verdict"),
+    Column("safety_factor_low", lambda row: row.end(0)),
+    Column("safety_factor_high", lambda row: row.end(1)),
+    Column("pulse", lambda row: row.of.pulses[row.k]),
+]
+
+
+def landing_table(results: Results) -> Table[LandingPoint]:
     """Every pin at every combination of impulse time, velocity change and pulse."""
-    return Table.of("landing_range", COLUMNS, _rows(results))
+    required = results.required_safety_factor
+    rows = [LandingPoint(r, k, required) for r in results.landing for k in range(len(r.force))]
+    return Table("landing_range", COLUMNS, rows)
 
 
 def write_landing(results: Results, directory: Path) -> None:
@@ -50,7 +89,7 @@ def landing_tables(results: Results) -> str:
     parts = []
     for title, grid in landing_blocks(results):
         parts.append(f"## {markdown.escaped(title)}")
-        parts.append(markdown.table(grid.head, grid.body, grid.numeric))
+        parts.append(grid.markdown())
     return "\n\n".join(parts)
 
 
@@ -63,39 +102,26 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
         points = list(zip(first.velocity_change.tolist(), first.pulses, strict=True))
         for speed, pulse in dict.fromkeys(points):
             here = [i for i, point in enumerate(points) if point == (speed, pulse)]
-            head = ["pin", "verdict"]
-            head += [f"{short(first.impulse_time[i])} {units.time}" for i in here]
-            body = [[r.pin, r.verdict, *(_shown(r, _factors(r)[i]) for i in here)] for r in members]
+            columns = [
+                *texts("pin verdict"),
+                *(_at(i, f"{short(first.impulse_time[i])} {units.time}") for i in here),
+            ]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
             title += f", {pulse} pulse" if len(set(first.pulses)) > 1 else ""
-            blocks.append((title, Grid(head, body, [False, False, *[True] * len(here)])))
+            blocks.append((title, Table("landing", columns, members).grid(units)))
     return blocks
 
 
-def _shown(r: LandingRange, factor: float | None) -> str:
-    if factor is None or r.spread is None:
-        return engineering(factor, 3)
-    return " to ".join(engineering(part * factor, 3) for part in r.spread)
+def _at(i: int, heading: str) -> Column[LandingRange]:
+    """The factors of safety at a point, of a singular row their interval."""
 
+    def text(r: LandingRange) -> str:
+        factor = None if r.safety_factor is None else float(r.safety_factor[i])
+        if factor is None or r.spread is None:
+            return engineering(factor, 3)
+        return " to ".join(engineering(part * factor, 3) for part in r.spread)
 
-def _factors(r: LandingRange) -> list[float | None]:
-    if r.safety_factor is None:
-        return [None] * len(r.force)
-    return [float(x) for x in r.safety_factor]
-
-
-def _rows(results: Results) -> Iterator[list[Cell]]:
-    required = results.required_safety_factor
-    for r in results.landing:
-        for i, factor in enumerate(_factors(r)):
-            meets = None
-            if factor is not None and required is not None:
-                meets = _meets(r, factor / required)
-            ends = (None, None) if factor is None or r.spread is None else r.spread
-            values = (r.impulse_time, r.velocity_change, r.force, r.max_von_mises)
-            numbers = (float(v[i]) for v in values)
-            low, high = (None if end is None or factor is None else end * factor for end in ends)
-            yield [r.pin, r.case, *numbers, factor, meets, r.verdict, low, high, r.pulses[i]]
+    return read_only(heading, text)
 
 
 def _meets(r: LandingRange, part: float) -> bool | None:

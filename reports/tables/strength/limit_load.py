@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import Any
 
-from assess.plastic.records import LimitLoad
+from assess.plastic.records import LimitLoad, LoadCurve
 from reports.data.results import PinResult, Results
-from reports.format.grid import Grid
-from reports.format.numbers import DASH, engineering, finite
-from reports.tables.table import Table
+from reports.format.numbers import DASH, engineering
+from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only
 
 LIMIT_LOAD_NOTE = (
     "A pin whose safety factor is below one yields somewhere, which need not matter. It collapses "
@@ -19,7 +17,28 @@ LEFT_OUT_NOTE = (
     "Left out: fracture, buckling, large displacements, and what flow does to the pressures of "
     "lugs."
 )
-COLUMNS = ("pin", "case", "mesh", "load_factor", "displacement", "permanent_set")
+COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
+    Column("pin", lambda row: row[0].pin),
+    Column("case", lambda row: row[0].case),
+    Column("mesh", lambda row: len(row[1].meshes)),
+    Column("load_factor", lambda row: _curve(row[1]).factor),
+    Column("displacement", lambda row: _curve(row[1]).displacement, "length"),
+    Column("permanent_set", lambda row: _curve(row[1]).permanent, "length"),
+]
+LIMIT_COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
+    read_only("pin", lambda row: row[0].pin, numeric=False),
+    read_only("case", lambda row: row[0].case, numeric=False),
+    read_only("under its loads", lambda row: limit_word(row[1]), numeric=False),
+    read_only("collapses at × loads", lambda row: limit_range(row[1])),
+    read_only("by", lambda row: row[1].method, numeric=False),
+    read_only("permanent set", lambda row: engineering(row[1].permanent_set, 3), "length", rank=1),
+    read_only("after × loads", lambda row: engineering(row[1].permanent_at, 3), rank=2),
+]
+
+LIMIT_LOAD = fields(  # the keys of results.json
+    "lower upper method carries permanent_set permanent_set_factor=permanent_at hardening seconds "
+    "meshes note"
+)
 
 
 def limit_rows(results: Results) -> list[tuple[PinResult, LimitLoad]]:
@@ -38,26 +57,9 @@ def limit_word(limit: LimitLoad) -> str:
     return "bends" if limit.carries else "collapses"
 
 
-def limit_grid(results: Results) -> Grid | None:
-    """A row each; None without any."""
-    length = results.units.length
-    body = [
-        [
-            pin.pin,
-            pin.case,
-            limit_word(limit),
-            limit_range(limit),
-            limit.method,
-            engineering(limit.permanent_set, 3),
-            engineering(limit.permanent_at, 3),
-        ]
-        for pin, limit in limit_rows(results)
-    ]
-    if not body:
-        return None
-    head = ["pin", "case", "under its loads", "collapses at × loads", "by"]
-    head += [f"permanent set [{length}]", "after × loads"]
-    return Grid(head, body, [False, False, False, True, False, True, True])
+def limits_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:
+    """A row each, for people."""
+    return Table("limits", LIMIT_COLUMNS, limit_rows(results))
 
 
 def limit_range(limit: LimitLoad) -> str:
@@ -76,35 +78,17 @@ def limit_notes(results: Results) -> list[str]:
     ]
 
 
-def limit_load_table(results: Results) -> Table:
+def limit_load_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:
     """Load factor against displacement on the finest mesh."""
-    rows = [
-        (pin.pin, pin.case, len(limit.meshes), *step)
-        for pin, limit in limit_rows(results)
-        if limit.curve is not None
-        for step in zip(
-            limit.curve.factor.tolist(),
-            limit.curve.displacement.tolist(),
-            limit.curve.permanent.tolist(),
-            strict=True,
-        )
-    ]
-    return Table.of("limit_load", COLUMNS, rows)
+    rows = [(pin, limit) for pin, limit in limit_rows(results) if limit.curve is not None]
+    return ArrayTable("limit_load", COLUMNS, rows)
+
+
+def _curve(limit: LimitLoad) -> LoadCurve:
+    assert limit.curve is not None
+    return limit.curve
 
 
 def limit_load_json(limit: LimitLoad | None) -> dict[str, Any] | None:
     """For results.json; the curve is in limit_load.csv."""
-    if limit is None:
-        return None
-    return {
-        "lower": finite(limit.lower),
-        "upper": finite(limit.upper),
-        "method": limit.method,
-        "carries": None if limit.carries is None else bool(limit.carries),
-        "permanent_set": finite(limit.permanent_set),
-        "permanent_set_factor": finite(limit.permanent_at),
-        "hardening": bool(limit.hardening),
-        "seconds": finite(limit.seconds),
-        "meshes": [asdict(mesh) for mesh in limit.meshes],
-        "note": limit.note,
-    }
+    return None if limit is None else json_of(LIMIT_LOAD, limit)

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass, replace
 
-from assess.strength.margin import RATIO_DIMENSION, PinMargin
+from assess.margin import RATIO_DIMENSION, Margin, PinMargin
+from assess.strength.bending_arms import BendingArms
 from reports.data.governing import governing, skipped
-from reports.data.results import Results
-from reports.format.grid import Grid
-from reports.format.numbers import DASH, engineering, finite, short
+from reports.data.results import Results, Units
+from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
-from reports.tables.table import Table
+from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
-COLUMNS = ("pin", "case", "method", "clause", "at", "level", "demand", "allowable", "factor",
-           "utilisation", "margin", "unit", "time", "basis", "not_made", "governs")  # fmt: skip
-
-_SHOWN = ("pin", "case", "check", "margin", "utilisation", "loads", "at", "time", "demand",
-          "allowable", "clause")  # fmt: skip
-MARGIN_HEADINGS = {name: name for name in _SHOWN}
-NUMERIC_MARGIN_COLUMNS = ("time", "demand", "allowable", "utilisation", "margin")
+DISPLAY_ORDER = ("pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand",
+                 "allowable", "clause")  # fmt: skip
 MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case beside the von Mises stress against yield, which the safety factors above judge. "
@@ -33,68 +29,116 @@ BENDING_ARMS_NOTE = (
     "as EN 1993-1-8 takes it, and concentrated at the band's middle, next to that of the joint "
     "model. Above 1, the formula is conservative."
 )
-BENDING_ARM_COLUMNS = ("pin", "case", "time", "layout", "moment_even", "moment_concentrated",
-                       "moment_joint", "joint_model", "moment_unit")  # fmt: skip
 
 
-def margins_table(results: Results) -> Table:
+@dataclass(frozen=True)
+class MarginRow:
+    """A margin of a pin in a case, with the units of the results."""
+
+    pin: str
+    case: str
+    margin: Margin
+    units: Units
+
+    @property
+    def unit(self) -> str:
+        """The unit of demand and allowable."""
+        dimension = self.margin.dimension
+        return dimension if dimension == RATIO_DIMENSION else unit_name(dimension, self.units)
+
+    def with_unit(self, value: float | None) -> str:
+        """A demand or an allowable, for people."""
+        unit = "" if self.unit == RATIO_DIMENSION else f" {self.unit}"
+        return f"{engineering(value)}{unit}"
+
+
+@dataclass(frozen=True)
+class ArmsRow:
+    """Bending moments of a pin in a case, with the units of the results."""
+
+    arms: BendingArms
+    units: Units
+
+
+def _dimension(row: MarginRow) -> str:
+    return row.margin.dimension
+
+
+COLUMNS: list[Column[MarginRow]] = [
+    *texts("pin"),
+    Column("case", lambda row: row.case, "", "case", lambda row: row.case or DASH, numeric=False),
+    Column("method", lambda row: row.margin.method, "", "check",
+           lambda row: row.margin.shown, numeric=False),
+    Column("clause", lambda row: row.margin.clause, heading="clause", numeric=False, rank=3),
+    Column("at", lambda row: row.margin.at, "", "at", lambda row: row.margin.at or DASH,
+           numeric=False, rank=2, drop_if_empty=True),
+    Column("level", lambda row: row.margin.level, "", "loads",
+           lambda row: f"{row.margin.level}\u00a0×\u00a0{short(row.margin.factor)}",
+           numeric=False, rank=1),
+    Column("demand", lambda row: row.margin.demand, _dimension, "demand",
+           lambda row: row.with_unit(row.margin.demand)),
+    Column("allowable", lambda row: row.margin.allowable, _dimension, "allowable",
+           lambda row: row.with_unit(row.margin.allowable)),
+    Column("factor", lambda row: row.margin.factor),
+    Column("utilisation", lambda row: row.margin.utilisation, "", "utilisation",
+           lambda row: _per_cent(row.margin.utilisation)),
+    Column("margin", lambda row: row.margin.margin, "", "margin",
+           lambda row: _signed(row.margin.margin)),
+    *fields("unit"),
+    Column("time", lambda row: row.margin.time, "time", "time", drop_if_empty=True),
+    *fields("margin.basis"),
+    Column("not_made", lambda row: f"needs {row.margin.needs}" if row.margin.needs else ""),
+    *fields("margin.governs"),
+]  # fmt: skip
+ARM_COLUMNS: list[Column[ArmsRow]] = [
+    *texts("arms.pin arms.case"),
+    *fields("arms.time", "time"),
+    *texts("arms.layout"),
+    Column("moment_even", lambda row: row.arms.even, "moment", "even"),
+    Column("moment_concentrated", lambda row: row.arms.concentrated, "moment", "concentrated"),
+    Column("moment_joint", lambda row: row.arms.joint, "moment", "joint model"),
+    *fields("joint_model=arms.model"),
+    Column("moment_unit", lambda row: unit_name("moment", row.units)),
+    read_only("even / model", lambda row: _over_joint(row, row.arms.even)),
+    read_only("concentrated / model", lambda row: _over_joint(row, row.arms.concentrated)),
+]
+
+
+def _rows(found: Iterable[PinMargin], results: Results) -> list[MarginRow]:
+    return [MarginRow(m.pin, m.case, m.margin, results.units) for m in found]
+
+
+def margins_table(results: Results) -> Table[MarginRow]:
     """A row for every check of every pin and case, with all digits."""
-    rows = ([_row(found, results)[name] for name in COLUMNS] for found in results.margins)
-    return Table.of("margins", COLUMNS, rows, mixed=("demand", "allowable"))
+    return Table("margins", COLUMNS, _rows(results.margins, results))
 
 
-def margins_json(results: Results) -> list[dict[str, Any]]:
-    """The same for results.json."""
-    return [_row(found, results) for found in results.margins]
+def _shown(
+    found: Iterable[PinMargin], results: Results, without: Collection[str]
+) -> Table[MarginRow]:
+    columns = [c for c in in_order(COLUMNS, DISPLAY_ORDER) if c.key not in without]
+    return Table("margins", columns, _rows(found, results))
 
 
-def _row(found: PinMargin, results: Results) -> dict[str, Any]:
-    m = found.margin
-    return {
-        "pin": found.pin,
-        "case": found.case,
-        "method": m.method,
-        "clause": m.clause,
-        "at": m.at,
-        "level": m.level,
-        "demand": finite(m.demand),
-        "allowable": finite(m.allowable),
-        "factor": finite(m.factor),
-        "utilisation": finite(m.utilisation),
-        "margin": finite(m.margin),
-        "unit": m.dimension
-        if m.dimension == RATIO_DIMENSION
-        else unit_name(m.dimension, results.units),
-        "time": finite(m.time),
-        "basis": m.basis,
-        "not_made": f"needs {m.needs}" if m.needs else "",
-        "governs": m.governs,
-    }
+def governing_table(results: Results) -> Table[MarginRow]:
+    """The governing check of every pin and case, the worst first, for people."""
+    return _shown(governing(results), results, without=("clause",))
 
 
-def governing_grid(results: Results) -> Grid | None:
-    """The governing check of every pin and case, the worst first; None where no check was made."""
-    return _grid(governing(results), results, without=("clause",))
-
-
-def worst_grid(results: Results) -> Grid | None:
+def worst_table(results: Results) -> Table[MarginRow]:
     """The same in brief, of the worst case of each pin; for terminals."""
     worst: dict[str, PinMargin] = {}
     for found in governing(results):
         worst.setdefault(found.pin, found)
-    if not worst:
-        return None
-    rows = [_cells(found, results) for found in worst.values()]
-    names = ("pin", "case", "check", "margin", "utilisation", "loads", "at", "clause")
-    body = [[row[name] for name in names] for row in rows]
-    return Grid(list(names), body, [name in NUMERIC_MARGIN_COLUMNS for name in names])
+    table = _shown(worst.values(), results, without=("time", "demand", "allowable"))
+    return replace(table, columns=[replace(c, drop_if_empty=False) for c in table.columns])
 
 
-def margins_grid(results: Results, pin: str, case: str) -> Grid | None:
+def pin_margins(results: Results, pin: str, case: str) -> Table[MarginRow]:
     """All checks that were made of a pin in a case, the worst first, comparisons last."""
     own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
     order = sorted(own, key=lambda m: (not m.margin.governs, -m.used))
-    return _grid(order, results, without=("pin", "case"))
+    return _shown(order, results, without=("pin", "case"))
 
 
 def not_made_words(results: Results) -> list[str]:
@@ -117,68 +161,27 @@ def not_made_briefly(results: Results) -> str:
     return f"Checks skipped, missing: {needs}." if needs else ""
 
 
-def arms_table(results: Results) -> Table:
+def arms_table(results: Results) -> Table[ArmsRow]:
     """Bending moments of formulas and models, with all digits."""
-    unit = unit_name("moment", results.units)
-    rows = (
-        [a.pin, a.case, a.time, a.layout, a.even, a.concentrated, a.joint, a.model, unit]
-        for a in results.arms
-    )
-    return Table.of("bending_arms", BENDING_ARM_COLUMNS, rows)
+    rows = [ArmsRow(arms, results.units) for arms in results.arms]
+    return Table("bending_arms", ARM_COLUMNS, rows)
 
 
-def arms_grid(results: Results) -> Grid | None:
-    """The same for display, of the pins whose joint model has a moment."""
-    known = [a for a in results.arms if a.joint]
-    unit = unit_name("moment", results.units)
-    head = ["pin", "case", "layout", f"even [{unit}]", f"concentrated [{unit}]",
-            f"joint model [{unit}]", "even / model", "concentrated / model"]  # fmt: skip
-    body = [
-        [
-            a.pin,
-            a.case,
-            a.layout,
-            *(engineering(m) for m in (a.even, a.concentrated, a.joint)),
-            *(engineering(m / a.joint, 3) for m in (a.even, a.concentrated) if a.joint),
-        ]
-        for a in known
-    ]
-    return Grid(head, body, [False] * 3 + [True] * 5) if body else None
+def shown_arms(results: Results) -> Table[ArmsRow]:
+    """The same for people, of the pins whose joint model has a moment."""
+    table = arms_table(results)
+    return replace(table, rows=[row for row in table.rows if row.arms.joint])
 
 
-def _grid(found: list[PinMargin], results: Results, without: tuple[str, ...] = ()) -> Grid | None:
-    rows = [_cells(m, results) for m in found]
-    empty = {name for name in ("at", "time") if all(row[name] == DASH for row in rows)}
-    names = [n for n in MARGIN_HEADINGS if n not in without and n not in empty]
-    heads = {**MARGIN_HEADINGS, "time": f"time [{results.units.time}]"}
-    body = [[row[name] for name in names] for row in rows]
-    return (
-        Grid([heads[n] for n in names], body, [n in NUMERIC_MARGIN_COLUMNS for n in names])
-        if body
-        else None
-    )
+def _over_joint(row: ArmsRow, moment: float) -> str:
+    return engineering(moment / row.arms.joint, 3) if row.arms.joint else DASH
+
+
+def _per_cent(used: float | None) -> str:
+    return f"{engineering(None if used is None else 100.0 * used, 3)} %"
 
 
 def _signed(margin: float | None) -> str:
     if margin is not None and math.isinf(margin):
         return "+∞"
     return f"{'+' if (margin or 0.0) > 0.0 else ''}{engineering(margin, 3)}"
-
-
-def _cells(found: PinMargin, results: Results) -> dict[str, str]:
-    m = found.margin
-    unit = "" if m.dimension == RATIO_DIMENSION else f" {unit_name(m.dimension, results.units)}"
-    used = None if m.utilisation is None else 100.0 * m.utilisation
-    return {
-        "pin": found.pin,
-        "case": found.case or DASH,
-        "check": m.shown,
-        "at": m.at or DASH,
-        "time": DASH if m.time is None else short(m.time),
-        "loads": f"{m.level}\u00a0×\u00a0{short(m.factor)}",
-        "demand": f"{engineering(m.demand)}{unit}",
-        "allowable": f"{engineering(m.allowable)}{unit}",
-        "utilisation": f"{engineering(used, 3)} %",
-        "margin": _signed(m.margin),
-        "clause": m.clause,
-    }

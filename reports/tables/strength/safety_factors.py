@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from fea.support.records import JointRange
 from reports.data.decision import DEPENDS, limit, outcome, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results, Units
 from reports.format.files import markdown
-from reports.format.numbers import DASH, engineering, finite, ratio, short
+from reports.format.numbers import finite, ratio, short
 from reports.format.ranges import (
     error_range,
     factor_range,
@@ -27,204 +30,144 @@ from reports.format.words import (
     result_words,
     verdict_words,
 )
+from reports.tables.column import Column, Table, grid_of, in_order, unit_columns
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
-from reports.tables.table import Table
 
-Row = dict[str, str | float | None]
-COLUMNS = (
-    "pin",
-    "case",
-    "time",
-    "max_von_mises",
-    "error_estimate",
-    "safety_factor",
-    "required",
-    "meets_required",
-    "verdict",
-    "model",
-    "published_max_von_mises",
-    "ratio",
-    "published_safety_factor",
-    "note",
+DISPLAY_ORDER = (  # for people; columns that are not named here come last
+    *("pin", "case", "outcome", "safety_factor", "utilisation", "max_von_mises"),
+    *("error_estimate", "governs", "joint_high", BENEATH_CONTACT, "time", "verdict", "model"),
 )
-# After the units, so that columns of earlier versions keep their positions.
-LATER_COLUMNS = (
-    "yields",
-    *("max_von_mises_low", "max_von_mises_high", "safety_factor_low", "safety_factor_high"),
-    *("error_mesh", "error_time", "error_series", "error_model"),
-    *("error_cells", "joint_low", "joint_high", "joint_model", "joint_lugs"),
-    *("outcome", "utilisation", "margin_of_safety"),
-    "error_truncation",
-    "depends_on",
-    *("governs", "surface", "section", "beneath", "beneath_error", "reach", "reach_required"),
-    "length_unit",
-)
-TEXT_COLUMNS = ("pin", "case", "result", "governs", "verdict", "model")
-JOINT_RANGE_COLUMN = "joint_high"  # in whose place the whole range is shown
 
 
-def safety_factor_rows(results: Results) -> list[Row]:
-    """A row per pin and case; numbers in the study's units, None where there is none."""
-    required = finite(results.required_safety_factor)
-    return [
-        {
-            **safety_factor_row(pin, required),
-            "depends_on": _depends(pin, results.units),
-            "length_unit": results.units.length,
-        }
-        for pin in results.pins
-    ]
+@dataclass(frozen=True)
+class FactorRow:
+    """A pin in a case with the results that it is of."""
+
+    pin: PinResult
+    results: Results
+
+    @property
+    def required(self) -> float | None:
+        """The factor that is required."""
+        return finite(self.results.required_safety_factor)
+
+    @property
+    def units(self) -> Units:
+        return self.results.units
+
+    @property
+    def joint(self) -> JointRange | None:
+        """The range over what is not known of the joint."""
+        return self.pin.joint.range if self.pin.joint else None
+
+    @property
+    def used(self) -> float | None:
+        """Required over actual factor."""
+        factor = finite(self.pin.safety_factor)
+        return finite((self.required or 1.0) / factor) if factor else None
+
+    @property
+    def margin(self) -> float | None:
+        """Actual over required factor, less 1."""
+        factor = finite(self.pin.safety_factor)
+        return None if factor is None else factor / (self.required or 1.0) - 1.0
 
 
-def _depends(pin: PinResult, units: Units) -> str | None:
-    return depends_words(pin.depends_on, units) if outcome(pin) == DEPENDS else None
+def _end(name: str, end: int) -> Callable[[FactorRow], float | None]:
+    """An end of an interval of the row."""
+    return lambda row: (getattr(row.pin, name) or (None, None))[end]
 
 
-def display_rows(results: Results) -> list[Row]:
-    """The same for display, the worst first: text where a number may be an interval."""
-    required = limit(results)
-    return [
-        {
-            **safety_factor_row(pin, results.required_safety_factor),
-            "result": result_words(pin),
-            "error_estimate": error_range(pin),
-            "safety_factor": factor_range(pin),
-            "utilisation": utilisation_range(pin, required),
-            JOINT_RANGE_COLUMN: joint_range(pin),
-        }
-        for pin in worst_first(results)
-    ]
+def _error(part: str) -> Column[FactorRow]:
+    """A part of the error."""
+    return Column(f"error_{part}", lambda row: row.pin.error_parts.get(part), "stress")
 
 
-def safety_factor_row(pin: PinResult, required: float | None) -> Row:
-    """A row; numbers in the results' units, None where there is none."""
-    return {
-        "pin": pin.pin,
-        "case": pin.case,
-        "time": finite(pin.time),
-        "max_von_mises": finite(pin.max_von_mises),
-        "error_estimate": finite(pin.error_estimate),
-        "safety_factor": finite(pin.safety_factor),
-        "required": required,
-        "meets_required": None if pin.meets_required is None else _yes(pin.meets_required),
-        "verdict": pin.verdict,
-        "model": pin.model,
-        "published_max_von_mises": finite(pin.published_max_von_mises),
-        "ratio": ratio(pin.max_von_mises, pin.published_max_von_mises),
-        "published_safety_factor": finite(pin.published_safety_factor),
-        "note": pin.note,
-        "yields": None if pin.yields is None else _yes(pin.yields),
-        **_ends("max_von_mises", pin.max_von_mises_interval),
-        **_ends("safety_factor", pin.safety_factor_interval),
-        **{f"error_{part}": finite(value) for part, value in pin.error_parts.items()},
-        **_joint(pin),
-        **_places(pin),
-        "outcome": outcome(pin),
-        **_used(pin, required),
-    }
+def _contact(name: str, dimension: str, **more: Any) -> Column[FactorRow]:
+    """A number of what lies beneath contact."""
+    return Column(name, lambda row: _place(row, "contact", name), dimension, **more)
 
 
-def _used(pin: PinResult, required: float | None) -> Row:
-    factor, needed = finite(pin.safety_factor), required or 1.0
-    return {
-        "utilisation": finite(needed / factor) if factor else None,
-        "margin_of_safety": None if factor is None else factor / needed - 1.0,
-    }
+def _place(row: FactorRow, place: str, name: str) -> float | None:
+    """A number of one of the places; None where the row has no such place."""
+    return getattr(getattr(row.pin.places, place, None), name, None)
 
 
-def _ends(name: str, interval: tuple[float, float | None] | None) -> Row:
-    low, high = interval or (None, None)
-    return {f"{name}_low": finite(low), f"{name}_high": finite(high)}
+# Columns of later versions are at the end, so that those of earlier ones keep their positions.
+COLUMNS: tuple[Column[FactorRow], ...] = (
+    Column("pin", lambda row: row.pin.pin, heading="pin", numeric=False, in_json=True),
+    Column("case", lambda row: row.pin.case, heading="case", numeric=False, in_json=True),
+    Column("time", lambda row: row.pin.time, "time", "time",
+           rank=6, drop_if_empty=True, in_json=True),
+    Column("max_von_mises", lambda row: row.pin.max_von_mises, "stress", "max von Mises",
+           rank=1, in_json=True),
+    Column("error_estimate", lambda row: row.pin.error_estimate, "stress", "±",
+           lambda row: error_range(row.pin), rank=3, in_json=True),
+    Column("safety_factor", lambda row: row.pin.safety_factor, "", "safety factor",
+           lambda row: factor_range(row.pin), in_json=True),
+    Column("required", lambda row: row.required),
+    Column("meets_required", lambda row: row.pin.meets_required, in_json=True),
+    Column("verdict", lambda row: row.pin.verdict, "", "verdict",
+           lambda row: verdict_words(row.pin.verdict, row.pin.yields),
+           numeric=False, rank=7, in_json=True),
+    Column("model", lambda row: row.pin.model, heading="model",
+           numeric=False, rank=8, in_json=True),
+    Column("published_max_von_mises", lambda row: row.pin.published_max_von_mises, "stress"),
+    Column("ratio", lambda row: ratio(row.pin.max_von_mises, row.pin.published_max_von_mises)),
+    Column("published_safety_factor", lambda row: row.pin.published_safety_factor),
+    Column("note", lambda row: row.pin.note, in_json=True),
+    *unit_columns("stress time"),
+    Column("yields", lambda row: row.pin.yields, in_json=True),
+    Column("max_von_mises_low", _end("max_von_mises_interval", 0), "stress"),
+    Column("max_von_mises_high", _end("max_von_mises_interval", 1), "stress"),
+    Column("safety_factor_low", _end("safety_factor_interval", 0)),
+    Column("safety_factor_high", _end("safety_factor_interval", 1)),
+    *(_error(part) for part in ("mesh", "time", "series", "model", "cells")),
+    Column("joint_low", lambda row: row.joint and row.joint.max_von_mises[0], "stress"),
+    Column("joint_high", lambda row: row.joint and row.joint.max_von_mises[1], "stress", "joint",
+           lambda row: joint_range(row.pin), rank=4, drop_if_empty=True),
+    Column("joint_model", lambda row: row.joint and row.joint.model),
+    Column("joint_lugs", lambda row: row.joint and lugs_word(row.joint)),
+    Column("outcome", lambda row: outcome(row.pin), "", "result",
+           lambda row: result_words(row.pin), numeric=False, in_json=True),
+    Column("utilisation", lambda row: row.used, "", "utilisation",
+           lambda row: utilisation_range(row.pin, limit(row.results)), rank=2),
+    Column("margin_of_safety", lambda row: row.margin),
+    _error("truncation"),
+    Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
+           if outcome(row.pin) == DEPENDS else None),
+    Column("governs", lambda row: row.pin.places and row.pin.places.governs, "", "at",
+           numeric=False, rank=5, drop_if_empty=True),
+    Column("surface", lambda row: _place(row, "surface", "max_von_mises"), "stress"),
+    Column("section", lambda row: _place(row, "section", "max_von_mises"), "stress"),
+    _contact(BENEATH_CONTACT, "stress", heading="beneath", rank=5, drop_if_empty=True),
+    _contact("beneath_error", "stress"),
+    _contact("reach", "length"),
+    _contact("reach_required", "length"),
+    *unit_columns("length"),
+)  # fmt: skip
 
 
-def _joint(pin: PinResult) -> Row:
-    """The maximum over what is not known of the joint."""
-    over = pin.joint.range if pin.joint else None
-    low, high = over.max_von_mises if over else (None, None)
-    return {
-        "joint_low": finite(low),
-        "joint_high": finite(high),
-        "joint_model": over.model if over else None,
-        "joint_lugs": lugs_word(over) if over else None,
-    }
-
-
-def _places(pin: PinResult) -> Row:
-    places = pin.places
-    section, contact = (places.section, places.contact) if places else (None, None)
-    return {
-        "governs": places.governs if places else None,
-        "surface": finite(places.surface.max_von_mises) if places else None,
-        "section": finite(section.max_von_mises) if section else None,
-        **{
-            name: finite(getattr(contact, name)) if contact else None
-            for name in (BENEATH_CONTACT, "beneath_error", "reach", "reach_required")
-        },
-    }
-
-
-def _yes(value: bool) -> str:
-    return "yes" if value else "no"
-
-
-def shown_columns(rows: list[Row], results: Results) -> dict[str, str]:
-    """Columns for display with their headings; what governs, the range over the joint, what lies
-    beneath contact and the time only if there are any.
-    """
-    units, required = results.units, results.required_safety_factor
-    needed = "" if required is None else f" (≥ {short(required)})"
-    headings = {
-        "pin": "pin",
-        "case": "case",
-        "result": "result",
-        "safety_factor": f"safety factor{needed}",
-        "utilisation": "utilisation",
-        "max_von_mises": f"max von Mises [{units.stress}]",
-        "error_estimate": f"± [{units.stress}]",
-        "governs": "at",
-        JOINT_RANGE_COLUMN: f"joint [{units.stress}]",
-        BENEATH_CONTACT: f"beneath [{units.stress}]",
-        "time": f"time [{units.time}]",
-        "verdict": "verdict",
-        "model": "model",
-    }
-    empty = [
-        k
-        for k in ("governs", JOINT_RANGE_COLUMN, BENEATH_CONTACT, "time")
-        if all(row[k] in (None, DASH) for row in rows)
-    ]
-    return {name: text for name, text in headings.items() if name not in empty}
-
-
-def display_text(name: str, row: Row) -> str:
-    """A value of a row for display: four digits, a dash for no value."""
-    value = row[name]
-    if name == "verdict":
-        return verdict_words(str(value), row["yields"] == "yes")
-    if value is None:
-        return DASH
-    if isinstance(value, str):
-        return value
-    return short(value) if name == "time" else engineering(value)
-
-
-def safety_factors_table(results: Results) -> Table:
+def safety_factors_table(results: Results) -> Table[FactorRow]:
     """A row per pin and case, with all digits."""
-    units = results.units
-    return Table.of(
-        "safety_factors",
-        (*COLUMNS, "stress_unit", "time_unit", *LATER_COLUMNS),
-        (
-            [
-                *(row[n] for n in COLUMNS),
-                units.stress,
-                units.time,
-                *(row.get(n) for n in LATER_COLUMNS),
-            ]
-            for row in safety_factor_rows(results)
-        ),
-    )
+    return Table("safety_factors", COLUMNS, [FactorRow(pin, results) for pin in results.pins])
+
+
+def shown_factors(results: Results, without: Collection[str] = ()) -> Table[FactorRow]:
+    """The same for people, the worst first, in their order; without the columns of some keys."""
+    rows = [FactorRow(pin, results) for pin in worst_first(results)]
+    heads = {"safety_factor": f"safety factor{_required(results)}"}
+    shown = [
+        replace(c, heading=heads.get(c.key, c.heading)) for c in in_order(COLUMNS, DISPLAY_ORDER)
+    ]
+    table = Table("safety_factors", [c for c in shown if c.key not in without], rows)
+    return replace(table, columns=[column for column, _ in table.for_people()])
+
+
+def _required(results: Results) -> str:
+    required = results.required_safety_factor
+    return "" if required is None else f" (≥ {short(required)})"
 
 
 def write_safety_factors(results: Results, directory: Path) -> None:
@@ -235,22 +178,17 @@ def write_safety_factors(results: Results, directory: Path) -> None:
 
 def _markdown(everything: Results) -> str:
     results = detailed_rows(everything)
-    rows = display_rows(results)
-    columns = shown_columns(rows, results)
+    table = shown_factors(results)
     parts = [
         f"# Safety factors: {markdown.escaped(results.title)}",
         markdown.escaped(headline(everything)),
-        markdown.table(
-            tuple(columns.values()),
-            [[display_text(name, row) for name in columns] for row in rows],
-            [name not in TEXT_COLUMNS for name in columns],
-        ),
+        table.grid(results.units).markdown(),
         *([rest] if (rest := omitted_note(everything)) else []),
-        *reading(columns),
+        *reading(table),
         "\n".join(f"- {name}: {sentence}" for name, sentence in VERDICT_MEANINGS.items()),
     ]
-    if grid := published_maxima(results):
-        parts += ["## Published maxima", markdown.table(grid.head, grid.body, grid.numeric)]
+    if grid := grid_of(published_maxima(results), results.units):
+        parts += ["## Published maxima", grid.markdown()]
     if results.published_source:
         parts.append(f"Published values: {markdown.escaped(results.published_source)}")
     notes = [f"- {_note(pin)}" for pin in results.pins if pin.note or pin.why]
@@ -259,12 +197,12 @@ def _markdown(everything: Results) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def reading(columns: Iterable[str]) -> list[str]:
-    """How the table with these columns is to be read, a paragraph each."""
-    names = tuple(columns)
+def reading(table: Table[FactorRow]) -> list[str]:
+    """How the table is to be read, a paragraph each."""
+    names = table.keys
     return [
         RESULT_ROWS_NOTE,
-        *[JOINT_RANGE_NOTE] * (JOINT_RANGE_COLUMN in names),
+        *[JOINT_RANGE_NOTE] * ("joint_high" in names),
         *[BENEATH_CONTACT_NOTE] * (BENEATH_CONTACT in names),
     ]
 

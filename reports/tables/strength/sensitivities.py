@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 from reports.data.results import PinSensitivities, Results, Sensitivity, Units
-from reports.format.grid import Grid
-from reports.format.numbers import DASH, engineering, finite, short
+from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
-from reports.tables.table import Table
+from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts
 
-COLUMNS = ("pin", "case", "key", "value", "unit", "max_von_mises", "stress_per_unit",
-           "safety_factor", "factor_per_unit", "step", "factor_with_step", "one_sided")  # fmt: skip
-MIXED_UNIT_COLUMNS = ("value", "stress_per_unit", "factor_per_unit", "step")
-NUMBER_FIELDS = ("value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step")
+PARAMETER_KEYS = (  # of results.json
+    *("key", "unit", "value", "stress_per_unit", "factor_per_unit", "step", "factor_with_step"),
+)
+PIN_SENSITIVITIES = fields(
+    "pin case max_von_mises=maximum safety_factor=factor tied_places tied_times changing note"
+)
 MAX_SHOWN_ROWS = 8  # rows of a pin that are shown
 MAX_BRIEF_ROWS = 3
 MIN_SHOWN_EFFECT = 1e-3  # relative effect of what is shown
@@ -33,93 +35,80 @@ ONE_SIDED_NOTE = (
 )
 
 
-def sensitivities_table(results: Results) -> Table:
+@dataclass(frozen=True)
+class SensitivityRow:
+    """One parameter of a pin in a case, with the units of the results."""
+
+    of: PinSensitivities
+    by: Sensitivity
+    units: Units
+
+    @property
+    def unit(self) -> str:
+        """The unit of the parameter."""
+        u = self.units
+        if self.by.kind == "density":
+            return f"{u.force} {u.time}²/{u.length}⁴"
+        return unit_name(self.by.kind, u)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether something else may govern with a little more of anything."""
+        return bool(self.of.tied_places or self.of.tied_times or self.of.changing)
+
+
+COLUMNS: list[Column[SensitivityRow]] = [
+    *fields("of.pin of.case by.key by.value unit"),
+    *fields("max_von_mises=of.maximum", "stress"),
+    *fields("stress_per_unit=by.stress safety_factor=of.factor factor_per_unit=by.factor by.step"),
+    *fields("by.factor_with_step one_sided"),
+]
+
+
+def sensitivities_table(results: Results) -> Table[SensitivityRow]:
     """A row for each parameter of every pin, with all digits."""
-    rows = [
-        [row[name] for name in COLUMNS]
-        for found in results.sensitivities
-        for row in _rows(found, results.units)
-    ]
-    return Table.of("sensitivities", COLUMNS, rows, mixed=MIXED_UNIT_COLUMNS)
+    rows = [SensitivityRow(x, by, results.units) for x in results.sensitivities for by in x.rows]
+    return Table("sensitivities", COLUMNS, rows)
 
 
 def sensitivities_json(results: Results) -> list[dict[str, Any]]:
     """The same for results.json, by pin and case."""
+    parameters = in_order([c for c in COLUMNS if c.key in PARAMETER_KEYS], PARAMETER_KEYS)
     return [
         {
-            "pin": found.pin,
-            "case": found.case,
-            "max_von_mises": finite(found.maximum),
-            "safety_factor": finite(found.factor),
+            **json_of(PIN_SENSITIVITIES, found),
             "parameters": [
-                {name: row[name] for name in ("key", "unit", *NUMBER_FIELDS)}
-                for row in _rows(found, results.units)
+                json_of(parameters, SensitivityRow(found, by, results.units)) for by in found.rows
             ],
-            "tied_places": [list(place) for place in found.tied_places],
-            "tied_times": list(found.tied_times),
             "without": dict(found.without),
-            "changing": found.changing,
-            "note": found.note,
         }
         for found in results.sensitivities
     ]
 
 
-def _rows(found: PinSensitivities, units: Units) -> list[dict[str, Any]]:
-    return [
-        {
-            "pin": found.pin,
-            "case": found.case,
-            "key": each.key,
-            "value": finite(each.value),
-            "unit": _unit(each, units),
-            "max_von_mises": finite(found.maximum),
-            "stress_per_unit": finite(each.stress),
-            "safety_factor": finite(found.factor),
-            "factor_per_unit": finite(each.factor),
-            "step": finite(each.step),
-            "factor_with_step": finite(each.factor_with_step),
-            "one_sided": _tied(found),
-        }
-        for each in found.rows
-    ]
-
-
-def _tied(found: PinSensitivities) -> bool:
-    return bool(found.tied_places or found.tied_times or found.changing)
-
-
-def _unit(each: Sensitivity, units: Units) -> str:
-    if each.kind == "density":
-        return f"{units.force} {units.time}²/{units.length}⁴"
-    return unit_name(each.kind, units)
-
-
-def sensitivities_grid(results: Results, most: int = MAX_SHOWN_ROWS) -> Grid | None:
-    """A row for each dimension that matters, the largest effects of each pin first."""
-    length, stress = results.units.length, results.units.stress
+def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[SensitivityRow]:
+    """A row for each dimension that matters, the largest effects of each pin first, for people."""
+    columns: list[Column[SensitivityRow]] = [
+        *texts("of.pin of.case dimension=by.key"),
+        read_only("now", lambda row: short(row.by.value), "length"),
+        read_only("more by", lambda row: f"+{short(row.by.step)}", "length"),
+        read_only(
+            "safety factor", lambda row: engineering(row.of.factor, 3), rank=1, drop_if_empty=True
+        ),
+        read_only(
+            "changes by", lambda row: _change(row.by.factor, row.by.step), rank=2,
+            drop_if_empty=True,
+        ),
+        read_only(
+            "stress changes by", lambda row: _change(row.by.stress, row.by.step), "stress", rank=3
+        ),
+    ]  # fmt: skip
     rows = [
-        [
-            found.pin,
-            found.case,
-            each.key,
-            short(each.value),
-            f"+{short(each.step)}",
-            engineering(found.factor, 3),
-            _change(each.factor, each.step),
-            _change(each.stress, each.step),
-        ]
+        SensitivityRow(found, by, results.units)
         for found in results.sensitivities
-        for each in _shown(found)[:most]
+        for by in _shown(found)[:most]
     ]
-    if not rows:
-        return None
-    head = ["pin", "case", "dimension", f"now [{length}]", f"more by [{length}]", "safety factor",
-            "changes by", f"stress changes by [{stress}]"]  # fmt: skip
-    shown = [k for k in range(len(head)) if {row[k] for row in rows} != {DASH}]
-    return Grid(
-        [head[k] for k in shown], [[row[k] for k in shown] for row in rows], [k > 2 for k in shown]
-    )
+    return Table("sensitivities", columns, rows)
 
 
 def _shown(found: PinSensitivities) -> list[Sensitivity]:

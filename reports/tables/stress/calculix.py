@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import asdict
+from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from assess.opinion.opinions import Opinion
-from reports.data.results import Results
+from assess.opinion.opinions import ContactOpinion, Opinion
+from reports.data.results import Results, Units
 from reports.format.files.csv import Cell
-from reports.format.numbers import finite
-from reports.tables.table import Table
-
-COLUMNS = (
-    *("pin", "case", "unknowns", "displacement_difference", "von_mises_difference"),
-    *("max_von_mises_same_mesh", "max_von_mises_calculix", "max_von_mises", "error_estimate"),
-    *("calculix_over_answer", "agrees", "unit", "note"),
-    *("bending_moment", "bending_moment_calculix", "load_elsewhere", "mesh_change"),
-    *("force_unit", "length_unit"),
-)
-OPINION_LOAD_COLUMNS = (
-    *("pin", "case", "connection", "z_start", "z_end", "line_load", "line_load_calculix"),
-    *("length_unit", "force_unit"),
-)
+from reports.tables.column import Column, Table, fields, json_of, unit_columns
 
 
 def opinions_of(results: Results) -> list[Opinion]:
@@ -31,11 +18,92 @@ def opinions_of(results: Results) -> list[Opinion]:
     return [pin.second_opinion for pin in results.pins if pin.second_opinion]
 
 
-def opinion_tables(results: Results) -> list[Table]:
+@dataclass(frozen=True)
+class OpinionRow:
+    """An opinion with the units of the results."""
+
+    of: Opinion
+    units: Units
+
+
+def _contact(key: str, cell: Callable[[ContactOpinion], Cell], dimension: str = "") -> Column[Any]:
+    """A column of those in contact."""
+    return Column(key, lambda row: row.of.contact and cell(row.of.contact), dimension)
+
+
+def _in_contact(unit: str) -> Column[OpinionRow]:
+    """A unit that only those in contact need."""
+    return Column(f"{unit}_unit", lambda row: getattr(row.units, unit) if row.of.contact else None)
+
+
+COLUMNS: list[Column[OpinionRow]] = [
+    *fields("of.pin of.case"),
+    Column("unknowns", lambda row: row.of.unknowns or None),
+    *fields("displacement_difference=of.displacement von_mises_difference=of.stress"),
+    *fields("max_von_mises_same_mesh=of.ours max_von_mises_calculix=of.theirs", "stress"),
+    *fields("max_von_mises=of.answer error_estimate=of.error", "stress"),
+    Column("calculix_over_answer", lambda row: over_answer(row.of)),
+    Column("agrees", lambda row: not row.of.complaint),
+    *fields("unit=units.stress note=of.complaint"),
+    _contact("bending_moment", lambda c: c.our_moment, "moment"),
+    _contact("bending_moment_calculix", lambda c: c.moment, "moment"),
+    _contact("load_elsewhere", lambda c: c.elsewhere),
+    _contact("mesh_change", lambda c: c.stress_change),
+    _in_contact("force"),
+    _in_contact("length"),
+]
+
+
+@dataclass(frozen=True)
+class LoadRow:
+    """The load per length of a band between two ends, ours and CalculiX's."""
+
+    of: Opinion
+    connection: str
+    z_start: float
+    z_end: float
+    ours: float
+    theirs: float
+    units: Units
+
+
+OPINION_LOAD_COLUMNS: list[Column[LoadRow]] = [
+    *fields("of.pin of.case connection"),
+    *fields("z_start z_end", "length"),
+    *fields("line_load=ours line_load_calculix=theirs", "force per length"),
+    *unit_columns("length force"),
+]
+
+
+# The keys of results.json.
+OPINION = fields(
+    "unknowns displacement_difference=displacement von_mises_difference=stress "
+    "max_von_mises_same_mesh=ours max_von_mises_calculix=theirs note=complaint"
+)
+CONTACT = fields(
+    "bending_moment=our_moment bending_moment_calculix=moment load_elsewhere=elsewhere "
+    "mesh_change=stress_change bands"
+)
+LIMIT = fields("unknowns factor_same_mesh=ours factor_calculix=theirs")
+
+
+def over_answer(opinion: Opinion) -> float | None:
+    """CalculiX's stress over ours."""
+    return None if opinion.deviation is None else 1.0 + opinion.deviation
+
+
+def opinion_tables(results: Results) -> list[Table[Any]]:
     """A row per pin and case, and the loads per length of those in contact."""
+    opinions, units = opinions_of(results), results.units
+    loads = [
+        LoadRow(o, band.name, *ends, ours, theirs, units)
+        for o in opinions
+        for band in (o.contact.bands if o.contact else ())
+        for ends, ours, theirs in zip(pairwise(band.ends), band.ours, band.theirs, strict=True)
+    ]
     return [
-        Table.of("second_opinion", COLUMNS, _rows(results)),
-        Table.of("second_opinion_loads", OPINION_LOAD_COLUMNS, _loads(results)),
+        Table("second_opinion", COLUMNS, [OpinionRow(o, units) for o in opinions]),
+        Table("second_opinion_loads", OPINION_LOAD_COLUMNS, loads),
     ]
 
 
@@ -45,43 +113,7 @@ def opinion_json(opinion: Opinion | None) -> dict[str, Any] | None:
         return None
     contact = opinion.contact
     return {
-        "unknowns": opinion.unknowns,
-        "displacement_difference": finite(opinion.displacement),
-        "von_mises_difference": finite(opinion.stress),
-        "max_von_mises_same_mesh": finite(opinion.ours),
-        "max_von_mises_calculix": finite(opinion.theirs),
+        **json_of(OPINION, opinion),
         "agrees": not opinion.complaint,
-        "note": opinion.complaint,
-        "contact": contact
-        and {
-            "bending_moment": finite(contact.our_moment),
-            "bending_moment_calculix": finite(contact.moment),
-            "load_elsewhere": finite(contact.elsewhere),
-            "mesh_change": finite(contact.stress_change),
-            "bands": [asdict(band) for band in contact.bands],
-        },
+        "contact": contact and json_of(CONTACT, contact),
     }
-
-
-def _rows(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    for o in opinions_of(results):
-        ratio = None if o.deviation is None else 1.0 + o.deviation
-        c = o.contact
-        own: list[Cell] = [None] * 6
-        if c:
-            own = [c.our_moment, c.moment, c.elsewhere, c.stress_change, u.force, u.length]
-        yield [
-            *(o.pin, o.case, o.unknowns or None, o.displacement, o.stress, o.ours, o.theirs),
-            *(o.answer, o.error, ratio, not o.complaint, u.stress, o.complaint, *own),
-        ]
-
-
-def _loads(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    for o in opinions_of(results):
-        for band in o.contact.bands if o.contact else ():
-            for (start, end), ours, theirs in zip(
-                pairwise(band.ends), band.ours, band.theirs, strict=True
-            ):
-                yield [o.pin, o.case, band.name, start, end, ours, theirs, u.length, u.force]

@@ -3,39 +3,118 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
-from fea.support.records import JointRange, JointResult
-from reports.data.results import PinResult, Results
-from reports.format.files.csv import Cell
-from reports.format.numbers import finite
-from reports.tables.table import Table
-
-BAND_COLUMNS = (
-    *("pin", "case", "connection", "force", "contact_angle", "mean_pressure", "couple"),
-    *("clearance", "outer_diameter", "length_unit", "force_unit", "stress_unit"),
-    "bearing_share",
-)
-LINE_LOAD_COLUMNS = (
-    *("pin", "case", "connection", "z", "line_load", "length_unit", "force_unit"),
-    *("z_start", "z_end"),
-)
-RANGE_COLUMNS = (
-    *("pin", "case", "what", "value", "max_von_mises", "stress_unit"),
-    *("length", "length_unit", "model", "lugs", "max_von_mises_low", "max_von_mises_high"),
-    "beneath",
+from fea.support.records import BandContact, JointRange, JointResult, Variation
+from reports.data.results import Results
+from reports.format.numbers import DASH, engineering, short
+from reports.tables.column import (
+    PIN_AND_CASE,
+    Column,
+    PinRow,
+    Table,
+    fields,
+    json_of,
+    texts,
+    unit_columns,
 )
 
 
-def joint_tables(results: Results) -> list[Table]:
+@dataclass(frozen=True)
+class LoadStep:
+    """The load per length of a band between two ends, which not every model has."""
+
+    band: str
+    z: float
+    line_load: float
+    z_start: float | None
+    z_end: float | None
+
+
+def bearing_share(row: PinRow[BandContact]) -> float | None:
+    """The part of its bearing strength that a band uses."""
+    contact = row.pin.places.contact if row.pin.places else None
+    shares = {b.name: b.bearing_share for b in contact.bands} if contact else {}
+    return shares.get(row.of.name)
+
+
+def _range(row: PinRow[Variation]) -> JointRange:
+    assert row.pin.joint is not None
+    assert row.pin.joint.range is not None
+    return row.pin.joint.range
+
+
+BAND_COLUMNS: list[Column[PinRow[BandContact]]] = [
+    *PIN_AND_CASE,
+    *texts("connection=of.name"),
+    Column("force", lambda row: row.of.force, "force", "force"),
+    Column("contact_angle", lambda row: row.of.contact_angle, "degrees", "half contact angle",
+           lambda row: engineering(row.of.contact_angle, 3)),
+    Column("mean_pressure", lambda row: row.of.mean_pressure, "stress", "mean pressure"),
+    Column("couple", lambda row: row.of.couple, "moment", "couple on the link"),
+    Column("clearance", lambda row: row.of.clearance, "length", "clearance",
+           lambda row: short(row.of.clearance)),
+    Column("outer_diameter", lambda row: row.of.outer_diameter, "length", "outer diameter",
+           lambda row: short(row.of.outer_diameter)),
+    *unit_columns("length force stress"),
+    Column("bearing_share", bearing_share, "", "of bearing strength",
+           lambda row: _per_cent(bearing_share(row)), drop_if_empty=True),
+]  # fmt: skip
+LINE_LOAD_COLUMNS: list[Column[PinRow[LoadStep]]] = [
+    *PIN_AND_CASE,
+    *fields("connection=of.band"),
+    *fields("of.z", "length"),
+    *fields("of.line_load", "force per length"),
+    *unit_columns("length force"),
+    *fields("of.z_start of.z_end", "length"),
+]
+RANGE_COLUMNS: list[Column[PinRow[Variation]]] = [
+    *PIN_AND_CASE,
+    *fields("of.what of.value"),
+    *fields("of.max_von_mises", "stress"),
+    *unit_columns("stress"),
+    *fields("of.length", "length"),
+    Column("length_unit", lambda row: None if row.of.length is None else row.units.length),
+    Column("model", lambda row: _range(row).model),
+    Column("lugs", lambda row: lugs_word(_range(row))),
+    Column("max_von_mises_low", lambda row: (row.of.interval or (None,))[0], "stress"),
+    Column("max_von_mises_high", lambda row: (row.of.interval or (None,))[-1], "stress"),
+    *fields("of.beneath", "stress"),
+]
+
+
+# The keys of results.json.
+JOINT = fields("model bands bending_moment bending_moments remark")
+VARIATION = fields("what value length max_von_mises max_von_mises_interval=interval beneath")
+
+
+def joint_tables(results: Results) -> list[Table[Any]]:
     """Of all pins in lugs: their bands, the load per length along these, and the maximum with the
     joint changed.
     """
+    units = results.units
+    joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
+    bands = [PinRow(pin, units, band) for pin, joint in joints for band in joint.bands]
+    steps = [PinRow(row.pin, units, step) for row in bands for step in _steps(row.of)]
+    ranges = [(pin, joint.range) for pin, joint in joints if joint.range]
+    variations = [PinRow(pin, units, v) for pin, over in ranges for v in over.variations]
     return [
-        Table.of("joint_bands", BAND_COLUMNS, _bands(results)),
-        Table.of("line_loads", LINE_LOAD_COLUMNS, _lines(results)),
-        Table.of("joint_range", RANGE_COLUMNS, _ranges(results)),
+        Table("joint_bands", BAND_COLUMNS, bands),
+        Table("line_loads", LINE_LOAD_COLUMNS, steps),
+        Table("joint_range", RANGE_COLUMNS, variations),
     ]
+
+
+def _steps(band: BandContact) -> Iterator[LoadStep]:
+    none = (None,) * len(band.line_load)
+    rings = zip(band.line_load, band.ends[:-1] or none, band.ends[1:] or none, strict=True)
+    for (z, load), start, end in rings:
+        yield LoadStep(band.name, z, load, start, end)
+
+
+def _per_cent(share: float | None) -> str:
+    return DASH if share is None else f"{engineering(100.0 * share, 3)} %"
 
 
 def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
@@ -44,40 +123,12 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
         return None
     over = joint.range
     return {
-        "model": joint.model,
-        "bands": [
-            {
-                "name": band.name,
-                "force": finite(band.force),
-                "contact_angle": finite(band.contact_angle),
-                "mean_pressure": finite(band.mean_pressure),
-                "couple": finite(band.couple),
-                "clearance": finite(band.clearance),
-                "outer_diameter": finite(band.outer_diameter),
-                "line_load": [[finite(z), finite(load)] for z, load in band.line_load],
-                "ends": [finite(z) for z in band.ends],
-            }
-            for band in joint.bands
-        ],
-        "bending_moment": finite(joint.bending_moment),
-        "bending_moments": [[finite(z), finite(m)] for z, m in joint.bending_moments],
-        "remark": joint.remark,
+        **json_of(JOINT, joint),
         "range": over
         and {
-            "max_von_mises": [finite(x) for x in over.max_von_mises],
-            "model": over.model,
+            **json_of(fields("max_von_mises model"), over),
             "lugs": lugs_word(over),
-            "over": [
-                {
-                    "what": v.what,
-                    "value": v.value,
-                    "length": finite(v.length),
-                    "max_von_mises": finite(v.max_von_mises),
-                    "max_von_mises_interval": v.interval and [finite(x) for x in v.interval],
-                    "beneath": finite(v.beneath),
-                }
-                for v in over.variations
-            ],
+            "over": [json_of(VARIATION, variation) for variation in over.variations],
         },
     }
 
@@ -85,44 +136,3 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
 def lugs_word(over: JointRange) -> str:
     """Whose the lugs of a range are."""
     return "assumed" if over.assumed else "study"
-
-
-def _joined(results: Results) -> Iterator[tuple[PinResult, JointResult]]:
-    return ((pin, pin.joint) for pin in results.pins if pin.joint is not None)
-
-
-def _bands(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    for pin, joint in _joined(results):
-        contact = pin.places.contact if pin.places else None
-        shares = {b.name: b.bearing_share for b in contact.bands} if contact else {}
-        for b in joint.bands:
-            yield [
-                *(pin.pin, pin.case, b.name, b.force, b.contact_angle, b.mean_pressure),
-                *(b.couple, b.clearance, b.outer_diameter, u.length, u.force, u.stress),
-                shares.get(b.name),
-            ]
-
-
-def _lines(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    for pin, joint in _joined(results):
-        for band in joint.bands:
-            none = (None,) * len(band.line_load)
-            rings = zip(band.line_load, band.ends[:-1] or none, band.ends[1:] or none, strict=True)
-            for (z, load), start, end in rings:
-                yield [pin.pin, pin.case, band.name, z, load, u.length, u.force, start, end]
-
-
-def _ranges(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    for pin, joint in _joined(results):
-        if joint.range is None:
-            continue
-        by = joint.range.model, lugs_word(joint.range)
-        for v in joint.range.variations:
-            unit = None if v.length is None else u.length
-            yield [
-                *(pin.pin, pin.case, v.what, v.value, v.max_von_mises, u.stress, v.length, unit),
-                *(*by, *(v.interval or (None, None)), v.beneath),
-            ]

@@ -2,25 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Literal
 
-from fea.core.places import BandPressure, ContactEdge, ContactPlace, SectionPlace, SurfacePlace
-from reports.data.results import PinResult, Results
-from reports.format.files.csv import Cell
+from fea.core.places import ContactEdge, ContactPlace, SectionPlace, SurfacePlace
+from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import finite
-from reports.tables.table import Table
-
-PLACE_COLUMNS = (
-    *("pin", "case", "place", "governs", "max_von_mises", "error_estimate", "safety_factor"),
-    *("verdict", "x", "y", "z", "time", "axial_force", "shear_force", "bending_moment", "torque"),
-    *("plastic_utilisation", "reach", "reach_required"),
-    *("length_unit", "force_unit", "stress_unit", "time_unit"),
-)
-EDGE_COLUMNS = (
-    *("pin", "case", "connection", "end", "K", "exponent", "yield_distance", "max_pressure"),
-    *("max_von_mises", "error_estimate", "length_unit", "stress_unit"),
-)
+from reports.format.plain import plain
+from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 
 
 def factor_at(pin: PinResult, stress: float | None) -> float | None:
@@ -34,118 +23,105 @@ def places_json(pin: PinResult) -> dict[str, Any]:
     places = pin.places
     if places is None:
         return {"governs": None}
-    found: dict[str, Any] = {
-        "governs": places.governs,
-        "surface": _surface(pin, places.surface),
-    }
-    if places.section is not None:
-        found["section"] = _section(pin, places.section)
+    found: dict[str, Any] = {"governs": places.governs}
+    for name, at in (("surface", places.surface), ("section", places.section)):
+        if at is not None:
+            factor = factor_at(pin, at.max_von_mises)
+            found[name] = {**plain(at), "safety_factor": finite(factor)}
     if places.contact is not None:
-        found["contact"] = _contact(places.contact)
+        found["contact"] = plain(places.contact)
+        del found["contact"]["depths"]
     return found
 
 
-def _surface(pin: PinResult, at: SurfacePlace) -> dict[str, Any]:
-    return {
-        "max_von_mises": finite(at.max_von_mises),
-        "error_estimate": finite(at.error_estimate),
-        "verdict": at.verdict,
-        "location": [finite(x) for x in at.location],
-        "time": finite(at.time),
-        "safety_factor": finite(factor_at(pin, at.max_von_mises)),
-    }
+@dataclass(frozen=True)
+class PlaceRow:
+    """A place of a pin in a case, of what it is of (`contact`: what lies beneath it)."""
+
+    pin: PinResult
+    place: Literal["surface", "section", "beneath"]
+    of: SurfacePlace | SectionPlace | ContactPlace
+    units: Units
+
+    @property
+    def stress(self) -> float:
+        return self.of.beneath if isinstance(self.of, ContactPlace) else self.of.max_von_mises
+
+    @property
+    def error(self) -> float | None:
+        return (
+            self.of.beneath_error if isinstance(self.of, ContactPlace) else self.of.error_estimate
+        )
+
+    @property
+    def time(self) -> float | None:
+        return self.of.beneath_time if isinstance(self.of, ContactPlace) else self.of.time
+
+    @property
+    def factor(self) -> float | None:
+        """Yield strength over the stress."""
+        return factor_at(self.pin, self.stress)
+
+    @property
+    def at(self) -> tuple[float | None, float | None, float | None]:
+        """Where the stress is read; of a section its z alone."""
+        if isinstance(self.of, SectionPlace):
+            return None, None, self.of.z
+        return self.of.beneath_location if isinstance(self.of, ContactPlace) else self.of.location
+
+    @property
+    def governs(self) -> bool:
+        return self.pin.places is not None and self.pin.places.governs == self.place
 
 
-def _section(pin: PinResult, at: SectionPlace) -> dict[str, Any]:
-    numbers = ("axial_force", "shear_force", "bending_moment", "torque", "plastic_utilisation")
-    return {
-        "max_von_mises": finite(at.max_von_mises),
-        "error_estimate": finite(at.error_estimate),
-        "verdict": at.verdict,
-        "z": finite(at.z),
-        "time": finite(at.time),
-        **{name: finite(getattr(at, name)) for name in numbers},
-        "safety_factor": finite(factor_at(pin, at.max_von_mises)),
-    }
+def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
+    """Surface, section and what lies beneath contact, as far as the row has them."""
+    if pin.places is None:
+        return []
+    places = pin.places
+    rows: list[tuple[Literal["surface", "section", "beneath"], Any]] = [
+        ("surface", places.surface), ("section", places.section), ("beneath", places.contact),
+    ]  # fmt: skip
+    return [PlaceRow(pin, name, of, units) for name, of in rows if of is not None]
 
 
-def _contact(at: ContactPlace) -> dict[str, Any]:
-    return {
-        "beneath": finite(at.beneath),
-        "beneath_error": finite(at.beneath_error),
-        "beneath_location": [finite(x) for x in at.beneath_location],
-        "beneath_time": finite(at.beneath_time),
-        "reach": finite(at.reach),
-        "reach_required": finite(at.reach_required),
-        "edges": [_edge(edge) for edge in at.edges],
-        "bands": [_band(band) for band in at.bands],
-    }
+def _of(key: str, dimension: str = "") -> Column[PlaceRow]:
+    """A number that some of the places have."""
+    return Column(key, lambda row: getattr(row.of, key, None), dimension)
 
 
-def _edge(edge: ContactEdge) -> dict[str, Any]:
-    numbers = ("K", "exponent", "yield_distance", "max_pressure", "max_von_mises", "error_estimate")
-    return {
-        "band": edge.band,
-        "end": edge.end,
-        **{name: finite(getattr(edge, name)) for name in numbers},
-    }
+PLACE_COLUMNS: list[Column[PlaceRow]] = [
+    *PIN_AND_CASE,
+    *fields("place governs"),
+    *fields("max_von_mises=stress error_estimate=error", "stress"),
+    *fields("safety_factor=factor"),
+    _of("verdict"),
+    *(Column(x, lambda row, k=k: row.at[k], "length") for k, x in enumerate("xyz")),  # type: ignore[misc]
+    *fields("time", "time"),
+    *(_of(name, "force") for name in ("axial_force", "shear_force")),
+    *(_of(name, "moment") for name in ("bending_moment", "torque")),
+    _of("plastic_utilisation"),
+    *(_of(name, "length") for name in ("reach", "reach_required")),
+    *unit_columns("length force stress time"),
+]
+EDGE_COLUMNS: list[Column[PinRow[ContactEdge]]] = [
+    *PIN_AND_CASE,
+    *fields("connection=of.band of.end of.K of.exponent"),
+    *fields("of.yield_distance", "length"),
+    *fields("of.max_pressure of.max_von_mises of.error_estimate", "stress"),
+    *unit_columns("length stress"),
+]
 
 
-def _band(band: BandPressure) -> dict[str, Any]:
-    return {
-        "name": band.name,
-        "mean_pressure": finite(band.mean_pressure),
-        "bearing_share": finite(band.bearing_share),
-        "pressed": [[finite(x) for x in cell] for cell in band.pressed],
-    }
-
-
-def place_tables(results: Results) -> list[Table]:
+def place_tables(results: Results) -> list[Table[Any]]:
     """Of all rows: surface, section and what lies beneath contact, one below the other; and the
     edges of lugs.
     """
+    units = results.units
+    places = [row for pin in results.pins for row in place_rows(pin, units)]
+    contacts = [(p, p.places.contact) for p in results.pins if p.places and p.places.contact]
+    edges = [PinRow(pin, units, edge) for pin, contact in contacts for edge in contact.edges]
     return [
-        Table.of("places", PLACE_COLUMNS, _places(results)),
-        Table.of("contact_edges", EDGE_COLUMNS, _edges(results)),
+        Table("places", PLACE_COLUMNS, places),
+        Table("contact_edges", EDGE_COLUMNS, edges),
     ]
-
-
-def _places(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    units = u.length, u.force, u.stress, u.time
-    for pin in results.pins:
-        if pin.places is None:
-            continue
-        surface, section, contact = pin.places.surface, pin.places.section, pin.places.contact
-        governs, none = pin.places.governs, (None,)
-        yield [
-            *(pin.pin, pin.case, "surface", governs == "surface", surface.max_von_mises),
-            *(surface.error_estimate, factor_at(pin, surface.max_von_mises), surface.verdict),
-            *(*surface.location, surface.time, *7 * none, *units),
-        ]
-        if section is not None:
-            s = section
-            yield [
-                *(pin.pin, pin.case, "section", governs == "section", s.max_von_mises),
-                *(s.error_estimate, factor_at(pin, s.max_von_mises), s.verdict, None, None, s.z),
-                *(s.time, s.axial_force, s.shear_force, s.bending_moment, s.torque),
-                *(s.plastic_utilisation, None, None, *units),
-            ]
-        if contact is not None:
-            c = contact
-            yield [
-                *(pin.pin, pin.case, "beneath", False, c.beneath, c.beneath_error),
-                *(factor_at(pin, c.beneath), None, *c.beneath_location, c.beneath_time),
-                *(*5 * none, c.reach, c.reach_required, *units),
-            ]
-
-
-def _edges(results: Results) -> Iterator[list[Cell]]:
-    u = results.units
-    for pin in results.pins:
-        for edge in pin.places.contact.edges if pin.places and pin.places.contact else ():
-            yield [
-                *(pin.pin, pin.case, edge.band, edge.end, edge.K, edge.exponent),
-                *(edge.yield_distance, edge.max_pressure, edge.max_von_mises),
-                *(edge.error_estimate, u.length, u.stress),
-            ]

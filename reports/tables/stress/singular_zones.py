@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from math import hypot
 
-from reports.data.results import Results, SingularZone
-from reports.format.files.csv import Cell
+from reports.data.results import PinResult, Results, SingularZone, Units
 from reports.format.numbers import DASH, engineering
-from reports.tables.table import Table
-
-COLUMNS = (
-    *("pin", "case", "zone", "z", "radius", "x", "y", "between", "kind"),
-    *("exponent", "exponent_theory", "excluded_radius", "governs", "max_von_mises"),
-    *("advice", "verdict", "length_unit", "stress_unit"),
-    *("strength", "strength_exponent", "notch_stress_intensity"),
+from reports.tables.column import (
+    PIN_AND_CASE,
+    Column,
+    Table,
+    fields,
+    in_order,
+    read_only,
+    texts,
+    unit_columns,
 )
 
 
@@ -76,45 +77,66 @@ def _circle(zone: SingularZone) -> tuple[str, tuple[str, str], str, str]:
     return zone.kind, zone.between, engineering(z, 5), engineering(hypot(x, y), 5)
 
 
-def zone_table(zones: list[Zone], length: str, stress: str) -> tuple[list[str], list[list[str]]]:
-    """Head and rows for display, for one pin and case; four digits."""
-    head = ["zone", f"z [{length}]", f"radius [{length}]", "between", "kind", "exponent"]
-    head += [f"excluded distance [{length}]", f"maximum inside [{stress}]"]
-    head += [f"strength [{stress} {length}^exponent]", "governs", "remedy"]
-    rows = [
-        [
-            str(zone.number),
-            engineering(zone.z),
-            engineering(zone.r),
-            zone.between or DASH,
-            zone.found.kind,
-            zone.exponents,
-            engineering(zone.found.excluded),
-            engineering(zone.found.max_von_mises),
-            engineering(zone.found.strength.along if zone.found.strength else None),
-            "yes" if zone.found.governs else "no",
-            zone.found.advice,
-        ]
-        for zone in sorted(zones, key=lambda zone: zone.number)
-    ]
-    return head, rows
+@dataclass(frozen=True)
+class ZoneRow:
+    """A zone of a pin in a case, with the units of the results."""
+
+    pin: PinResult
+    zone: Zone
+    units: Units
 
 
-def zones_table(results: Results) -> Table:
+def _intensity(name: str) -> Callable[[ZoneRow], float | None]:
+    """A number of how strong the field is, where that was measured."""
+    return lambda row: getattr(row.zone.found.strength, name, None)
+
+
+def _at(k: int) -> Callable[[ZoneRow], float]:
+    return lambda row: row.zone.found.location[k]
+
+
+COLUMNS: list[Column[ZoneRow]] = [
+    *PIN_AND_CASE,
+    Column("zone", lambda row: row.zone.number, "", "zone", lambda row: str(row.zone.number)),
+    Column("z", _at(2), "length", "z"),
+    Column("radius", lambda row: row.zone.r, "length", "radius"),
+    Column("x", _at(0), "length"),
+    Column("y", _at(1), "length"),
+    Column("between", lambda row: row.zone.between, "", "between",
+           lambda row: row.zone.between or DASH, numeric=False),
+    *texts("zone.found.kind"),
+    Column("exponent", lambda row: row.zone.found.exponent, "", "exponent",
+           lambda row: row.zone.exponents),
+    *fields("zone.found.exponent_theory"),
+    Column("excluded_radius", lambda row: row.zone.found.excluded, "length", "excluded distance"),
+    *texts("zone.found.governs"),
+    Column("max_von_mises", lambda row: row.zone.found.max_von_mises, "stress", "maximum inside"),
+    Column("advice", lambda row: row.zone.found.advice, heading="remedy", numeric=False),
+    *fields("pin.verdict"),
+    *unit_columns("length stress"),
+    Column("strength", _intensity("along"), "stress"),
+    Column("strength_exponent", _intensity("exponent")),
+    Column("notch_stress_intensity", _intensity("notch")),
+]  # fmt: skip
+DISPLAY_ORDER = ("zone", "z", "radius", "between", "kind", "exponent", "excluded_radius",
+                 "max_von_mises", "strength", "governs", "advice")  # fmt: skip
+
+
+def zones_table(results: Results) -> Table[ZoneRow]:
     """Every zone of every pin and case."""
-    return Table.of("singular_zones", COLUMNS, _rows(results))
+    numbered = {pin: pin_zones(results, pin) for pin in dict.fromkeys(p.pin for p in results.pins)}
+    rows = [
+        ZoneRow(pin, zone, results.units)
+        for pin in results.pins
+        for zone in numbered[pin.pin][pin.case]
+    ]
+    return Table("singular_zones", COLUMNS, rows)
 
 
-def _rows(results: Results) -> Iterator[list[Cell]]:
-    units = results.units
-    for pin in results.pins:
-        for zone in pin_zones(results, pin.pin)[pin.case]:
-            (x, y, z), found = zone.found.location, zone.found
-            s = found.strength
-            strength = (s.along, s.exponent, s.notch) if s else (None, None, None)
-            yield [
-                *(pin.pin, pin.case, zone.number, z, zone.r, x, y, zone.between, found.kind),
-                *(found.exponent, found.exponent_theory, found.excluded, found.governs),
-                *(found.max_von_mises, found.advice, pin.verdict, units.length, units.stress),
-                *strength,
-            ]
+def shown_zones(pin: PinResult, zones: list[Zone], units: Units) -> Table[ZoneRow]:
+    """The zones of a pin in a case, for people."""
+    heading = f"strength [{units.stress} {units.length}^exponent]"
+    strength = read_only(heading, _intensity("along"))
+    columns = [replace(strength, key="strength") if c.key == "strength" else c for c in COLUMNS]
+    rows = [ZoneRow(pin, zone, units) for zone in sorted(zones, key=lambda zone: zone.number)]
+    return Table("singular_zones", in_order(columns, DISPLAY_ORDER), rows)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from assess.opinion.cantilever import beam_check
-from assess.strength.records import BeamCheck
+from assess.opinion.records import BeamCheck
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Pin, Segment

@@ -11,9 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import dblquad
 
+from assess.checks import margins_of
+from assess.margin import Margin, worst_places
 from assess.plastic.records import LimitLoad
+from assess.situation import LoadFactors, Situation, SolvedRow, with_supports
 from assess.strength.bending_arms import bending_arms, layout
-from assess.strength.collapse import collapse_margin
+from assess.strength.collapse import collapse
 from assess.strength.eurocode_pins import (
     PinInHole,
     bearing_resistance,
@@ -22,14 +25,10 @@ from assess.strength.eurocode_pins import (
     double_shear_moment,
     shear_resistance,
 )
-from assess.strength.lug_checks import lug_checks
-from assess.strength.margin import Margin
-from assess.strength.model_stress import model_margins
-from assess.strength.pin_checks import formula_margins, pin_checks
+from assess.strength.hand_checks import bending
+from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_shear
 from assess.strength.section_forces import of_joint, section_forces
-from assess.strength.section_stress import JOINT_MODEL_BENDING, bending_check
-from assess.strength.situation import LoadFactors, Situation, with_supports
 from fea.beam.round_section import Circle
 from fea.core.material import Material
 from fea.core.peak import Maximum
@@ -53,8 +52,7 @@ def in_double_shear(
 
 
 def margins(s: Situation) -> dict[tuple[str, str], Margin]:
-    checks = pin_checks(s) + lug_checks(s.pin, s.lugs, s.loads)
-    return {(m.method, m.level): m for m in formula_margins(s, checks)}
+    return {(m.method, m.level): m for m in worst_places(margins_of(replace(s, sized=s.lugs)))}
 
 
 def stresses(s: Situation) -> tuple[float, float]:
@@ -316,9 +314,10 @@ def test_a_shoulder_is_checked_on_both_sides() -> None:
     z = np.array([0.0, 0.02, 0.04])
     moment, none = np.array([[0.0, 100.0, 0.0]]), np.zeros((1, 0, 2))
     along = JointForces(z, None, np.zeros((1, 3)), moment, (), none)
-    s = replace(in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0), pin=pin)
-    found = bending_check(s, of_joint(s, along), JOINT_MODEL_BENDING)
-    assert found.stress == pytest.approx(100.0 / (math.pi / 32.0 * 0.02**3))
+    s = replace(in_double_shear(0.008, 0.001, 0.015, 0.016, 5000.0), profile=pin)
+    (found,) = bending(replace(s, section_forces=of_joint(s, along)))
+    assert (found.method, found.clause) == ("bending, joint model", "Shigley, 3-10")
+    assert found.demand == pytest.approx(100.0 / (math.pi / 32.0 * 0.02**3))
     assert found.at == "B"
 
 
@@ -337,10 +336,14 @@ def test_arms_stand_next_to_the_joint_model() -> None:
 def test_a_limit_load_is_a_margin_at_ultimate_load() -> None:
     """1.35 to 1.40 times the loads: short of 1.5 by a tenth, by the lower end."""
     factors = LoadFactors(fitting=1.15)
-    found = collapse_margin(LimitLoad("solid", 1.35, 1.40, True), factors, 0.2)
+    instant = PinLoads("c", ("A",), np.zeros((1, 1, 3)), times=np.array([0.2]))
+    peak = Maximum("P", "c", "solid", "converged", "", 300e6, 2e6, governing=instant)
+    row = SolvedRow(peak, LimitLoad("solid", 1.35, 1.40, True))
+    s = Situation(None, S235, factors=factors, row=row)
+    (found,) = collapse(s)
     assert found.margin == pytest.approx(1.35 / (1.5 * 1.15) - 1.0)
     assert (found.level, found.time) == ("ultimate", 0.2)
-    none = collapse_margin(LimitLoad("none", note="no mesh"), factors, None)
+    (none,) = collapse(replace(s, row=SolvedRow(peak, LimitLoad("none", note="no mesh"))))
     assert none.needs == "a limit load: no mesh"
 
 
@@ -353,12 +356,13 @@ def test_a_limit_load_is_a_margin_at_ultimate_load() -> None:
     ],
 )
 def test_stress_of_the_model_with_its_error(peak: Maximum, demand: float | None) -> None:
-    yields, ruptures = model_margins(peak, S235, LoadFactors())
+    s = Situation(None, S235, row=SolvedRow(peak))
+    (yields,), (ruptures,) = model_yield(s), model_rupture(s)
     assert yields.demand == ruptures.demand == demand
     if demand is None:
         assert "rigid" in yields.needs
     else:
         assert yields.margin == pytest.approx(235e6 / demand - 1.0)
         assert ruptures.margin == pytest.approx(360e6 / (1.5 * demand) - 1.0)
-    missing = model_margins(peak, replace(S235, ultimate_strength=None), LoadFactors())[1]
+    (missing,) = model_rupture(replace(s, material=replace(S235, ultimate_strength=None)))
     assert missing.needs == "material.S235.ultimate_strength"

@@ -50,7 +50,7 @@ def test_turning_has_the_sign_of_the_determinants(systems: Floats) -> None:
     other[::3, 4] *= -1.0
     signs = np.sign(np.linalg.det(J) * np.linalg.det(other))
     assert -1.0 in signs
-    assert np.array_equal(np.sign(factors(J).turn_to(other)), signs)
+    assert np.array_equal(np.sign(factors(J).orientation(other)), signs)
 
 
 def test_lost_rank_shows_in_the_pivots(systems: Floats) -> None:

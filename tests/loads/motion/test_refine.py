@@ -28,7 +28,7 @@ def test_samples_at_the_same_angle_of_every_turn_hide_nothing() -> None:
 def test_a_thousand_turns_between_two_samples_are_not_taken_for_rest() -> None:
     for turns in (512, 1000, 1024, 4096):
         found = resolved(
-            np.array([0.0, turns]), lambda t: np.sin(2 * np.pi * t)[:, None], most=2000
+            np.array([0.0, turns]), lambda t: np.sin(2 * np.pi * t)[:, None], max_evaluations=2000
         )
         assert len(found.unresolved)
         assert found.largest()[0] > 0.9

@@ -87,8 +87,8 @@ def test_the_history_at_a_governing_point_has_the_maximum(
         assert abs(course.signed) == pytest.approx(course.von_mises)
     assert results.fatigue is None
     table = results.tables["stress_history"]
-    assert table.columns == ("pin", "case", "time", "point", "von_mises", "signed")
-    times = {row[2] for row in table.rows if row[1] == "down"}
+    assert table.keys == ["pin", "case", "time", "point", "von_mises", "signed"]
+    times = {row[2] for row in table.cells() if row[1] == "down"}
     assert times >= {0.0, 1.0, 2.0, 3.0}
 
 

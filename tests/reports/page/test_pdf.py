@@ -11,7 +11,6 @@ from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.page.paper import MAX_DIMENSIONS, PINS_PER_MATRIX, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
-from reports.tables.strength.safety_factors import display_rows
 
 EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
 
@@ -20,7 +19,7 @@ def test_rows_are_those_of_the_decision_worst_first(results: Results) -> None:
     found = document(results, {})["factors"]
     assert found["outcomes"] == [outcome(pin) for pin in worst_first(results)]
     at = found["head"].index("pin")
-    assert [row[at] for row in found["body"]] == [row["pin"] for row in display_rows(results)]
+    assert [row[at] for row in found["body"]] == [pin.pin for pin in worst_first(results)]
 
 
 def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:

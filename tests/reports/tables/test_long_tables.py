@@ -13,13 +13,13 @@ from reports.data.results import ReactionTable
 from reports.format.files import parquet as ours
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
-from reports.tables import table as tables
-from reports.tables.loads.motion import REACTION_COLUMNS, Instants
-from reports.tables.table import Table
+from reports.tables import column as tables
+from reports.tables.column import ArrayTable, Table
+from reports.tables.loads.motion import REACTION_COLUMNS
 
 
 @pytest.fixture
-def reactions() -> Instants:
+def reactions() -> Table[ReactionTable]:
     """Two cases, one of them without time."""
     rng = np.random.default_rng(3)
 
@@ -29,31 +29,30 @@ def reactions() -> Instants:
             case, times, None, ("B", "C"), ("link", "arm"), ("P", "Q"), forces, moments, (), {}, ""
         )
 
-    return Instants((table("turn", np.linspace(0.0, 1.0, 7), 7), table("rest", None, 1)))
+    rows = [table("turn", np.linspace(0.0, 1.0, 7), 7), table("rest", None, 1)]
+    return ArrayTable("reactions", REACTION_COLUMNS, rows)
 
 
-def test_rows_are_made_as_they_are_asked_for(reactions: Instants) -> None:
-    rows = list(reactions)
-    assert len(rows) == len(reactions) == 16
-    assert [reactions[k] for k in (0, 13, -1)] == [rows[0], rows[13], rows[-1]]
-    assert reactions[3:9:2] == rows[3:9:2]
-    assert rows[3][:4] == ["turn", pytest.approx(1 / 6), "C", "arm"]
-    with pytest.raises(IndexError):
-        reactions[16]
+def test_lines_and_columns_have_the_same_cells(reactions: Table[ReactionTable]) -> None:
+    lines = [*reactions.cells()]
+    assert len(lines) == len(reactions) == 16
+    columns = [reactions.values(column) for column in reactions.columns]
+    assert lines == [*zip(*columns, strict=True)]
+    assert lines[3][:4] == ("turn", pytest.approx(1 / 6), "C", "arm")
+    assert lines[14][:4] == ("rest", None, "B", "link")
 
 
 def test_a_long_table_is_parquet_with_the_cells_of_the_csv(
-    reactions: Instants, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    reactions: Table[ReactionTable], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    table = Table("reactions", REACTION_COLUMNS, reactions)
-    assert table.write(tmp_path).name == "reactions.csv"
+    assert reactions.write(tmp_path).name == "reactions.csv"
     monkeypatch.setattr(tables, "MAX_CSV_ROWS", 15)
     monkeypatch.setattr(ours, "ROWS_PER_GROUP", 5)
-    path = table.write(tmp_path)
+    path = reactions.write(tmp_path)
     assert path.name == "reactions.parquet"
     found = parquet.read_table(path)
     assert parquet.ParquetFile(path).num_row_groups == 4
-    assert found.column_names == list(REACTION_COLUMNS)
+    assert found.column_names == reactions.keys
     read = csv.DictReader((tmp_path / "reactions.csv").read_text().splitlines())
     for row, plain in zip(found.to_pylist(), read, strict=True):
         assert (row["case"], row["connection"]) == (plain["case"], plain["connection"])

@@ -6,30 +6,31 @@ from dataclasses import replace
 
 import pytest
 
-from assess.strength.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
+from assess.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
 from reports.data.results import Results, Units
 from reports.page.paper import document
+from reports.tables.json_results import to_json
 from reports.tables.strength.margins import (
-    governing_grid,
-    margins_json,
+    governing_table,
     margins_table,
     not_made_words,
-    worst_grid,
+    worst_table,
 )
 
 CHECKS = (
-    Margin("von Mises", "", "limit", 100e6, 250e6, 1.0),
-    Margin("shear", "", "ultimate", 5000.0, 30000.0, 1.5, "force", at="eye", time=2.0),
-    Margin("bending", "", "ultimate", 27.0, 120.0, 1.5, "moment"),
-    Margin("interaction", "", "ultimate", 0.2, 1.0, 1.5, RATIO_DIMENSION),
-    skipped("rupture", "", "ultimate", 1.5, "material.steel.ultimate_strength"),
+    Margin("von Mises", "", "model", "limit", 1.0, 100e6, 250e6),
+    Margin("shear", "", "clause", "ultimate", 1.5, 5000.0, 30000.0, "force", at="eye", time=2.0),
+    Margin("bending", "", "clause", "ultimate", 1.5, 27.0, 120.0, "moment"),
+    Margin("interaction", "", "clause", "ultimate", 1.5, 0.2, 1.0, RATIO_DIMENSION),
+    skipped("rupture", "", "model", "ultimate", 1.5, "material.steel.ultimate_strength"),
 )
 
 
 def test_every_row_is_in_the_unit_that_it_names(results: Results) -> None:
     in_si = replace(results, pins=(), margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
     value = {"stress": 1e6, "force": 1e3, "moment": 1e3, "time": 1.0, "length": 1.0}
-    rows = margins_json(in_si.in_units(Units("m", "kN", "MPa", "s"), lambda d: value.get(d, 1.0)))
+    made = in_si.in_units(Units("m", "kN", "MPa", "s"), lambda d: value.get(d, 1.0))
+    rows = margins_table(made).records()
     shown = [(row["demand"], row["allowable"], row["unit"]) for row in rows]
     assert shown == [
         (100.0, 250.0, "MPa"),
@@ -48,14 +49,14 @@ def test_every_row_is_in_the_unit_that_it_names(results: Results) -> None:
 def test_the_table_has_the_same_rows_with_a_heading_for_each(results: Results) -> None:
     made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
     table = margins_table(made)
-    assert [dict(zip(table.columns, row, strict=True)) for row in table.rows] == margins_json(made)
+    cells = [dict(zip(table.keys, row, strict=True)) for row in table.cells()]
+    assert cells == to_json(made)["margins"]
 
 
 def test_the_pdf_has_the_governing_margins(results: Results) -> None:
     made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
-    grid, found = governing_grid(made), document(made, {})["margins"]
-    assert grid is not None
-    assert found["grid"]["body"] == grid.body
+    table, found = governing_table(made), document(made, {})["margins"]
+    assert found["grid"]["body"] == table.grid(made.units).body
     assert document(replace(results, margins=()), {})["margins"] is None
 
 
@@ -63,7 +64,7 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
     """Of two pins in two cases; what was not made governs nothing and is named with its check."""
 
     def used(method: str, demand: float) -> Margin:
-        return Margin(method, "", "limit", demand, 100.0, 1.0)
+        return Margin(method, "", "hand", "limit", 1.0, demand, 100.0)
 
     margins = (
         PinMargin("A", "one", used("shear", 10.0)),
@@ -73,10 +74,7 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
         PinMargin("B", "two", CHECKS[-1]),
     )
     made = replace(results, margins=margins)
-    by_case = governing_grid(made)
-    worst = worst_grid(made)
-    assert by_case is not None
-    assert worst is not None
+    by_case, worst = (x(made).grid(made.units) for x in (governing_table, worst_table))
     assert [row[:4] for row in by_case.body] == [
         ["B", "one", "shear", "+0.111"],
         ["A", "two", "shear", "+1.00"],
@@ -85,4 +83,4 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
     assert [row[:3] for row in worst.body] == [["B", "one", "shear"], ["A", "two", "shear"]]
     (line,) = not_made_words(made)
     assert "(pin B), material.steel.ultimate_strength missing: rupture" in line
-    assert worst_grid(replace(results, margins=margins[-1:])) is None
+    assert not worst_table(replace(results, margins=margins[-1:])).rows

@@ -43,7 +43,7 @@ def opined(results: Results) -> Results:
 
 def test_tables_and_json_have_the_same_numbers(opined: Results) -> None:
     rows, loads = opinion_tables(opined)
-    pressed, same, refused = (dict(zip(rows.columns, row, strict=True)) for row in rows.rows)
+    pressed, same, refused = rows.records()
     found = opinion_json(opined.pins[0].second_opinion)
     assert found is not None
     for name in ("bending_moment", "bending_moment_calculix", "load_elsewhere", "mesh_change"):
@@ -53,8 +53,8 @@ def test_tables_and_json_have_the_same_numbers(opined: Results) -> None:
     assert pressed["calculix_over_answer"] == pytest.approx(1.05)
     assert [row["agrees"] for row in (pressed, same, refused)] == [True, True, False]
     assert refused["max_von_mises_calculix"] is None
-    assert [row[3:7] for row in loads.rows][:2] == [[0.0, 1.0, 9.0, 8.0], [1.0, 2.0, 4.0, 4.0]]
-    assert len(loads.rows) == 5
+    assert [row[3:7] for row in loads.cells()][:2] == [[0.0, 1.0, 9.0, 8.0], [1.0, 2.0, 4.0, 4.0]]
+    assert len(loads) == 5
     assert opinion_json(None) is None
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from pinstress.explore.reliability.designs import Answers
 from reports.data.reliability import ByErrors, FirstOrder, Reliability, Risk, Spread
 from reports.plots.reliability import distribution_plot
-from reports.tables.reliability import chance_range, factor_interval, remark, risks_grid
+from reports.tables.reliability import chance_range, factor_interval, remark, risks_table
 from reports.text.reliability import sentence
 
 PLAIN = Spread(0.03, 0.02, 0.04)
@@ -60,7 +60,7 @@ def test_the_sentence_and_the_plot() -> None:
     points = plot.spec["data"]["values"]
     assert [round(p["y"], 2) for p in points] == [-2.33, -1.88, 0.0, -3.09]
     assert distribution_plot(found, ROW) is None
-    assert risks_grid(found).body[0][5] == "0.03 (0.02 to 0.04)"
+    assert risks_table(found).grid().body[0][5] == "0.03 (0.02 to 0.04)"
 
 
 def test_the_worst_row_of_each_design() -> None:
@@ -81,4 +81,4 @@ def test_a_range_that_does_not_contain_the_maximum_is_not_a_plus_or_minus() -> N
     said = sentence(found, row)
     assert "joint, −81 to −12 % of stress: 0 to 0.02" in said
     assert "mesh, ±1 % of stress" in said
-    assert risks_grid(found).body[0][-1] == "0 to 0.02 (stress −81 to −12 %)"
+    assert risks_table(found).grid().body[0][-1] == "0 to 0.02 (stress −81 to −12 %)"

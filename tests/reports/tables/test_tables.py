@@ -5,6 +5,7 @@ import json
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from rich.console import Console
 
 from reports.data.results import Results
 from reports.format.files.csv import cell, harmless
+from reports.tables.column import Table
 from reports.tables.json_results import to_json, write_json
 from reports.tables.loads.motion import (
     beam_check_table,
@@ -21,11 +23,9 @@ from reports.tables.loads.motion import (
 )
 from reports.tables.published import published_reactions_table, write_published_reactions
 from reports.tables.strength.safety_factors import (
-    safety_factor_rows,
     safety_factors_table,
     write_safety_factors,
 )
-from reports.tables.table import Table
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
 from tests.support.each import each
@@ -53,7 +53,7 @@ def read(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def written(table: Table, directory: Path) -> list[dict[str, str]]:
+def written(table: Table[Any], directory: Path) -> list[dict[str, str]]:
     table.write(directory)
     return read(directory / f"{table.name}.csv")
 
@@ -247,7 +247,7 @@ def test_nothing_published_writes_nothing(results: Results, tmp_path: Path) -> N
 
 def test_rows_without_a_required_factor(results: Results) -> None:
     free = replace(results, required_safety_factor=None)
-    assert safety_factor_rows(free)[0]["required"] is None
+    assert safety_factors_table(free).records()[0]["required"] is None
 
 
 @pytest.mark.parametrize("width", [80, 120])

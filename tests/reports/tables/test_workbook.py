@@ -7,13 +7,14 @@ import re
 import zipfile
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
 from reports.data.results import Results
 from reports.tables.all import MAX_SHEET_ROWS, load_tables, sheets, stress_tables
-from reports.tables.table import Table
+from reports.tables.column import Table
 from reports.tables.workbook import write_workbook
 from tests.conftest import ROOT
 
@@ -51,12 +52,12 @@ def read(path: Path) -> tuple[dict[str, Sheet], dict[str, ElementTree.Element]]:
 
 
 @pytest.fixture(scope="module")
-def tables(results: Results) -> list[Table]:
+def tables(results: Results) -> list[Table[Any]]:
     return [*stress_tables(results), *load_tables(results)]
 
 
 def test_every_table_is_a_sheet_with_its_numbers(
-    results: Results, tables: list[Table], tmp_path: Path
+    results: Results, tables: list[Table[Any]], tmp_path: Path
 ) -> None:
     write_workbook(results, tables, tmp_path / "t.xlsx")
     sheets, raw = read(tmp_path / "t.xlsx")
@@ -81,7 +82,7 @@ def test_every_table_is_a_sheet_with_its_numbers(
         assert (pane.get("ySplit"), pane.get("state")) == ("1", "frozen")
 
 
-def test_long_tables_are_csv_alone(tables: list[Table]) -> None:
+def test_long_tables_are_csv_alone(tables: list[Table[Any]]) -> None:
     first = tables[0]
     row = first.rows[0]
     full, longer = (replace(first, rows=(row,) * n) for n in (MAX_SHEET_ROWS, MAX_SHEET_ROWS + 1))
@@ -90,7 +91,7 @@ def test_long_tables_are_csv_alone(tables: list[Table]) -> None:
 
 
 def test_the_first_sheet_lists_what_is_not_there(
-    results: Results, tables: list[Table], tmp_path: Path
+    results: Results, tables: list[Table[Any]], tmp_path: Path
 ) -> None:
     for left_out in (["motion", "joints"], []):
         write_workbook(results, tables, tmp_path / "t.xlsx", left_out)
@@ -99,7 +100,7 @@ def test_the_first_sheet_lists_what_is_not_there(
         assert ("motion.csv, joints.csv" in about) == bool(left_out)
 
 
-def test_headings_have_units(results: Results, tables: list[Table], tmp_path: Path) -> None:
+def test_headings_have_units(results: Results, tables: list[Table[Any]], tmp_path: Path) -> None:
     write_workbook(results, tables, tmp_path / "t.xlsx")
     sheets, _ = read(tmp_path / "t.xlsx")
     assert sheets["safety_factors"][0]["D"] == "max_von_mises [psi]"
@@ -126,7 +127,7 @@ def test_texts_are_never_run(results: Results, tmp_path: Path) -> None:
 
 
 def test_the_same_results_give_the_same_bytes(
-    results: Results, tables: list[Table], tmp_path: Path
+    results: Results, tables: list[Table[Any]], tmp_path: Path
 ) -> None:
     for name in ("a", "b"):
         write_workbook(results, tables, tmp_path / f"{name}.xlsx")
@@ -136,7 +137,7 @@ def test_the_same_results_give_the_same_bytes(
 UNITS = ("stress_unit", "force_unit", "moment_unit", "length_unit", "time_unit")
 
 
-def test_every_column_is_documented(tables: list[Table]) -> None:
+def test_every_column_is_documented(tables: list[Table[Any]]) -> None:
     """docs/output.md has a row for every table, with all its columns in their order but units."""
     text = (ROOT / "docs" / "output.md").read_text(encoding="utf-8")
     rows = {}
@@ -146,5 +147,5 @@ def test_every_column_is_documented(tables: list[Table]) -> None:
             for name in re.findall(r"`(\w+)`", names):
                 rows[name] = re.findall(r"`(\w+)`", columns)
     for table in tables:
-        told = [name for name in table.columns if name not in UNITS]
+        told = [name for name in table.keys if name not in UNITS]
         assert rows[table.name] == told, table.name

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from reports.data.results import Field, HandCheck, PinResult, Results, SingularZone
+from assess.margin import Margin
+from reports.data.results import Field, PinResult, Results, SingularZone
 from tests.support.results.made_up_run import make_results, shape
 
 SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design, 8-12"
@@ -35,15 +36,17 @@ def zones(turned: float = 0.0, governs: bool = True) -> tuple[SingularZone, ...]
     )  # fmt: skip
 
 
-def checks(time: float | None = None) -> tuple[HandCheck, ...]:
-    return (
-        HandCheck(
-            "single shear, mean", "gap", 0.0, time, 1234.5678901, 68127.3,
-            "V / A", SHIGLEY,
-        ),
-        HandCheck("bending", "drag brace A", 0.0, time, 0.0, 118000.0, "M c / I", SHIGLEY),
-        HandCheck("bearing", "strut A", 0.0, time, 250.0, None, "F / (d L)", SHIGLEY),
-    )  # fmt: skip
+def checks(time: float | None = None) -> tuple[Margin, ...]:
+    """Against yield, in the units of the made-up run."""
+    made = (
+        ("single shear, mean", "gap", 1234.5678901, 68127.3, "V / A"),
+        ("bending", "drag brace A", 0.0, 118000.0, "M c / I"),
+        ("bearing", "strut A", 250.0, None, "F / (d L)"),
+    )
+    return tuple(
+        Margin(method, SHIGLEY, "hand", "limit", 1.0, stress, strength, at=at, time=time, formula=f)
+        for method, at, stress, strength, f in made
+    )
 
 
 def row(case: str, verdict: str, factor: float, meets: bool | None, **more: object) -> PinResult:
@@ -62,9 +65,9 @@ def row(case: str, verdict: str, factor: float, meets: bool | None, **more: obje
 def judged() -> Results:
     """Rows of pin A with all verdicts; 1.5 is required."""
     rows = (
-        row("fine", "converged", 3.0, True, singular_at=zones(0.3, False), hand_checks=checks()),
-        row("sharp", "singular", 2.5, None, singular_at=zones(), hand_checks=checks()),
-        row("weak", "singular", 1.25, False, singular_at=zones(), hand_checks=checks(2.0)),
+        row("fine", "converged", 3.0, True, singular_at=zones(0.3, False), margins=checks()),
+        row("sharp", "singular", 2.5, None, singular_at=zones(), margins=checks()),
+        row("weak", "singular", 1.25, False, singular_at=zones(), margins=checks(2.0)),
         row("flows", "singular", 0.8, False, singular_at=zones()),
         row("beyond", "converged", 0.9, False),
         row("loose", "unconverged", 2.0, None),

@@ -298,12 +298,12 @@ bushing = { thickness = 2, material = "bronze" }
 [pin.P.lug.M]
 """
     found = run(load_study(study(tmp_path, given)))["P", "pull"]
-    checks = {(c.name, c.at): c.stress for c in found.hand_checks if c.name.startswith("lug")}
+    checks = {(c.method, c.at): c.demand for c in found.hand_checks if c.method.startswith("lug")}
     assert set(checks) == {
         ("lug, net section", "L"), ("lug, shear-out", "L"), ("lug, bearing", "L"),
     }  # fmt: skip
     assert checks["lug, net section", "L"] == pytest.approx(25000.0 / ((60.0 - 24.0) * 10.0))
-    assert "bending, joint model" in {c.name for c in found.hand_checks}
+    assert "bending, joint model" in {c.method for c in found.hand_checks}
 
 
 @pytest.mark.slow
@@ -338,7 +338,7 @@ def test_a_pin_on_a_structure_has_the_hand_checks_of_its_joint(tmp_path: Path) -
     path = study(tmp_path, "lug.gap = {}\nlug.M = { outer_diameter = 50 }")
     found = run(load_study(path))["P", "pull"]
     assert {
-        c.name: c.basis for c in found.hand_checks if c.governs and "shear, mean" not in c.name
+        c.method: c.basis for c in found.hand_checks if c.governs and "shear, mean" not in c.method
     } == {
         **dict.fromkeys(("lug, net section", "lug, shear-out", "lug, bearing", "bearing"), ""),
         **dict.fromkeys(

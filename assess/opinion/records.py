@@ -1,8 +1,8 @@
-"""Results of hand checks and of the check against beam theory."""
+"""Results of the check against beam theory."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,59 +15,9 @@ from pinbase.dimensions import (
     Moments,
     Stress,
     Stresses,
-    Time,
 )
 
-JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
-COMPARISON_SUFFIX = "for comparison"
 COMPARISON_WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
-
-
-@dataclass(frozen=True)
-class HandCheck:
-    """A hand check, `name` ("bending", "single shear", ..), where and when it is largest over
-    the case: stress and strength in Pa (None without a yield strength), formula and source.
-
-    at: the segment, by the name of its surface; z: there, m; time: s, None without a motion.
-    material: whose strength it is. ruptures: the strength of that material ("shear", "bearing",
-    "ultimate") that the stress reaches at rupture; empty where that is no measure of it. basis:
-    where the force or moment comes from, if it is not from even loads. governs: whether it may; if
-    not, it is there for comparison.
-    """
-
-    name: str
-    at: str
-    z: Length
-    time: Time | None
-    stress: Stress
-    strength: Stress | None
-    formula: str
-    source: str
-    material: str = ""
-    ruptures: str = ""
-    basis: str = ""
-    governs: bool = True
-
-    @property
-    def factor(self) -> float | None:
-        """Factor of safety."""
-        return self.strength / self.stress if self.strength and self.stress else None
-
-    @property
-    def shown(self) -> str:
-        """The name, and the joint model where it takes the section forces of that."""
-        return shown_with_basis(self.name, self.basis)
-
-    @property
-    def compared(self) -> HandCheck:
-        """The same for comparison only."""
-        return replace(self, name=f"{self.name}, {COMPARISON_SUFFIX}", governs=False)
-
-
-def shown_with_basis(name: str, basis: str) -> str:
-    """The name of a check, and the joint model where it takes the section forces of that."""
-    named = JOINT_MODEL_BASIS in name or not basis.startswith(JOINT_MODEL_BASIS)
-    return name if named else f"{name} ({JOINT_MODEL_BASIS})"
 
 
 @dataclass(frozen=True)

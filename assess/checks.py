@@ -1,0 +1,86 @@
+"""All checks of strength, and the margins that they give.
+
+A new check is a file with a `assess.check.Check`, its line in CHECKS, and its test: tables, page
+and terminal then have it. The order is that of margins.csv.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+
+from assess.check import Check, Scope
+from assess.margin import Margin, for_comparison
+from assess.situation import Situation
+from assess.strength import eurocode_pins
+from assess.strength.collapse import collapse
+from assess.strength.fatigue_life import fatigue_life
+from assess.strength.hand_checks import (
+    bearing,
+    bending,
+    double_shear,
+    mean_shear,
+    neutral_axis_shear,
+)
+from assess.strength.lug_checks import lug_checks
+from assess.strength.model_stress import model_rupture, model_yield
+from assess.strength.plastic_bending import plastic_bending
+from assess.strength.section_forces import with_section_forces
+
+CHECKS: tuple[Check, ...] = (
+    model_yield,
+    model_rupture,
+    collapse,
+    mean_shear,
+    neutral_axis_shear,
+    double_shear,
+    bearing,
+    bending,
+    lug_checks,
+    eurocode_pins.eurocode_bearing,
+    eurocode_pins.eurocode_bearing_replaceable,
+    eurocode_pins.eurocode_contact_replaceable,
+    plastic_bending,
+    eurocode_pins.eurocode_shear,
+    eurocode_pins.eurocode_bending,
+    eurocode_pins.eurocode_shear_and_bending,
+    eurocode_pins.eurocode_bending_replaceable,
+    fatigue_life,
+)
+
+
+def margins_of(
+    s: Situation, scope: Scope = "case", checks: Iterable[Check] | None = None
+) -> list[Margin]:
+    """All margins of a situation, at every place and level, in the order of the checks.
+
+    scope: of the checks that are made. checks: CHECKS if None.
+
+    Raises: as `with_section_forces`.
+    """
+    wanted = CHECKS if checks is None else checks
+    made = [check for check in wanted if check.scope == scope and _can_be_made(check, s)]
+    every = list(with_section_forces(s)) if any(map(_takes_forces, made)) else []
+    # Neighbours that take section forces are made together, once with each kind of these.
+    return [
+        margin
+        for repeated, together in groupby(made, _takes_forces)
+        for margin in _together(list(together), every if repeated else [s])
+    ]
+
+
+def _takes_forces(check: Check) -> bool:
+    return check.takes == "section forces"
+
+
+def _can_be_made(check: Check, s: Situation) -> bool:
+    """Whether the situation has what a check takes."""
+    if check.takes == "results":
+        return True
+    return s.profile is not None and (s.complete or check.takes == "loads")
+
+
+def _together(checks: list[Check], situations: Iterable[Situation]) -> Iterator[Margin]:
+    for s in situations:
+        for check in checks:
+            yield from check(s) if s.governs else map(for_comparison, check(s))

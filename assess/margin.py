@@ -1,0 +1,147 @@
+"""The margin of safety of one check: MS = allowable / (factor x demand) - 1."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import Annotated, Literal
+
+from pinbase.dimensions import Length, Time
+
+Kind = Literal["hand", "clause", "model", "collapse", "fatigue", "contact"]
+Level = Literal["limit", "ultimate"]
+RATIO_DIMENSION = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
+JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
+COMPARISON_SUFFIX = "for comparison"
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The margin of one check at one place and one level, at the instant when it is worst.
+
+    method: the check, in words. clause: where it is printed. kind: of what the check is made; hand
+    checks are listed beside the model's result, too. level: the loads to which `factor` leads, by
+    which the demand is multiplied.
+    demand: under the loads of the study, and allowable, both of a `dimension` ("stress", "force",
+    "moment" or "1"); None where they are not known.
+    at: a band or segment, empty for the whole pin. z: there, m. time: s, None without a motion.
+    material: whose strength the allowable is, by name. basis: how the demand was found. formula: of
+    the demand, for people.
+    needs: what is missing where the check was not made. governs: whether the margin counts; if not,
+    it is there for comparison.
+    """
+
+    method: str
+    clause: str
+    kind: Kind
+    level: Level
+    factor: float
+    demand: Annotated[float, "own"] | None
+    allowable: Annotated[float, "own"] | None
+    dimension: str = "stress"
+    at: str = ""
+    z: Length | None = None
+    time: Time | None = None
+    material: str = ""
+    basis: str = ""
+    formula: str = ""
+    needs: str = ""
+    governs: bool = True
+
+    @property
+    def instead(self) -> dict[str, str]:
+        """The dimension of the demand, for the conversion of units (reports.data.in_units)."""
+        return {"own": self.dimension}
+
+    @property
+    def shown(self) -> str:
+        """The method, and the joint model where it takes the section forces of that."""
+        named = JOINT_MODEL_BASIS in self.method or not self.basis.startswith(JOINT_MODEL_BASIS)
+        return self.method if named else f"{self.method} ({JOINT_MODEL_BASIS})"
+
+    @property
+    def safety_factor(self) -> float | None:
+        """allowable / demand, without the factor on loads; None where either is zero or unknown."""
+        return self.allowable / self.demand if self.allowable and self.demand else None
+
+    @property
+    def utilisation(self) -> float | None:
+        """factor x demand / allowable; None where the check was not made."""
+        if self.demand is None or self.allowable is None:
+            return None
+        return self.factor * self.demand / self.allowable if self.allowable > 0.0 else math.inf
+
+    @property
+    def margin(self) -> float | None:
+        """Margin of safety; infinite without a demand, None where the check was not made."""
+        used = self.utilisation
+        if used is None:
+            return None
+        return 1.0 / used - 1.0 if used > 0.0 else math.inf
+
+    @property
+    def used(self) -> float:
+        """The utilisation, for sorting: below all others where the check was not made."""
+        used = self.utilisation
+        return -1.0 if used is None else used
+
+    @property
+    def listed_by_hand(self) -> bool:
+        """Whether it is a row of the hand checks: these compare a stress with yield."""
+        return self.kind == "hand" and self.level == "limit" and self.demand is not None
+
+
+@dataclass(frozen=True)
+class PinMargin:
+    """A margin of a pin in a case; case: empty for one over several cases, a spectrum."""
+
+    pin: str
+    case: str
+    margin: Margin
+
+    @property
+    def used(self) -> float:
+        """The utilisation, as `Margin.used`."""
+        return self.margin.used
+
+
+def for_comparison(margin: Margin) -> Margin:
+    """The same margin for comparison only."""
+    return replace(margin, method=f"{margin.method}, {COMPARISON_SUFFIX}", governs=False)
+
+
+def skipped(
+    method: str, clause: str, kind: Kind, level: Level, factor: float, needs: str
+) -> Margin:
+    """The margin of a check that was not made, and what it needs."""
+    return Margin(method, clause, kind, level, factor, None, None, needs=needs)
+
+
+def worst_places(margins: Iterable[Margin]) -> list[Margin]:
+    """The worst place of every check, at each level and for each basis of its demand, in the order
+    in which the checks come first. Of checks that were not made only what they need is left; the
+    formula of a demand joins its basis.
+    """
+    worst: dict[tuple[str, Level, str, str], Margin] = {}
+    for margin in margins:
+        key = margin.method, margin.level, margin.needs, margin.basis
+        if key not in worst or margin.used > worst[key].used:
+            worst[key] = margin
+    return [_without_place(m) if m.needs else _with_formula(m) for m in worst.values()]
+
+
+def _with_formula(margin: Margin) -> Margin:
+    basis = "; ".join(x for x in (margin.basis, margin.formula) if x)
+    return replace(margin, basis=basis, formula="")
+
+
+def _without_place(margin: Margin) -> Margin:
+    return replace(
+        margin, demand=None, allowable=None, at="", z=None, time=None, basis="", formula=""
+    )
+
+
+def strength_key(material: str, which: str) -> str:
+    """The key of a study that would give a strength."""
+    return f"material.{material}.{which}_strength"

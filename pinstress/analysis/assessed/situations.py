@@ -1,0 +1,146 @@
+"""The situation of each row and its margins of safety, and the arms of its bending moment."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from assess.checks import margins_of
+from assess.margin import Margin, PinMargin, skipped, worst_places
+from assess.plastic.records import LimitLoad
+from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
+from assess.strength.bending_arms import BendingArms, bending_arms
+from fea.core.peak import Maximum
+from fea.core.pin_loads import PinLoads
+from fea.support.lugs.fit import on_structure
+from fea.support.records import JointResult
+from geometry import CutPin, Pin
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+
+FORMULA_CHECKS = "checks by formula"
+FORMULA_KINDS = "hand", "clause"
+FORCE_OF_CLAMP = (
+    "the force that a clamp takes, which contact with the lug instead of the clamp gives"
+)
+LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """What was made of one pin in one case.
+
+    margins: of every check at every place and level; these have the hand checks. worst: the worst
+    place of each check, of those that count. arms: None where formulas do not apply.
+    """
+
+    margins: tuple[Margin, ...]
+    worst: tuple[PinMargin, ...]
+    arms: BendingArms | None = None
+
+
+def assessed(
+    study: Study,
+    task: Task,
+    peak: Maximum,
+    joint: JointResult | None,
+    limit: LimitLoad | None = None,
+) -> Assessed:
+    """The margins of a row, by formula and by the model. A pin that is cut is checked as if it were
+    not.
+    """
+    loads = next(x for x in task.loads if x.case == peak.case)
+    required = study.table.analysis.required_safety_factor
+    s, why = _situation(study, task, loads, joint)
+    s = replace(s, row=SolvedRow(peak, limit, required))
+    rigid = peak.verdict == "rigid"
+    if s.complete and rigid and not why:
+        why = "supports of the pin, or loads in equilibrium"
+    margins = margins_of(s)
+    counted = margins
+    if s.complete and (rigid or not s.across.any()):
+        counted = [m for m in margins if m.kind not in FORMULA_KINDS]
+    worst = worst_places([*counted, *_not_made(s, why)])
+    return Assessed(
+        tuple(margins),
+        tuple(PinMargin(peak.pin, peak.case, m) for m in worst),
+        None if why else _arms(s, task, peak, joint),
+    )
+
+
+def load_factors(study: Study) -> LoadFactors:
+    """Those of a study."""
+    a = study.table.analysis
+    return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
+
+
+def factor_assumption(study: Study, found: Sequence[Assessed]) -> tuple[str, ...]:
+    """A sentence on the factors that the study does not give, if any margin depends on them."""
+    table = study.table.analysis
+    assumed = [key for key in LOAD_FACTOR_KEYS if key not in table.model_fields_set]
+    if not assumed or not any(x.worst for x in found):
+        return ()
+    values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
+    return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)
+
+
+def _situation(
+    study: Study, task: Task, loads: PinLoads, joint: JointResult | None
+) -> tuple[Situation, str]:
+    """The situation, and why it has no profile or, where neither the joint nor equilibrium gives
+    all forces, is not complete; empty where it has and is.
+    """
+    table = study.table.pin[task.pin.name]
+    sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
+    even = study.table.analysis.bending_moment == "formula"
+    profile = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
+    if not isinstance(profile, Pin):
+        s = Situation(None, task.material, loads, factors=load_factors(study))
+        return s, "a profile, which a pin from a file does not have"
+    s = Situation(
+        profile, task.material, loads, task.clamps, task.given, load_factors(study),
+        table.replaceable, even_governs=even, sized=sized,
+    )  # fmt: skip
+    along = joint.along if joint else None
+    now = loads
+    if along is not None and along.times is not None and len(along.times) != len(loads):
+        now = task.between[loads.case](along.times)
+    structure = [x.connection for x in task.lugs if x.connection not in profile.connections]
+    simple = with_supports(profile, now, structure)
+    whole = with_solved(now, structure, along) if structure and along else simple
+    if whole is None:
+        names = ", ".join(structure)
+        why = f"the forces of the structure's lugs {names}, which equilibrium does not give"
+        return replace(s, complete=False), why
+    pin = on_structure(profile, task.lugs) if structure else profile
+    simple = None if simple is whole else simple
+    return replace(s, profile=pin, loads=whole, joint=along, simple=simple), ""
+
+
+def _not_made(s: Situation, why: str) -> Iterable[Margin]:
+    """The checks that a situation does not allow, and those of lugs at clamps, whose force no
+    formula has. why: what the checks by formula need.
+    """
+    lacking = {FORMULA_CHECKS: why} if why else {}
+    if s.profile is not None:
+        clamped = {s.profile.surface(name) for name in s.clamps}
+        lacking |= {
+            f"lug of {lug.connection}: net section, shear-out, bearing": FORCE_OF_CLAMP
+            for lug in s.sized
+            if lug.connection in clamped
+        }
+    factor = s.factors.at("limit")
+    return [skipped(name, "", "hand", "limit", factor, needs) for name, needs in lacking.items()]
+
+
+def _arms(s: Situation, task: Task, peak: Maximum, joint: JointResult | None) -> BendingArms:
+    """At the governing instant, which is one of the joint's."""
+    now = s.by_formula.at(np.array([0]))
+    if peak.time is not None and s.joint is None and peak.case in task.between:
+        now = task.between[peak.case](np.array([peak.time]))
+    elif peak.time is not None and s.by_formula.times is not None:
+        now = s.by_formula.at(np.array([np.abs(s.by_formula.times - peak.time).argmin()]))
+    moment, model = (joint.bending_moment, joint.model) if joint else (None, "")
+    return bending_arms(replace(s, loads=now, simple=None), moment, model)

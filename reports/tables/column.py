@@ -1,0 +1,234 @@
+"""Columns and tables, each described once for every writer: CSV, Parquet, workbook, JSON, Markdown,
+terminal, page, PDF.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+from operator import attrgetter
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from reports.data.results import Floats, PinResult, Units
+from reports.format.files import markdown
+from reports.format.files.csv import Cell, write_csv
+from reports.format.files.parquet import write_parquet
+from reports.format.numbers import DASH, engineering, short
+from reports.format.plain import plain
+from reports.format.units import unit_name
+
+MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
+LINES_AT_ONCE = 4096  # lines of an array that are Python's numbers at a time
+
+R = TypeVar("R")
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Column(Generic[R]):
+    """One column for every writer.
+
+    key: its name in files; empty: for people only.
+    cell: the number in the results' units with every digit, text, truth or None of a row.
+    dimension: of reports.format.units, or a function of the row where it differs from row to row.
+    heading: for people, the unit is added; empty: in files only.
+    text: for people, where more than the number is shown.
+    numeric: whether people read it flush right.
+    rank: the highest goes first on a narrow terminal, 0 never.
+    drop_if_empty: whether people do not see it where no row has a value.
+    in_json: whether it is also a key of the row in results.json.
+    """
+
+    key: str
+    cell: Callable[[R], Any]
+    dimension: str | Callable[[R], str] = ""
+    heading: str = ""
+    text: Callable[[R], str] | None = None
+    numeric: bool = True
+    rank: int = 0
+    drop_if_empty: bool = False
+    in_json: bool = False
+
+    def unit(self, units: Units) -> str:
+        """The unit of its numbers; empty for texts, ratios, and what differs from row to row."""
+        return "" if callable(self.dimension) else unit_name(self.dimension, units)
+
+    def headed(self, units: Units | None) -> str:
+        """The heading for people, with the unit where that is known."""
+        unit = self.unit(units).replace(" ", "·") if units else ""
+        heading = f"{self.heading} [{unit}]" if unit else self.heading
+        return heading.replace("\n ", "\n").strip()
+
+    def shown(self, row: R) -> str:
+        """The text for people: four digits, a time as it was given, a dash for no value."""
+        if self.text is not None:
+            return self.text(row)
+        value = self.cell(row)
+        if value is None:
+            return DASH
+        if isinstance(value, str):
+            return value
+        if isinstance(value, bool | np.bool_):
+            return "yes" if value else "no"
+        return short(value) if self.dimension == "time" else engineering(value)
+
+
+def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
+    """Columns of files that are attributes of the row: `names` are "attribute" or "key=attribute",
+    the attribute perhaps dotted (its last part is the key), all of one dimension.
+    """
+    pairs = (name.rpartition("=") for name in names.split())
+    return [
+        Column(key or name.rpartition(".")[2], attrgetter(name), dimension, **same)
+        for key, _, name in pairs
+    ]
+
+
+def texts(names: str, **same: Any) -> list[Column[Any]]:
+    """The same of texts that people read under the key."""
+    columns = fields(names, numeric=False, **same)
+    return [replace(column, heading=column.key) for column in columns]
+
+
+def unit_columns(names: str) -> list[Column[Any]]:
+    """Columns of files that name the units, as in "stress time", of rows that have `units`."""
+    return [Column(f"{name}_unit", attrgetter(f"units.{name}")) for name in names.split()]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table as text cells; numeric: which columns are flush right."""
+
+    head: list[str]
+    body: list[list[str]]
+    numeric: list[bool]
+
+    def markdown(self) -> str:
+        """The same in Markdown, its cells escaped."""
+        return markdown.table(self.head, self.body, self.numeric)
+
+
+@dataclass(frozen=True)
+class Table(Generic[R]):
+    """Rows with what is written of them. name: of its CSV file, without the ending."""
+
+    name: str
+    columns: Sequence[Column[R]]
+    rows: Sequence[R]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def filed(self) -> list[Column[R]]:
+        """The columns that files have."""
+        return [column for column in self.columns if column.key]
+
+    @property
+    def keys(self) -> list[str]:
+        """The names of the columns in files."""
+        return [column.key for column in self.filed]
+
+    def values(self, column: Column[R]) -> Sequence[Cell]:
+        """A column's cells."""
+        return [column.cell(row) for row in self.rows]
+
+    def cells(self) -> Iterator[Sequence[Cell]]:
+        """The cells row by row."""
+        cells = [column.cell for column in self.filed]
+        return ([cell(row) for cell in cells] for row in self.rows)
+
+    def write(self, directory: Path) -> Path:
+        """Write it into a folder: as CSV, or as Parquet where spreadsheets could not open it."""
+        large = len(self) > MAX_CSV_ROWS
+        path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
+        (write_parquet if large else write_csv)(path, self.keys, self.cells())
+        return path
+
+    def records(self) -> list[dict[str, Any]]:
+        """The rows as plain values by the keys of the columns; what is not finite is None."""
+        return [dict(zip(self.keys, map(plain, row), strict=True)) for row in self.cells()]
+
+    def for_people(self) -> list[tuple[Column[R], list[str]]]:
+        """The columns that people see, with their texts."""
+        shown = [(c, [c.shown(row) for row in self.rows]) for c in self.columns if c.heading]
+        return [(c, texts) for c, texts in shown if not c.drop_if_empty or {*texts} - {DASH}]
+
+    def grid(self, units: Units | None = None) -> Grid:
+        """The table as people read it; units: None where the headings have them."""
+        shown = self.for_people()
+        body = [list(row) for row in zip(*(texts for _, texts in shown), strict=True)]
+        return Grid([c.headed(units) for c, _ in shown], body, [c.numeric for c, _ in shown])
+
+
+class ArrayTable(Table[R]):
+    """A table of millions of lines: each of its rows is many lines, of which a cell is an array, a
+    list, or one value for all. The first column with an array says how many.
+    """
+
+    def __len__(self) -> int:
+        return sum(self._lines(row) for row in self.rows)
+
+    def _lines(self, row: R) -> int:
+        return next(
+            len(cells)
+            for column in self.columns
+            if isinstance(cells := column.cell(row), np.ndarray | list)
+        )
+
+    def values(self, column: Column[R]) -> Sequence[Cell]:
+        each = ((column.cell(row), self._lines(row)) for row in self.rows)
+        return list(chain(*(_listed(cells, 0, count) for cells, count in each)))
+
+    def cells(self) -> Iterator[Sequence[Cell]]:
+        for row in self.rows:
+            columns, count = [c.cell(row) for c in self.filed], self._lines(row)
+            for first in range(0, count, LINES_AT_ONCE):
+                last = min(first + LINES_AT_ONCE, count)
+                yield from zip(*(_listed(cells, first, last) for cells in columns), strict=True)
+
+
+def _listed(cells: Floats | list[Cell] | Cell, first: int, last: int) -> list[Cell]:
+    """Some of the cells, of one value for all as often as needed."""
+    if isinstance(cells, np.ndarray):
+        some: list[Cell] = cells[first:last].tolist()
+        return some
+    return cells[first:last] if isinstance(cells, list) else [cells] * (last - first)
+
+
+def json_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
+    """A row as JSON, with the keys of the columns."""
+    return {column.key: plain(column.cell(row)) for column in columns}
+
+
+@dataclass(frozen=True)
+class PinRow(Generic[T]):
+    """A row about something of a pin in a case, with the units of the results."""
+
+    pin: PinResult
+    units: Units
+    of: T
+
+
+PIN_AND_CASE = fields("pin=pin.pin case=pin.case")  # of a PinRow
+
+
+def read_only(
+    heading: str, cell: Callable[[R], Any], dimension: str = "", **more: Any
+) -> Column[R]:
+    """A column that people read and no file has."""
+    return Column("", cell, dimension, heading, **more)
+
+
+def grid_of(table: Table[Any] | None, units: Units) -> Grid | None:
+    """A table as people read it; None without rows."""
+    return table.grid(units) if table is not None and table.rows else None
+
+
+def in_order(columns: Iterable[Column[R]], keys: Sequence[str]) -> list[Column[R]]:
+    """Columns in the order of their keys; those whose key is not named come last."""
+    return sorted(columns, key=lambda c: keys.index(c.key) if c.key in keys else len(keys))
