@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fea.core.requirement import Model
 from pinbase.processes.pool import processes
 from pinbase.processes.threads import one_thread
+from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import keep_none, solve_tasks
@@ -179,8 +180,11 @@ def run(
     return solve(plan, fields=fields, jobs=jobs)
 
 
-def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResults:
-    """Solve what `prepare` returned; fields, jobs: as in `run`.
+def solve(
+    plan: Plan, *, fields: bool = False, jobs: int | None = 1, cache: OutcomeStore | None = None
+) -> RunResults:
+    """Solve what `prepare` returned; fields, jobs: as in `run`. cache: where pins that were solved
+    before are found, and the others kept.
 
     Raises: InputError where the study has [fatigue] and its extra is not installed, and for what is
     no number of jobs.
@@ -194,6 +198,8 @@ def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResul
     require_count("jobs", jobs)
     most = 1 if fields else processes(jobs)
     with one_thread():
-        results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
+        results = results_of(
+            plan, solve_tasks(plan, keep if fields else keep_none, jobs=most, cache=cache)
+        )
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
     return RunResults(**plain, fields=kept, plan=plan)
