@@ -1,5 +1,5 @@
-"""Work of engines that may take their process with them (V8 of Vega, typst, VTK): it is done in
-processes of its own, so that whatever happens there costs that piece of work alone.
+"""Run engines that may take their process with them (V8 of Vega, typst, VTK) in processes of their
+own, so that a crash costs that piece of work alone.
 """
 
 from __future__ import annotations
@@ -21,7 +21,11 @@ NO_MEMORY_REASON = "there was not enough memory"
 
 @dataclass(frozen=True)
 class Failed:
-    """What comes of work that failed, and why. damaged: whether a file that it read is."""
+    """The outcome of work that failed.
+
+    reason: why it failed.
+    damaged: whether a file that it read is damaged.
+    """
 
     reason: str
     damaged: bool = False
@@ -33,9 +37,11 @@ class _Made(Generic[T]):
 
 
 def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T | Failed]:
-    """What each of the functions returns, by names for messages. Where processes are started anew
-    the functions must pickle. What they print is dropped. seconds: of processor time that each may
-    take; what hangs would take all.
+    """Run functions in processes of their own and return their results or failures.
+
+    work: names for messages, and functions; these must pickle where processes are started anew.
+    Anything that they print is dropped.
+    seconds: processor time that each function may take, s; one that hangs would take all of it.
 
     Raises: KeyboardInterrupt.
     """
@@ -46,7 +52,10 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T |
 def guarded(
     jobs: Sequence[Job[T]], anew: bool = False, watch: Watch | None = None
 ) -> list[T | Failed]:
-    """The same of jobs, which may report progress; anew, watch: as `in_parallel` has them."""
+    """Run jobs, which may report progress, as `apart` runs functions.
+
+    anew, watch: as in `in_parallel`.
+    """
     inner: list[Job[_Made[T] | Failed]] = [
         Job(job.name, partial(_guarded, job.work), job.limits) for job in jobs
     ]
@@ -76,7 +85,7 @@ def _untold(work: Callable[[], T], _: Tell) -> T:
 
 
 def _guarded(work: Callable[[Tell], T], tell: Tell) -> _Made[T] | Failed:
-    """Done in the other process."""
+    """Run the work in the other process and return its result or failure."""
     _quiet()
     try:
         return _Made(work(tell))
@@ -99,7 +108,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _quiet() -> None:
-    """Let nothing that a library prints reach the terminal: what happened is returned."""
+    """Keep libraries from printing to the terminal; the outcome is returned instead."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     for descriptor in (1, 2):
         os.dup2(nothing, descriptor)
