@@ -46,7 +46,7 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T |
     Raises: KeyboardInterrupt.
     """
     limits = Limits(seconds)
-    return guarded([Job(name, partial(_untold, made), limits) for name, made in work])
+    return guarded([Job(name, partial(_untold, function), limits) for name, function in work])
 
 
 def guarded(
@@ -61,17 +61,17 @@ def guarded(
     ]
     try:
         # Two at a time: one would be this process.
-        found = in_parallel(inner, 2, anew=anew or not can_fork(), watch=watch)
+        outcomes = in_parallel(inner, 2, anew=anew or not can_fork(), watch=watch)
     except (OSError, MemoryError) as error:  # no further process can be started
         why = NO_MEMORY_REASON if isinstance(error, MemoryError) else str(error.strerror)
         return [Failed(f"no process could be started for it ({why})") for _ in jobs]
-    told: list[T | Failed] = []
-    for one in found:
+    results: list[T | Failed] = []
+    for one in outcomes:
         if isinstance(one, ProcessDied):
-            told.append(Failed(_reason(one)))
+            results.append(Failed(_reason(one)))
         else:
-            told.append(one.value if isinstance(one, _Made) else one)
-    return told
+            results.append(one.value if isinstance(one, _Made) else one)
+    return results
 
 
 def _reason(died: ProcessDied) -> str:

@@ -24,9 +24,9 @@ class Unfinished(KeyboardInterrupt):
 def listen() -> None:
     """Raise KeyboardInterrupt at the first interrupt from now on, and forget earlier ones."""
     forget()
-    for each in INTERRUPT_SIGNALS:
-        if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
-            signal.signal(each, _interrupt)
+    for number in INTERRUPT_SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup, or a job in the background
+            signal.signal(number, _interrupt)
 
 
 def forget() -> None:
@@ -37,8 +37,8 @@ def forget() -> None:
 
 def ignore() -> None:
     """Ignore all interrupts from now on."""
-    for each in INTERRUPT_SIGNALS:
-        signal.signal(each, signal.SIG_IGN)
+    for number in INTERRUPT_SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def came() -> bool:

@@ -127,7 +127,7 @@ def in_parallel(
     if most == 1:
         return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
     waiting = list(reversed(range(len(jobs))))
-    found: dict[int, T | ProcessDied] = {}
+    results: dict[int, T | ProcessDied] = {}
     sends = anew or portable()
 
     def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
@@ -141,15 +141,15 @@ def in_parallel(
         limits = jobs[number].limits
         if isinstance(value, ProcessDied) and limits and (limit := passed(value.status, limits)):
             value = ProcessDied(limit, value.status, limited=True)
-        found[number] = value
+        results[number] = value
 
     serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
 
     def show(doing: str) -> None:
-        progress(doing, len(found) / len(jobs))
+        progress(doing, len(results) / len(jobs))
 
     served(serve, take, give, most, show, lambda: not sends, watch)
-    return [found[i] for i in range(len(jobs))]
+    return [results[i] for i in range(len(jobs))]
 
 
 def served(
