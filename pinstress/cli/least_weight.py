@@ -164,7 +164,9 @@ def _row(
 
 
 def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
-    """Explain why the factor is not reached at a probability; empty if it is, or none is requested."""
+    """Explain why the factor is not reached at a probability; empty if it is, or none is
+    requested.
+    """
     factors = {case: x for (name, case), x in design.at.items() if name == pin}
     unknown = [case for case, x in factors.items() if not math.isfinite(x)]
     low = [case for case, x in factors.items() if x < aim.required * (1.0 - 1e-9)]

@@ -122,7 +122,9 @@ def unneeded(where: Path) -> Iterator[None]:
 
 
 def lost() -> str | None:
-    """Explain why requested output did not reach standard output; "" if the reader closed the pipe."""
+    """Explain why requested output did not reach standard output; "" if the reader closed the
+    pipe.
+    """
     outlet = _failed()
     return reason(outlet) if outlet else None
 
