@@ -208,13 +208,13 @@ def _singular(stress: PinStress) -> bool:
     return any(peak.verdict == "singular" for peak in stress.solved[0].peaks)
 
 
-def as_it_is(study: Study, aim: WeightGoal, found: Lightest, why: str) -> Lightest:
+def as_it_is(study: Study, aim: WeightGoal, result: Lightest, why: str) -> Lightest:
     """Return the pin as it is in the study in place of a result that is decided worse."""
-    shape = VariedShape(study, pin_of(study, found.pin), aim.vary, aim.limits)
+    shape = VariedShape(study, pin_of(study, result.pin), aim.vary, aim.limits)
     values = {d.key: d.value for d in shape.dimensions} or None
     scale = 1.0 if values is None else None
     return Lightest(
-        found.pin, values, scale, found.before, found.before, solved=found.solved,
+        result.pin, values, scale, result.before, result.before, solved=result.solved,
         way=LEFT_AS_IT_IS + why,
     )  # fmt: skip
 

@@ -86,14 +86,14 @@ class Cluster:
                 raise lost_connection(self.address) from None
         return None
 
-    def require_same(self, found: Mapping[str, Mapping[str, str] | BaseException]) -> None:
+    def require_same(self, answers: Mapping[str, Mapping[str, str] | BaseException]) -> None:
         """Check the versions of workers.
 
-        found: versions by worker.
+        answers: versions by worker, or the error of asking it.
 
         Raises: InputError where workers have other versions.
         """
-        lines = [f"{who}: {other}" for who, has in found.items() if (other := self._other(has))]
+        lines = [f"{who}: {other}" for who, has in answers.items() if (other := self._other(has))]
         if lines:
             raise other_versions(lines)
 

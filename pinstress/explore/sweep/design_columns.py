@@ -59,7 +59,7 @@ class Designs:
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Return which rows have no maximum, and a reason for it."""
+        """Return a mask of the rows that have no maximum but a reason for it."""
         lacking = np.isfinite(self.texts["reason"].values)
         for column in self.results:
             if column.key == "max_von_mises":
@@ -68,7 +68,7 @@ class Designs:
 
     @property
     def failed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Return which designs (D,) have such a row."""
+        """Return a mask (D,) of the designs that have such a row."""
         rows = self.failed_rows
         return np.logical_or.reduceat(rows, self.first[:-1]) if len(rows) else rows
 

@@ -58,7 +58,8 @@ class DesignRow:
     reason, code: why the verdict is not `converged`, for people and for programs.
     outcome, depends_on: as in a run (pinstress.explore.sweep.outcomes).
     governs: "surface" or "section", empty where the model has no places.
-    surface, section, beneath: largest stresses, Pa, the last with its error; None without one.
+    surface, section, beneath, beneath_error: largest stresses and the last one's error, Pa; None
+    where there is none.
     """
 
     pin: str
