@@ -79,4 +79,4 @@ def print_reliability(found: Reliability, console: Console) -> None:
 
 def ways_title(found: Reliability) -> str:
     """Of the table of all ways: what lies beneath contact is no part of it."""
-    return "By each way of finding it" + ", of surface and section" * found.deep
+    return "By method" + ", of surface and section" * found.deep
