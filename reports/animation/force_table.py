@@ -18,7 +18,10 @@ KEY_ARROW_SHARE = 0.45  # of the largest force, about: the arrow that explains t
 
 @dataclass(frozen=True)
 class Arrow:
-    """A force at the first frame: where, how long on the picture, and its direction in degrees."""
+    """The arrow of a force at the first frame.
+
+    at: its tail on the picture. length: on the picture. angle: its direction, degrees.
+    """
 
     colour: str
     at: tuple[float, float]
@@ -32,7 +35,7 @@ class Arrow:
 
 
 def arrows(scene: Scene) -> list[Arrow]:
-    """One per connection, in proportion to its force."""
+    """Return an arrow for each connection, with a length in proportion to its force."""
     found = []
     for c, ((fx, fy), joint) in enumerate(zip(scene.forces[0].tolist(), scene.tails, strict=True)):
         x, y = scene.joints[0, joint].tolist()
@@ -43,7 +46,7 @@ def arrows(scene: Scene) -> list[Arrow]:
 
 
 def key(scene: Scene) -> tuple[float, Arrow] | None:
-    """A round force and its arrow; None without forces."""
+    """Return a round force and its arrow for the key; None without forces."""
     if not scene.largest > 0.0:
         return None
     force = nice(KEY_ARROW_SHARE * scene.largest)
@@ -52,7 +55,7 @@ def key(scene: Scene) -> tuple[float, Arrow] | None:
 
 @dataclass(frozen=True)
 class Shown:
-    """How forces are written, and of each drive its position and its force."""
+    """The number formats of the forces and, for each drive, of its position and its force."""
 
     force: Fixed
     drives: list[tuple[Fixed, Fixed]]
@@ -74,7 +77,9 @@ class Shown:
 
 @dataclass(frozen=True)
 class ForceRow:
-    """A connection in the table: numbers at the first frame, and its largest with the time."""
+    """A connection in the table: its values at the first frame, its largest force and when it
+    occurs.
+    """
 
     name: str
     body: str
@@ -88,7 +93,7 @@ class ForceRow:
 
 
 def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
-    """One per connection, in the order of the joints."""
+    """Return a row for each connection, in the order of the joints."""
     table = scene.table
     if table is None:
         return []

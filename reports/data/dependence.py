@@ -1,10 +1,4 @@
-"""What the outcome of a row depends on: values within the study's own ranges at which it changes.
-
-A row is judged as its study describes it. What the study gives as a range (the impulse of a
-landing), or what is seldom known of a joint, may still turn "safe" into "fails"; then a factor that
-is met is met on a condition, and this names it. So does what lies beneath contact with lugs: a row
-is the larger of surface and section, and safe only if that meets the factor too.
-"""
+"""Dependence of a row's outcome on values within the study's own ranges."""
 
 from __future__ import annotations
 
@@ -27,8 +21,10 @@ IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 
 @dataclass(frozen=True)
 class Judged:
-    """A maximum with the lower and upper end of its error, the yield strength, and the stress that
-    the required factor permits, all of one unit; safe: as described.
+    """A maximum stress as it is judged, all in one stress unit.
+
+    low, high: the ends of its error. strength: yield strength.
+    permitted: the stress that the required factor permits. safe: the outcome as described.
     """
 
     low: float
@@ -39,8 +35,11 @@ class Judged:
     safe: bool
 
     def turns(self, stress: float, ends: tuple[float, float] | None = None) -> bool:
-        """Whether another maximum, with the same relative error or with its own ends, is judged
-        otherwise for certain (fails to safe), or possibly (safe to fails).
+        """Return whether another maximum changes the outcome.
+
+        It has the same relative error, or its own ends. From fails to safe the change must be
+        certain;
+        from safe to fails it suffices that it is possible.
         """
         low, high = ends or (stress * self.low / self.maximum, stress * self.high / self.maximum)
         return (high > self.permitted) if self.safe else (max(low, high) <= self.permitted)
@@ -52,8 +51,9 @@ def dependences(
     joint: JointResult | None,
     landing: LandingRange | None,
 ) -> tuple[Dependence, ...]:
-    """Everything that changes the outcome: what lies beneath contact, then the ranges, that of the
-    joint first; empty where nothing does.
+    """Return everything that changes the outcome; empty where nothing does.
+
+    The stress beneath contact comes first, then the ranges, that of the joint first.
     """
     if judged.maximum <= 0.0:
         return ()
@@ -64,7 +64,7 @@ def dependences(
 
 
 def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence, ...]:
-    """What the outcome of a row depends on; empty where it is not decided as described."""
+    """Return what the outcome of a row depends on; empty where it is not decided as described."""
     found = as_described(pin)
     if found == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
@@ -77,8 +77,10 @@ def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence
 
 
 def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependence]:
-    """Of a row that is safe as described: no distance from the edges of lugs makes it plainly so
-    while the field away from them says otherwise.
+    """Yield the stress beneath contact if it contradicts a row that is safe as described.
+
+    It does where no distance from the edges of lugs makes the row plainly safe, and the field away
+    from them exceeds the limit.
     """
     if contact is None or not judged.safe or contact.upper_end <= judged.permitted:
         return
@@ -93,8 +95,11 @@ def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependenc
 def _over_joint(
     judged: Judged, contact: ContactPlace | None, joint: JointResult | None
 ) -> Iterator[Dependence]:
-    """A row that fails is safe at another value only if what lies beneath is, too; one that is
-    safe, beneath, too, may no longer be so there.
+    """Yield the variations of the joint that change the outcome.
+
+    A row that fails is safe at another value only if the stress beneath contact is safe there, too.
+    A
+    row that is safe, beneath contact too, may no longer be so there.
     """
     over = joint.range if joint else None
     if joint is None or over is None:
@@ -129,8 +134,9 @@ def _over_joint(
 
 
 def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
-    """Of what lies beneath contact with something of the joint changed, with the relative error
-    that it has as the study has the joint.
+    """Return the upper end of the stress beneath contact with a variation of the joint.
+
+    Its relative error is that of the joint as the study has it.
     """
     if contact is None or not contact.beneath or v.beneath is None:
         return 0.0
@@ -138,13 +144,15 @@ def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
 
 
 def _counted(judged: Judged, v: Variation) -> float:
-    """The stress that turns a safe row is the upper end of a variation's own interval."""
+    """Return the stress that decides: for a safe row the upper end of the variation's own interval."""
     return v.interval[1] if judged.safe and v.interval else v.max_von_mises
 
 
 def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None:
-    """Where between the given length and the varied one the permitted stress is reached, linearly;
-    the varied one where the maximum as given is not of the same model.
+    """Return the length at which the permitted stress is reached, interpolated linearly.
+
+    It lies between the given length and the varied one; it is the varied one where the maximum as
+    given is of another model.
     """
     end = judged.high if judged.safe else judged.low
     return _on_the_way(judged, v, given, (end, v.max_von_mises * end / judged.maximum))
@@ -153,7 +161,7 @@ def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None
 def _on_the_way(
     judged: Judged, v: Variation, given: float | None, ends: tuple[float, float]
 ) -> float | None:
-    """The same of stresses as given and as varied."""
+    """Return the same length for stresses as given and as varied."""
     (first, last) = ends
     if v.length is None or given is None or v.interval is not None or first == last:
         return v.length
@@ -164,8 +172,10 @@ def _on_the_way(
 def _with_beneath(
     judged: Judged, contact: ContactPlace | None, r: LandingRange
 ) -> list[Dependence]:
-    """Over the landing, what lies beneath contact with the row: both go with the load. A row that
-    fails is safe at another value only if what lies beneath is, too.
+    """Return the dependences over a landing's range with the stress beneath contact, which scales
+    too.
+
+    A row that fails is safe at another value only if the stress beneath contact is safe, too.
     """
     if contact is None or contact.beneath <= 0.0:
         return list(_over_landing(judged, r))
@@ -182,7 +192,9 @@ def _with_beneath(
 
 
 def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
-    """One range alone, all else as the case has it; else all together."""
+    """Yield the ranges that change the outcome alone, all else as the case has it; else all
+    together.
+    """
     time, velocity = (
         np.isclose(x, given)
         for x, given in zip((r.impulse_time, r.velocity_change), r.nominal, strict=True)
@@ -215,7 +227,7 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
 
 
 def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> int | None:
-    """Of those, the one that is nearest to what the case has, in ratio."""
+    """Return the index of the marked value that is nearest in ratio to that of the case."""
     places = np.flatnonzero(which)
     if not len(places):
         return None
@@ -224,7 +236,9 @@ def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> in
 
 
 def _between(judged: Judged, one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Where stress, a power of the value between two points, reaches what is permitted."""
+    """Return the value at which the stress, a power law between two points, reaches the permitted
+    one.
+    """
     end = judged.high if judged.safe else judged.low
     wanted = judged.permitted * judged.maximum / end
     (x, a), (y, b) = one, other

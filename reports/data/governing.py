@@ -1,5 +1,6 @@
-"""Which check governs beside the model's stress against yield, which has rows of its own: the one
-with the least margin of safety.
+"""The governing check besides the model's stress against yield: the one with the least margin.
+
+The model's stress has rows of its own.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from reports.data.results import Results
 
 
 def governing(results: Results) -> list[PinMargin]:
-    """Of every pin in every case, the worst first; none of those of which no check was made."""
+    """Return the governing check of every pin in every case that has one, the worst first."""
     found: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:
         key = margin.pin, margin.case
@@ -21,7 +22,7 @@ def governing(results: Results) -> list[PinMargin]:
 
 
 def skipped(results: Results) -> dict[str, list[PinMargin]]:
-    """The checks that were not made, by what they need."""
+    """Return the checks that were not made, grouped by the data that they need."""
     found: dict[str, list[PinMargin]] = {}
     for margin in results.margins:
         if margin.margin.needs:

@@ -1,8 +1,4 @@
-"""What a run decides about its pins: the worst of all checks that count, of each pin and of all.
-
-A pin is as safe as the worst of its checks: the von Mises stress of the model against yield with
-the required factor, and every margin of safety that governs (fatigue, rupture, collapse, clauses).
-"""
+"""The decision of a run about its pins: the worst of all checks that count, of each pin and of all."""
 
 from __future__ import annotations
 
@@ -31,10 +27,13 @@ from reports.data.results import PinResult, Results
 
 @dataclass(frozen=True)
 class JudgedCheck:
-    """One check of a pin in a case (empty: over several). check: its name. outcome: one of
-    reports.data.decision. factor: allowable over demand, `required`: of it. used: required over
-    factor, the upper end of a range, by which checks are compared. row: of the model's maximum,
-    None for a margin. reason: why a check other than that is not decided.
+    """One check of a pin in a case (empty if over several cases).
+
+    check: its name. outcome: one of reports.data.decision. factor: allowable over demand.
+    required: the required factor.
+    used: required over actual factor, the upper end of a range, by which checks are compared.
+    row: the row of the model's maximum, None for a margin.
+    reason: why a check other than the model's maximum is not decided.
     """
 
     pin: str
@@ -49,12 +48,12 @@ class JudgedCheck:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """The worst first."""
+        """The sort key of the check: the worst comes first."""
         return OUTCOME_ORDER[self.outcome], -self.used
 
 
 def judged_checks(results: Results) -> list[JudgedCheck]:
-    """All checks that count, the worst first."""
+    """Return all checks that count, the worst first."""
     rows = {(row.pin, row.case): row for row in results.pins}
     found = [_of_row(row, limit(results)) for row in results.pins]
     found += (
@@ -71,7 +70,7 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:
-    """Of every pin, in the order of the results."""
+    """Return the worst check of every pin, in the order of the results."""
     found: dict[str, JudgedCheck] = {}
     for check in judged_checks(results):
         found.setdefault(check.pin, check)
@@ -79,12 +78,12 @@ def worst_checks(results: Results) -> dict[str, JudgedCheck]:
 
 
 def pins_with(worst: Iterable[JudgedCheck], *outcomes: str) -> list[str]:
-    """The pins whose worst check has one of some outcomes."""
+    """Return the pins whose worst check has one of some outcomes."""
     return [check.pin for check in worst if check.outcome in outcomes]
 
 
 def headline_json(results: Results, sentence: str) -> dict[str, Any] | None:
-    """For results.json; None where nothing was solved."""
+    """Return the headline for results.json; None where nothing was solved."""
     worst = worst_checks(results)
     if not worst:
         return None
@@ -114,7 +113,10 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
 
 
 def _of_margin(found: PinMargin, row: PinResult | None) -> JudgedCheck:
-    """A margin is of the upper end of a demand; the model's stress has a lower one, too."""
+    """Return the check of a margin.
+
+    A margin has only the upper end of a demand; the model's stress has a lower end, too.
+    """
     m = found.margin
     factor = m.allowable / m.demand if m.demand and m.allowable is not None else None
     state = SAFE if found.used <= 1.0 else FAILS
