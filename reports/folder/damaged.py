@@ -32,13 +32,16 @@ ERROR_WORDS = {  # of pydantic's errors, which speak of Python
 
 
 class JsonPart(BaseModel):
-    """What is read of an object of JSON; other keys may stand beside it."""
+    """The part of a JSON object that is used; it may have other keys."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="ignore")
 
 
 def strict_json(content: bytes, name: str) -> Any:
-    """The values of a JSON text. Raises: Damaged."""
+    """Return the values of a JSON text.
+
+    Raises: Damaged.
+    """
     try:
         text = content.decode("utf-8")
         found = json.loads(text, parse_constant=_no_number)
@@ -62,7 +65,10 @@ def strict_json(content: bytes, name: str) -> Any:
 
 
 def _require_shallow(found: Any) -> None:
-    """Raises: RecursionError, as what walks or copies it later would."""
+    """Check that values are not nested too deeply for what walks or copies them later.
+
+    Raises: RecursionError.
+    """
     level = [found]
     for _ in range(MAX_JSON_DEPTH):
         holders = [x.values() if isinstance(x, dict) else x for x in level if x and _holds(x)]
@@ -85,7 +91,10 @@ def _no_number(text: str) -> NoReturn:
 
 
 def validated(kind: type[Model], content: Any, name: str) -> Model:
-    """The parts of a JSON text that are used. Raises: Damaged, saying which is wrong."""
+    """Return the parts of a JSON text that are used.
+
+    Raises: Damaged, naming the wrong part.
+    """
     try:
         return kind.model_validate(content)
     except ValidationError as error:
@@ -100,8 +109,9 @@ def validated(kind: type[Model], content: Any, name: str) -> Model:
 
 
 def inflated(packed: bytes | str, most: int, name: str) -> bytes:
-    """What base64 and zlib have packed. Raises: Damaged, also where it is more than `most` bytes,
-    which are never made.
+    """Return the bytes packed by base64 and zlib.
+
+    Raises: Damaged, also for more than `most` bytes, which are never unpacked.
     """
     unpack = zlib.decompressobj()
     try:

@@ -39,9 +39,7 @@ class NotPlain(OSError):
 
 @dataclass(frozen=True)
 class _Place:
-    """A folder that was reached: by its open descriptor, or where there is no such thing by its
-    path.
-    """
+    """An open folder: its descriptor, or its path on systems without descriptors of folders."""
 
     path: Path
     descriptor: int | None
@@ -51,9 +49,9 @@ class _Place:
 
 
 def read_inside(folder: Path, name: str, most: int) -> bytes:
-    """The content of a file, by its path in the folder, with slashes.
+    """Return the content of a file, given its path in the folder with slashes.
 
-    Raises: NotPlain, FileNotFoundError, OSError; also for one of more than `most` bytes.
+    Raises: NotPlain, FileNotFoundError, OSError; also for a file of more than `most` bytes.
     """
     with _place(folder, name) as (place, last):
         _require_file(place, last, name, most)
@@ -69,8 +67,10 @@ def read_inside(folder: Path, name: str, most: int) -> bytes:
 
 
 def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
-    """Write a file so that it is complete or as it was, by way of NAME.partial; its own folder is
-    made. One of that name that is no regular file is left alone. Raises: NotPlain, OSError.
+    """Write a file by way of NAME.partial, so that it is either complete or unchanged.
+
+    Its own folder is made. A file of that name that is not regular is left alone.
+    Raises: NotPlain, OSError.
     """
     with _place(folder, name, make=True) as (place, last):
         for there in (last, last + PARTIAL_SUFFIX):
@@ -90,7 +90,10 @@ def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
 
 
 def is_inside(folder: Path, name: str) -> bool:
-    """Whether a folder has such a file or folder. Raises: NotPlain where it is something else."""
+    """Return whether a folder has such a file or folder.
+
+    Raises: NotPlain where it is something else.
+    """
     with suppress(FileNotFoundError), _place(folder, name) as (place, last):
         found = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
         if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
@@ -101,7 +104,10 @@ def is_inside(folder: Path, name: str) -> bool:
 
 @contextmanager
 def _place(folder: Path, name: str, make: bool = False) -> Iterator[tuple[_Place, str]]:
-    """The folder that a file is in, and the file's own name. make: folders that are missing."""
+    """Yield the folder that contains a file, and the file's own name.
+
+    make: whether missing folders are made.
+    """
     *between, last = name.split("/")
     if any(not part or part in (".", "..") or "\0" in part for part in (*between, last)):
         raise NotPlain(errno.EINVAL, f"{name!r} is no name of a file in a folder")

@@ -110,7 +110,7 @@ class _Results(JsonPart):
 
 
 def read_results(directory: Path) -> dict[str, Any]:
-    """What results.json says, all of it, without characters that steer a terminal.
+    """Return the content of results.json without characters that control a terminal.
 
     Raises: Damaged, FileNotFoundError, NotADirectoryError, OSError.
     """
@@ -145,7 +145,7 @@ def _require_schema(content: Any) -> None:
 
 
 def _printable(node: Any) -> Any:
-    """Without characters that steer a terminal, which another program may have written."""
+    """Return the values without control characters, which another program may have written."""
     if isinstance(node, dict):
         return {_printable(key): _printable(value) for key, value in node.items()}
     if isinstance(node, list):
