@@ -77,9 +77,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class ForceRow:
-    """A connection in the table: its values at the first frame, its largest force and when it
-    occurs.
-    """
+    """A connection in the table: its values at the first frame, its largest force and the time."""
 
     name: str
     body: str

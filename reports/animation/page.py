@@ -66,7 +66,7 @@ def render_animation(motion: LinkageMotion, results: Results) -> str:
 
 
 def _matched(table: ReactionTable, motion: LinkageMotion) -> ReactionTable | None:
-    """Return the table in the order of the linkage's connections; None when it lacks some of them."""
+    """Return the table in the order of the linkage's connections; None when some are missing."""
     names = [name for name, _, _ in motion.connections]
     if not set(names) <= set(table.connections):
         return None

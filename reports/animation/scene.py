@@ -137,7 +137,7 @@ class Scene:
 
     @cached_property
     def pitch(self) -> list[tuple[str, Floats, float]]:
-        """The colour, the ends (F, 2, 2) and the radius (or 0) of every pitch circle or pitch line."""
+        """The colour, the ends (F, 2, 2) and the radius (or 0) of every pitch circle or line."""
         return [
             (
                 self.colour(c.body),
@@ -194,9 +194,7 @@ class Scene:
         return Slide(name, ends, cylinder, rail, angle, *owners)
 
     def _owner(self, end: Floats) -> str:
-        """Return the colour of the body that owns the end of a slider: the only one with a joint
-        there.
-        """
+        """Return the colour of the body whose only joint is at this end of a slider."""
         for b, members in enumerate(self.members):
             if len(members) == 1:
                 off = self.motion.joint_position[:, members[0]] - end

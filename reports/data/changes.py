@@ -10,8 +10,7 @@ from pinbase.dimensions import Stress, Time
 
 @dataclass(frozen=True)
 class Remedy:
-    """The changes, each sufficient alone, with which a pin reaches the required factor in all
-    cases.
+    """The changes that make a pin reach the required factor in all cases, each sufficient alone.
 
     For a singular row they are computed with the upper end of its stress range.
     yield_strength: that would suffice.
@@ -37,9 +36,7 @@ class Remedy:
 
 
 def command(changes: tuple[Remedy, ...], study: str, required: float | None) -> str:
-    """Return the command that sizes the pins for which diameters can be found; empty if there are
-    none.
-    """
+    """Return the command that sizes the pins for which diameters can be found; empty if none."""
     pins = [c.pin for c in changes if c.diameter_factor or "pinstress size" in c.diameter_note]
     if not pins:
         return ""

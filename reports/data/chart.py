@@ -10,15 +10,14 @@ CHART_NAME = "chart"
 
 @dataclass(frozen=True)
 class ChartPoint:
-    """The cost and the error of one mesh of one element of a model; numbers are None if it
-    `failed`.
+    """The cost and the error of one mesh of one element of a model.
 
+    All numbers are None if it `failed`, which states the reason.
     dofs: unknowns, 0 for a beam.
     seconds: median wall time from the mesh to the maximum over the motion.
     memory: peak above that of the process with its libraries loaded, MB.
     error: relative error of the maximum with respect to the reference.
     chosen: whether `auto` ends on this mesh.
-    failed: the reason, if any.
     """
 
     model: str
@@ -34,7 +33,10 @@ class ChartPoint:
 
 @dataclass(frozen=True)
 class Reference:
-    """The solution against which errors are measured; `error` is its own estimated relative error."""
+    """The solution against which errors are measured.
+
+    error: its own estimated relative error.
+    """
 
     model: str
     element: str

@@ -221,7 +221,7 @@ def _forces(run: Mapping[str, Any], unit: float) -> dict[tuple[str, ...], float]
 
 
 def _margins(run: Mapping[str, Any]) -> dict[tuple[str, ...], tuple[float, str]]:
-    """Return the least margin of each pin and its check, rounded to six digits against round-off."""
+    """Return the least margin of each pin and its check, to six digits against round-off."""
     least: dict[tuple[str, ...], tuple[float, str]] = {}
     for row in run.get("margins", ()):
         if row["margin"] is None:

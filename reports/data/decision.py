@@ -1,4 +1,4 @@
-"""The outcome of a row: whether it meets its required factor, by how much, and which row is worst."""
+"""Outcome of a row: whether it meets its required factor, by how much, and which row is worst."""
 
 from __future__ import annotations
 
@@ -73,9 +73,7 @@ def utilisation(pin: PinResult, limit: float) -> Ends | None:
 
 
 def worst_first(results: Results) -> list[PinResult]:
-    """Return the rows that fail, then those not decided, then the others, each by their
-    utilisation.
-    """
+    """Return the rows that fail, then those not decided, then the others, each by utilisation."""
 
     def place(pin: PinResult) -> tuple[int, float]:
         used = utilisation(pin, 1.0)

@@ -144,7 +144,7 @@ def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
 
 
 def _counted(judged: Judged, v: Variation) -> float:
-    """Return the stress that decides: for a safe row the upper end of the variation's own interval."""
+    """Return the stress that decides: for a safe row the upper end of its interval, if any."""
     return v.interval[1] if judged.safe and v.interval else v.max_von_mises
 
 
@@ -172,8 +172,7 @@ def _on_the_way(
 def _with_beneath(
     judged: Judged, contact: ContactPlace | None, r: LandingRange
 ) -> list[Dependence]:
-    """Return the dependences over a landing's range with the stress beneath contact, which scales
-    too.
+    """Return the dependences over a landing's range, with stress beneath contact, which scales too.
 
     A row that fails is safe at another value only if the stress beneath contact is safe, too.
     """
@@ -192,9 +191,7 @@ def _with_beneath(
 
 
 def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
-    """Yield the ranges that change the outcome alone, all else as the case has it; else all
-    together.
-    """
+    """Yield the ranges that change the outcome alone, or all ranges together if none does."""
     time, velocity = (
         np.isclose(x, given)
         for x, given in zip((r.impulse_time, r.velocity_change), r.nominal, strict=True)
@@ -236,9 +233,7 @@ def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> in
 
 
 def _between(judged: Judged, one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Return the value at which the stress, a power law between two points, reaches the permitted
-    one.
-    """
+    """Return where the stress, a power law between two points, reaches the permitted one."""
     end = judged.high if judged.safe else judged.low
     wanted = judged.permitted * judged.maximum / end
     (x, a), (y, b) = one, other

@@ -69,9 +69,7 @@ def omitted_note(results: Results) -> str:
 
 
 def detailed_rows(results: Results) -> Results:
-    """Return the results to show in detail: all, or the governing case of each pin if there are
-    many.
-    """
+    """Return the results to show in detail: all, or of many cases the governing one of each pin."""
     if len(case_names(results)) <= MAX_DETAILED_CASES:
         return results
     governs = governing_cases(results)

@@ -1,4 +1,4 @@
-"""The decision of a run about its pins: the worst of all checks that count, of each pin and of all."""
+"""Decision of a run about its pins: the worst of all checks that count, of each pin and of all."""
 
 from __future__ import annotations
 

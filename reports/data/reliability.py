@@ -24,9 +24,7 @@ class Spread:
         return self.high < other.low or other.high < self.low
 
     def or_narrower(self, weighted: Spread | None) -> Spread:
-        """Return the estimate by weighted samples if it is narrower and not contradictory, else
-        this one.
-        """
+        """Return the estimate by weighted samples if it is narrower and consistent, else this one."""
         if weighted is None or weighted.apart(self) or weighted.value <= 0.0:
             return self
         surer = self.low <= 0.0 or (
@@ -80,8 +78,7 @@ class ByErrors:
 
 @dataclass(frozen=True)
 class Risk:
-    """The probability of failure of a pin in a case, or of the lowest factor of all rows
-    (SYSTEM_ROW).
+    """Probability of failure of a pin in a case, or of the lowest factor of all rows (SYSTEM_ROW).
 
     verdict, factor: of the study as it is; None where it has no factor.
     sampled, weighted: by plain and by importance sampling, None without a design point.
@@ -123,15 +120,15 @@ class Risk:
 
     @property
     def probability(self) -> Spread:
-        """The probability of failure with the narrower interval; by plain sampling if both
-        contradict.
+        """The probability of failure with the narrower interval; by plain sampling if they
+        disagree.
         """
         best = self.weighted if self.by_weights else None
         return best or self.sampled
 
     @property
     def quantile(self) -> Spread:
-        """The factor that is not reached with the stated probability, with the narrower interval."""
+        """The factor not reached with the stated probability, with the narrower interval."""
         plain, best = self.quantile_sampled, self.quantile_weighted
         if best is None or self.disagrees or best.apart(plain):
             return plain

@@ -15,7 +15,7 @@ DIGITS_OF_LARGEST = 4  # of the largest
 
 @dataclass(frozen=True)
 class Fixed:
-    """Format of a quantity: in `unit`, multiplied by `factor`, with a fixed number of decimals."""
+    """A format of a quantity: in `unit`, multiplied by `factor`, with a fixed number of decimals."""
 
     unit: str
     factor: float
@@ -23,7 +23,10 @@ class Fixed:
 
     @staticmethod
     def of(values: Floats, unit: str) -> Fixed:
-        """Four digits of the largest; very large and very small numbers in powers of ten."""
+        """Return the format with four digits of the largest value.
+
+        Very large and very small numbers are written with powers of ten.
+        """
         largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
         if largest == 0.0:
             return Fixed(unit, 1.0, 0)

@@ -1,4 +1,4 @@
-"""Values as JSON has them."""
+"""Conversion of values to plain JSON values."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from reports.format.numbers import finite
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON: what is not finite is null, a record an object of its fields, numbers of
-    NumPy are ordinary ones.
+    """Return a value as JSON has it.
+
+    Non-finite numbers become null, records objects of their fields, NumPy numbers ordinary ones.
     """
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}

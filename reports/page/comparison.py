@@ -14,14 +14,14 @@ from reports.text.comparison import headline, sections
 
 @dataclass(frozen=True)
 class PicturePair:
-    """Of a pin in a case, what both runs show of it: PNG files, None where there is none."""
+    """The pictures of a pin in a case from two runs: PNG files, None where a run has none."""
 
     title: str
     files: tuple[Path | None, Path | None]
 
     @property
     def shown(self) -> list[str]:
-        """Both as data of the page, empty for none."""
+        """Return both pictures as data of the page, empty for none."""
         return [
             "" if path is None else b64encode(path.read_bytes()).decode("ascii")
             for path in self.files
@@ -31,7 +31,10 @@ class PicturePair:
 def write_comparison(
     found: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
 ) -> None:
-    """Write the page. drawn: its plot as SVG, empty where it has none."""
+    """Write the page.
+
+    drawn: the plot as SVG, empty without one.
+    """
     plot = comparison_plot(found)
     text = (
         environment()

@@ -1,4 +1,4 @@
-"""Where the stress of a pin's rows is, for its drawing."""
+"""Places of the stress of a pin's rows, for its drawing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ MAX_NAMED_CASES = 2  # cases of a place
 
 @dataclass(frozen=True)
 class PlaceMark:
-    """Where the stress of some cases is: at a distance r from the axis, or None in a section."""
+    """The place of the stress of some cases.
+
+    r: distance from the axis, None for a section.
+    """
 
     z: float
     r: float | None
@@ -28,7 +31,7 @@ class PlaceMark:
 
 
 def place_marks(results: Results, pin: str, length: float) -> list[PlaceMark]:
-    """Those of a pin, the worst cases first."""
+    """Return the marks of a pin, the worst cases first."""
     found: list[PlaceMark] = []
     for row in worst_first(results):
         if row.pin != pin or row.location is None:

@@ -21,7 +21,7 @@ LAW_COLUMNS: list[Column[tuple[str, str]]] = [
 
 
 def write_reliability_page(found: Reliability, path: Path) -> None:
-    """Write the page."""
+    """Write reliability.html."""
     plots = (
         distribution_plot(found, risk) for risk in _worst_first(found)[:MAX_DISTRIBUTION_PLOTS]
     )

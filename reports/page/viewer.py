@@ -37,8 +37,11 @@ Segment = tuple[str, float, float]  # its name, and between which z
 
 @dataclass(frozen=True)
 class PinView:
-    """A 3D view: its cases, which of them it opens on, whether any has a motion, whether there is a
-    yield strength, whether any case has contact pressure or a section; the maxima along the pin.
+    """A 3D view of a pin.
+
+    opens: index of the case shown first. moving: whether any case has a motion.
+    factors: whether there is a yield strength. pressed, sections: whether any case has contact
+    pressure, or a section. along: the maxima along the pin.
     """
 
     pin: str
@@ -53,7 +56,7 @@ class PinView:
 
 
 def pin_views(results: Results, pin: str) -> list[PinView]:
-    """The 3D view of a pin in all its cases; none where no model has fields."""
+    """Return the 3D view of a pin in all its cases; empty where no model has fields."""
     surfaces = [s for s in results.surfaces if s.pin == pin]
     if not surfaces:
         return []
@@ -95,7 +98,7 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
 
 
 def _governing(pins: list[PinResult]) -> int:
-    """The case with the lowest safety factor, or else with the largest stress."""
+    """Return the index of the case with the lowest safety factor, or else the largest stress."""
     factors = [inf if p.safety_factor is None else p.safety_factor for p in pins]
     return min(range(len(pins)), key=lambda k: (factors[k], -(pins[k].max_von_mises or 0.0)))
 
@@ -120,7 +123,7 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 
 def _largest(surface: Surface) -> Floats:
-    """Of the amounts of each unit load (K,) in all cases; 1 of what never acts."""
+    """Return the largest amount of each unit load (K,) in all cases; 1 for one that never acts."""
     every = np.concatenate([c.amounts for c in surface.cases])
     largest = np.abs(every).max(axis=(0, 2), initial=0.0)
     return np.where(largest > 0.0, largest, 1.0)
@@ -158,8 +161,9 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
 
 
 def _row(pin: PinResult, results: Results) -> dict[str, str]:
-    """Error and factor of the surface's largest stress at the row's instant, and in a sentence the
-    section where that is larger.
+    """Return the error and factor of the surface's largest stress at the row's instant.
+
+    Where the stress in the section is larger, a sentence says so.
     """
     places = pin.places
     if places is None or places.section is None or places.governs == "surface":
@@ -175,7 +179,7 @@ def _row(pin: PinResult, results: Results) -> dict[str, str]:
 
 
 def _short(maxima: Floats, instant: int) -> list[float]:
-    """Seven digits, but all of the governing one."""
+    """Return maxima with seven digits, but the governing one with all."""
     found = [float(f"{value:.7g}") for value in maxima]
     found[instant] = float(maxima[instant])
     return found
@@ -221,15 +225,16 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
 
 
 def _top(pressure: Floats) -> float:
-    """At which the colours end, Pa: beyond it are cells at the edges of lugs, whose pressure says
-    how small they are.
+    """Return the pressure at which the colours end, Pa.
+
+    Beyond it are cells at the edges of lugs, whose pressure depends on their size.
     """
     some = pressure[pressure > 0.0]
     return float(np.percentile(some, PRESSURE_PERCENTILE)) if len(some) else 0.0
 
 
 def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:
-    """Rows right, up and towards the viewer; the maximum faces the viewer."""
+    """Return the rows right, up and towards the viewer, whom the maximum faces."""
     view = View.of(box, np.asarray(location))
     towards = view.eye - view.centre
     towards /= np.linalg.norm(towards)
@@ -238,7 +243,7 @@ def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:
 
 
 def _box(surface: Surface) -> Floats:
-    """Corners (8, 3) around the surface."""
+    """Return the corners (8, 3) of the box around the surface."""
     low, high = surface.points.min(axis=0), surface.points.max(axis=0)
     if surface.revolved:
         r = high[0]
@@ -250,8 +255,9 @@ def _box(surface: Surface) -> Floats:
 def _along(
     results: Results, shape: PinShape, shown: list[tuple[SurfaceCase, int, Surface]]
 ) -> Grid:
-    """The largest stress on each segment's surface outside of what is excluded, and where, for
-    every case at its governing instant.
+    """Return the largest stress on each segment's surface outside excluded zones, and its place.
+
+    It has every case at its governing instant.
     """
     columns: list[Column[Segment]] = [
         read_only("segment", lambda row: row[0] or DASH, numeric=False),
@@ -277,7 +283,7 @@ def _along(
 def _most(
     case: SurfaceCase, z: Floats, low: float, high: float
 ) -> tuple[float | None, float | None]:
-    """The largest stress between two z, and its z."""
+    """Return the largest stress between two z, and its z."""
     little = 1e-6 * float(np.ptp(z))
     here = np.flatnonzero((z >= low - little) & (z <= high + little) & ~case.excluded)
     if not len(here):
@@ -287,5 +293,5 @@ def _most(
 
 
 def _parts(values: Floats, largest: Floats, whole: int) -> Floats:
-    """Values scaled to `whole` at `largest`, not rounded."""
+    """Return the values scaled to `whole` at `largest`, not rounded."""
     return np.asarray(whole * values / np.where(largest > 0.0, largest, 1.0))

@@ -33,8 +33,9 @@ FONT_FAMILY_PATTERN = re.compile(r'font-family="[^"]*"')
 
 
 def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
-    """The PDF, tagged for accessibility (PDF/UA-1). plots: by their names.
+    """Return the PDF, tagged for accessibility (PDF/UA-1).
 
+    plots: by their names.
     Raises: Damaged for content that is not all that the report needs.
     """
     import typst
@@ -68,7 +69,10 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
 
 
 def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
-    """Raises: TypstError, for instance of a character that no font has, which UA-1 forbids."""
+    """Return the compiled PDF.
+
+    Raises: TypstError, for instance for a character that no font has, which UA-1 forbids.
+    """
     import typst
 
     fonts = typst.Fonts(include_system_fonts=False)  # those of a machine would change the bytes
@@ -80,7 +84,7 @@ def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
 
 
 def _without_glyph(text: str) -> list[str]:
-    """The characters of a text that cannot be typeset; each is tried by itself."""
+    """Return the characters of a text that cannot be typeset; each is tried separately."""
     return [c for c in sorted(set(text)) if not c.isascii() and not _has_glyph(c)]
 
 
@@ -97,13 +101,13 @@ def _has_glyph(character: str) -> bool:
 
 
 def shown_plots(content: Content) -> list[str]:
-    """Names of the plots that the PDF shows, if there are such."""
+    """Return the names of the plots that the PDF shows, if any."""
     cases = [case["plot"] for pin in content["pins"] for case in pin["cases"]]
     return [*(pin["refinement"] for pin in content["pins"]), *cases]
 
 
 def _drawn(spec: Spec) -> str:
-    """A plot for half the width of a page; its caption is the title."""
+    """Return a plot for half the width of a page; its caption is the title."""
     config = on_paper(FONT_NAME)
     config["view"] |= {"continuousWidth": PLOT_WIDTH}
     small = _flatter({key: value for key, value in spec.items() if key != "title"})

@@ -24,7 +24,7 @@ from reports.tables.strength.fatigue import worst_points
 
 
 def all_plots(results: Results) -> dict[str, Plot]:
-    """The plots by their names (reports.format.file_names)."""
+    """Return the plots by their names (reports.format.file_names)."""
     return {plot.name: plot for part in (_mechanics, _pins) for plot in part(results)}
 
 
@@ -83,7 +83,7 @@ def _pins(results: Results) -> Iterator[Plot]:
 
 
 def _fatigue(results: Results) -> Iterator[Plot]:
-    """Of each pin's worst point."""
+    """Yield the plots of each pin's worst point."""
     if results.fatigue is None:
         return
     histories = {(h.pin, h.point): h for h in results.histories}
@@ -93,13 +93,16 @@ def _fatigue(results: Results) -> Iterator[Plot]:
 
 
 def governing(results: Results, table: ReactionTable) -> dict[str, float]:
-    """Where on a motion's axis (plots.loads.reactions.along) each pin's maximum stress is."""
+    """Return the place of each pin's maximum stress on the abscissa of a motion.
+
+    The abscissa is that of plots.loads.reactions.along.
+    """
     rows = (p for p in results.pins if p.case == table.case)
     at = {p.pin: p.time if table.position is None else p.position for p in rows}
     return {pin: x for pin, x in at.items() if x is not None}
 
 
 def _refined(pin: PinResult) -> bool:
-    """Whether there are meshes to compare; a logarithmic axis cannot show zero."""
+    """Return whether there are meshes to compare; a logarithmic axis cannot show zero."""
     steps = pin.history
     return len(steps) > 1 and all(s.max_von_mises > 0.0 and s.dofs > 0 for s in steps)

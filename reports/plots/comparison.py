@@ -11,7 +11,7 @@ MAX_PLOT_ROWS = 40  # rows
 
 
 def comparison_plot(found: RunComparison) -> Plot | None:
-    """Points with ranges on a logarithmic axis; None without two numbers to compare."""
+    """Return points with ranges on a logarithmic axis; None without two numbers to compare."""
     data: list[Spec] = []
     for pair in changed_rows(found)[:MAX_PLOT_ROWS]:
         for run, side in zip("AB", (pair.first, pair.second), strict=True):

@@ -27,7 +27,10 @@ SAMPLING_NAMES = "plain sampling", "importance sampling"
 
 
 def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
-    """The probability that the factor is lower, straight for a normal law; None without samples."""
+    """Return the probability that the factor is lower, on an axis where a normal law is straight.
+
+    None without samples.
+    """
     deviate = NormalDist().inv_cdf
     data: list[Spec] = [
         {"x": factor, "y": deviate(p), "p": p, "way": SAMPLING_NAMES[way]}

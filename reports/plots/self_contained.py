@@ -21,7 +21,10 @@ FORBIDDEN_ELEMENTS = {"image", "feimage", "script", "foreignobject", "iframe", "
 
 
 def require_no_address(spec: Any, name: str) -> None:
-    """Raises: Damaged for a specification of Vega-Lite with an address or a picture."""
+    """Check that a specification of Vega-Lite has no address and no picture.
+
+    Raises: Damaged.
+    """
     waiting = [spec]
     while waiting:
         node = waiting.pop()
@@ -37,7 +40,10 @@ def require_no_address(spec: Any, name: str) -> None:
 
 
 def require_self_contained(svg: str, name: str) -> None:
-    """Raises: Damaged for an SVG that is none, or refers to anything but its own parts."""
+    """Check that a text is an SVG that refers only to its own parts.
+
+    Raises: Damaged.
+    """
     inside: list[str] = []
 
     def start(element: str, attributes: dict[str, str]) -> None:

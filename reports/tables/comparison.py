@@ -13,7 +13,7 @@ CHANGE_DIGITS = 3  # digits
 
 
 def rows_table(found: RunComparison) -> Table[RowPair]:
-    """Pins and cases, the important changes first; those without any are left out."""
+    """Return the pins and cases that changed, the important changes first."""
 
     def both(text: Callable[[Side], str]) -> Callable[[RowPair], str]:
         return lambda row: _from_to(*(DASH if s is None else text(s) for s in _sides(row)))
@@ -35,17 +35,17 @@ def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
 
 
 def _from_to(first: str, second: str) -> str:
-    """What was and what is; once where they are the same."""
+    """Return the former and the present value as text; one where they are equal."""
     return first if first == second else f"{first} → {second}"
 
 
 def changed_rows(found: RunComparison) -> list[RowPair]:
-    """Rows with a change."""
+    """Return the rows with a change."""
     return [row for row in found.rows if row.kind != UNCHANGED]
 
 
 def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
-    """Values that differ, by `name`."""
+    """Return a table of the values that differ, by `name`."""
     columns: list[Column[ValuePair]] = [
         read_only(name, lambda pair: pair.names[0], numeric=False),
         read_only("A", lambda pair: _text(pair.first), numeric=False),
@@ -55,17 +55,17 @@ def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
 
 
 def inputs_table(found: RunComparison) -> Table[ValuePair]:
-    """Values that differ, by key."""
+    """Return the input values that differ, by key."""
     return _pairs("input", found.inputs or ())
 
 
 def versions_table(found: RunComparison) -> Table[ValuePair]:
-    """Programs whose versions differ."""
+    """Return the programs whose versions differ."""
     return _pairs("program", found.versions)
 
 
 def forces_table(found: RunComparison) -> Table[ValuePair]:
-    """Largest forces that differ, the largest changes first."""
+    """Return the largest forces that differ, the largest changes first."""
     columns: list[Column[ValuePair]] = [
         read_only("case", lambda pair: pair.names[0], numeric=False),
         read_only("connection", lambda pair: pair.names[1], numeric=False),
@@ -77,7 +77,7 @@ def forces_table(found: RunComparison) -> Table[ValuePair]:
 
 
 def margins_table(found: RunComparison) -> Table[ValuePair]:
-    """Least margins of safety that differ."""
+    """Return the least margins of safety that differ."""
     columns: list[Column[ValuePair]] = [
         read_only("pin", lambda pair: pair.names[0], numeric=False),
         read_only("least margin A", lambda pair: _signed((pair.first or (None,))[0])),
@@ -89,7 +89,7 @@ def margins_table(found: RunComparison) -> Table[ValuePair]:
 
 
 def left_out(found: RunComparison) -> str:
-    """How many forces have no room."""
+    """Return a note on the number of forces that the table leaves out."""
     more = len(found.forces) - MAX_SHOWN_FORCES
     return f"{more} more forces differ by less." if more > 0 else ""
 
@@ -110,7 +110,7 @@ def _range(side: Side | None) -> str:
 
 
 def per_cent(change: float | None) -> str:
-    """A change with its sign."""
+    """Return a change with its sign."""
     return DASH if change is None else f"{100.0 * change:+.3g} %".replace("-", "−")
 
 

@@ -33,7 +33,7 @@ RESULTS_SCHEMA = "pinstress-results/2"
 
 
 def _strength(key: str, name: str) -> Column[SingularZone]:
-    """A number of how strong a singular field is, where that was measured."""
+    """Return a column for the strength of a singular field, where it was measured."""
     return Column(key, lambda zone: getattr(zone.strength, name, None))
 
 
@@ -68,7 +68,7 @@ DROP = fields(
 
 
 def to_json(results: Results) -> dict[str, Any]:
-    """The results as plain JSON values; missing numbers are null."""
+    """Return the results as plain JSON values; missing numbers are null."""
     factors = safety_factors_table(results)
     return {
         "schema": RESULTS_SCHEMA,
@@ -99,7 +99,7 @@ def write_json(results: Results, path: Path) -> None:
 
 
 def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
-    """One case's loads: maximum forces, drives and checks."""
+    """Return the loads of one case: maximum forces, drives and checks."""
     moved = next((m for m in results.motion if m.case == table.case), None)
     return {
         "case": table.case,
@@ -119,7 +119,7 @@ def _drop(d: DropRecord) -> dict[str, Any]:
 
 
 def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
-    """A pin in a case: the columns of the safety factors that say so, and what no table has."""
+    """Return a pin in a case: the JSON columns of the safety factors, and values that no table has."""
     pin, depends = of.pin, "depends_on" if outcome(of.pin) == DEPENDS else "safe_within"
     return {
         **json_of([column for column in table.columns if column.in_json], of),

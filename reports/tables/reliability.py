@@ -23,27 +23,27 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class RiskRow:
-    """A pin in a case, with all that was found."""
+    """The probability of failure of a pin in a case, with the results of the study that it is from."""
 
     risk: Risk
     found: Reliability
 
     @property
     def by(self) -> str:
-        """How its probability was found."""
+        """The method by which the probability was computed."""
         return "importance sampling" if self.risk.by_weights else "plain sampling"
 
 
 @dataclass(frozen=True)
 class DriverRow:
-    """What a parameter contributes to the failure of a pin in a case."""
+    """The contribution of a parameter to the failure of a pin in a case."""
 
     risk: Risk
     driver: Driver
 
 
 def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
-    """A value with the ends of its interval."""
+    """Return the columns of a value and of the ends of its interval."""
 
     def end(name: str) -> Callable[[R], float | None]:
         return lambda row: finite(getattr(spread(row), name, None))
@@ -53,12 +53,12 @@ def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
 
 
 def _form(key: str, name: str) -> Column[RiskRow]:
-    """A number of FORM, where that has an answer."""
+    """Return a column of a number of FORM, empty where FORM has no result."""
     return Column(key, lambda row: getattr(row.risk.form, name, None))
 
 
 def _by(errors: str) -> list[Column[RiskRow]]:
-    """What an error of the stress makes of a probability."""
+    """Return the columns of the probabilities under an error of the stress."""
 
     def value(row: RiskRow, end: str) -> float | None:
         return getattr(getattr(getattr(row.risk, errors), end, None), "value", None)
@@ -116,7 +116,7 @@ def write_reliability(found: Reliability, directory: Path) -> None:
 
 
 def remark(risk: Risk) -> str:
-    """What is to be known of a row, in a sentence or none."""
+    """Return a sentence on the limits of a row, or an empty text."""
     said = []
     if risk.disagrees:
         said.append(
@@ -133,12 +133,12 @@ def remark(risk: Risk) -> str:
 
 
 def chance(value: float | None) -> str:
-    """A probability as text."""
+    """Return a probability as text."""
     return DASH if value is None or not math.isfinite(value) else f"{value:.{PROBABILITY_DIGITS}g}"
 
 
 def chance_range(value: Spread | None) -> str:
-    """A probability with its interval; only the upper end where nothing failed."""
+    """Return a probability with its interval; only the upper end where nothing failed."""
     if value is None:
         return DASH
     if value.value <= 0.0:
@@ -147,7 +147,7 @@ def chance_range(value: Spread | None) -> str:
 
 
 def factor_interval(value: Spread | None) -> str:
-    """A factor with its interval."""
+    """Return a factor with its interval."""
     if value is None or math.isnan(value.value):
         return DASH
     ends = (
@@ -158,7 +158,10 @@ def factor_interval(value: Spread | None) -> str:
 
 
 def risks_table(found: Reliability) -> Table[Risk]:
-    """A row per pin and case, for people; what lies beneath contact only where it is ever more."""
+    """Return a row per pin and case, for people.
+
+    The stress beneath contact has columns only where it ever raises a probability.
+    """
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
     limit = engineering(found.limit, PROBABILITY_DIGITS)
     beneath: list[Column[Risk]] = [
@@ -181,7 +184,7 @@ def risks_table(found: Reliability) -> Table[Risk]:
 
 
 def ways_table(found: Reliability) -> Table[Risk]:
-    """The same by each way of finding it."""
+    """Return the probability of failure by method, for people."""
     per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
 
     def form(name: str, text: Callable[[float | None], str]) -> Callable[[Risk], str]:
@@ -213,7 +216,7 @@ def _by_errors(found: ByErrors | None) -> str:
 
 
 def change(found: ByErrors) -> str:
-    """By how much stresses are changed, as text."""
+    """Return the relative change of the stresses as text."""
     least, most = 100.0 * found.least, 100.0 * found.most
     if least == -most:
         return f"±{most:.2g} %"
@@ -221,7 +224,7 @@ def change(found: ByErrors) -> str:
 
 
 def drivers_table(found: Reliability) -> Table[DriverRow]:
-    """What drives each row, the most important first, for people."""
+    """Return the parameters that matter to each row, the most important first, for people."""
     rows = [
         DriverRow(risk, each)
         for risk in found.risks

@@ -31,8 +31,9 @@ Curve = Sequence[ChartPoint]
 
 @dataclass(frozen=True)
 class Cost:
-    """seconds and memory (MB) of a curve at an error. at_most: the coarsest mesh, whose error is
-    smaller.
+    """The cost of a curve at an error.
+
+    memory: MB. at_most: the coarsest mesh, whose error is smaller than the wanted one.
     """
 
     seconds: float
@@ -41,16 +42,18 @@ class Cost:
 
 
 def staying(curve: Curve, wanted: float) -> Curve:
-    """The last points of a curve that are all within the error; an isolated point within it, by
-    chance, does not count.
+    """Return the last points of a curve that are all within the error.
+
+    An isolated point that is within it by chance does not count.
     """
     last = max((i for i, p in enumerate(curve) if error(p) > wanted), default=-1)
     return curve[last + 1 :]
 
 
 def cost(curve: Curve, wanted: float) -> Cost | None:
-    """The cost of an error, interpolated linearly on the log-log chart; None if the curve does not
-    stay within it.
+    """Return the cost of an error, interpolated linearly on the log-log chart.
+
+    None if the curve does not stay within the error.
     """
     within = staying(curve, wanted)
     if not within:
@@ -70,8 +73,11 @@ def cost(curve: Curve, wanted: float) -> Cost | None:
 
 
 def summary(chart: Chart) -> str:
-    """The sentences under the table: cheapest model within the tolerance, cost of equal errors, and
-    the error of the beam on foundations.
+    """Return the sentences under the table.
+
+    They give the cheapest model within the tolerance, the cost of equal errors, and the error of
+    the
+    beam on foundations.
     """
     said = (_cheapest(chart), _ratio(chart), _foundation_error(chart))
     return " ".join(text for text in said if text)
@@ -100,7 +106,7 @@ def _cheapest(chart: Chart) -> str:
 
 
 def _foundation_error(chart: Chart) -> str:
-    """The error of the beam on foundations, which finer meshes do not reduce."""
+    """Return the error of the beam on foundations, which finer meshes do not reduce."""
     _, beams = _curves(chart, {FOUNDATION_MODEL: ""})
     return "".join(
         f"Error of the beam on foundations: {percent(error(beam[-1]))}." for beam in beams.values()
@@ -108,7 +114,7 @@ def _foundation_error(chart: Chart) -> str:
 
 
 def _curves(chart: Chart, models: dict[str, str]) -> tuple[str, dict[str, Curve]]:
-    """Those of the first of some models that is charted, by element, and its name."""
+    """Return the name and the curves by element of the first of some models that is charted."""
     for model, name in models.items():
         found = {element: c for (m, element), c in chart.curves.items() if m == model}
         if found:
@@ -122,7 +128,7 @@ def _fastest(curves: dict[str, Curve], wanted: float) -> tuple[str, Cost] | None
 
 
 def _ratio(chart: Chart) -> str:
-    """Our model compared with the fastest solid element at equal error."""
+    """Return the comparison of our model with the fastest solid element at equal error."""
     (ours, planes), (theirs, solids) = (
         _curves(chart, HARMONIC_MODEL_NAMES),
         _curves(chart, SOLID_MODEL_NAMES),
@@ -158,17 +164,17 @@ def _ratio(chart: Chart) -> str:
 
 
 def _start(text: str) -> str:
-    """With a capital letter."""
+    """Return the text with a capital letter."""
     return text[0].upper() + text[1:]
 
 
 def curve_name(model: str, element: str) -> str:
-    """Short, for labels."""
+    """Return a short name for labels."""
     return SHORT_MODEL_NAMES.get(model) or SHORT_MODEL_NAMES.get(element) or f"{model}, {element}"
 
 
 def label(point: ChartPoint) -> str:
-    """A point as text."""
+    """Return a point as text."""
     if point.model in ("beam", FOUNDATION_MODEL):
         return point.model
     dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
@@ -176,7 +182,7 @@ def label(point: ChartPoint) -> str:
 
 
 def reference_line(chart: Chart) -> str:
-    """The reference solution."""
+    """Return the line on the reference solution."""
     r = chart.reference
     charted = [p.dofs for p in chart.points if p.model == r.model and p.dofs]
     more = f", {r.dofs / max(charted):.0f} times the finest charted" if charted else ""
@@ -188,7 +194,7 @@ def reference_line(chart: Chart) -> str:
 
 
 def failures(chart: Chart) -> list[str]:
-    """Failed meshes with the reason, equal ones together."""
+    """Return the failed meshes with the reason, equal ones together."""
     meshes: dict[tuple[str, str], int] = {}
     found: dict[tuple[str, str, str], list[int]] = {}
     for p in chart.points:

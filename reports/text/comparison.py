@@ -33,7 +33,7 @@ SAME_INPUTS_NOTE = "The inputs are the same."
 
 
 def headline(found: RunComparison) -> str:
-    """How many rows changed, and how; the one that changed most."""
+    """Return the number of rows that changed, by kind, and the row that changed most."""
     if not found.rows:
         return "Neither run has pins."
     counts = [(found.count(kind), kind) for kind in CHANGE_KINDS]
@@ -48,7 +48,7 @@ def headline(found: RunComparison) -> str:
 
 
 def sections(found: RunComparison) -> Iterator[tuple[str, Table[Any], str]]:
-    """Title, table and remark of all that differs."""
+    """Yield the title, the table and the remark of each group of differences."""
     remark = NO_INPUTS_NOTE if found.inputs is None else "" if found.inputs else SAME_INPUTS_NOTE
     yield "Inputs that differ", inputs_table(found), remark
     yield "Safety factors", rows_table(found), COMPARISON_NOTE
@@ -58,7 +58,7 @@ def sections(found: RunComparison) -> Iterator[tuple[str, Table[Any], str]]:
 
 
 def print_comparison(found: RunComparison, console: Console) -> None:
-    """What differs, the inputs first."""
+    """Print the differences, the inputs first."""
     from rich.text import Text
 
     for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
@@ -73,7 +73,7 @@ def print_comparison(found: RunComparison, console: Console) -> None:
 
 
 def write_markdown(found: RunComparison, path: Path) -> None:
-    """The same as Markdown."""
+    """Write the differences as Markdown."""
     parts = ["# Two runs compared"]
     for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
         parts.append(f"{letter}: {markdown.escaped(folder)}, {markdown.escaped(title)}")

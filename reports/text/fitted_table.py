@@ -19,8 +19,9 @@ Shown = tuple[Column[R], str, list[str]]  # a column, its heading and its texts
 
 
 def fitting(shown: Sequence[Shown[R]], width: int, gap: int = COLUMN_GAP) -> list[Shown[R]]:
-    """The columns that have room side by side, in their order: those with the highest rank are
-    left out first, those of rank 0 never.
+    """Return the columns that fit side by side, in their order.
+
+    Those with the highest rank are left out first, those of rank 0 never.
     """
     kept = list(shown)
     while sum(_width(each) + gap for each in kept) - gap > width:
@@ -32,7 +33,7 @@ def fitting(shown: Sequence[Shown[R]], width: int, gap: int = COLUMN_GAP) -> lis
 
 
 def _width(shown: Shown[R]) -> int:
-    """The longest line of a column, in characters."""
+    """Return the length of the longest line of a column, in characters."""
     _, heading, texts = shown
     return max(len(line) for text in (heading, *texts) for line in text.split("\n"))
 
@@ -44,7 +45,7 @@ def fitted_table(
     colours: Mapping[str, Sequence[str]] | None = None,
     gap: int = COLUMN_GAP,
 ) -> RichTable:
-    """A table of the columns that have room; names too long for any terminal are folded.
+    """Return a table of the columns that fit; names too long for any terminal are folded.
 
     colours: of the rows of a column, by its heading. gap: blanks between columns.
     """
@@ -70,7 +71,7 @@ def fitted_table(
 
 
 def print_table(console: Console, title: str, table: Table[R], units: Units | None = None) -> bool:
-    """Print a table under its title, if it has rows; returns whether it has."""
+    """Print a table under its title, if it has rows; return whether it has."""
     from rich.text import Text
 
     if not table.rows:

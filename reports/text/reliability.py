@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def sentence(found: Reliability, risk: Risk) -> str:
-    """A row's probability of failure with its interval and what is known of the model's error."""
+    """Return a row's probability of failure with its interval and the effect of the model's error."""
     per_cent = f"{100.0 * found.confidence:g} %"
     value, ends = risk.probability, risk.probability
     if value.value <= 0.0:
@@ -42,14 +42,14 @@ def sentence(found: Reliability, risk: Risk) -> str:
 
 
 def name(risk: Risk) -> str:
-    """A row in words."""
+    """Return the name of a row in words."""
     return (
         "Any pin in any case" if risk.pin == risk.case == "all" else f"Pin {risk.pin}, {risk.case}"
     )
 
 
 def remarks(found: Reliability) -> Iterator[str]:
-    """What is to be known of rows, failed designs, and what probabilities do not include."""
+    """Yield notes on rows, failed designs, and what probabilities do not include."""
     for risk in found.risks:
         if text := remark(risk):
             yield f"{name(risk)}: {text}."
@@ -59,13 +59,13 @@ def remarks(found: Reliability) -> Iterator[str]:
 
 
 def solved(found: Reliability) -> str:
-    """How many designs were solved, and what for."""
+    """Return the number of designs solved, by purpose."""
     parts = ", ".join(f"{count:,} for {what}" for what, count in found.solved.items())
     return f"Designs: {parts}. Seed {found.seed}."
 
 
 def print_reliability(found: Reliability, console: Console) -> None:
-    """The first row in words, the tables, and what is to be known."""
+    """Print the first row in words, the tables, and the notes."""
     from rich.text import Text
 
     for risk in found.risks[:1]:
@@ -78,5 +78,5 @@ def print_reliability(found: Reliability, console: Console) -> None:
 
 
 def ways_title(found: Reliability) -> str:
-    """Of the table of all ways: what lies beneath contact is no part of it."""
+    """Return the title of the table of methods, which exclude the stress beneath contact."""
     return "By each way of finding it" + ", of surface and section" * found.deep

@@ -20,7 +20,7 @@ print(plotter.render_window.GetClassName())
 
 
 def renderer_problem() -> str | None:
-    """Why no pictures can be drawn, or None where they can.
+    """Return the reason why no pictures can be drawn, or None where they can.
 
     Keeps the renderer that works in this process's environment, so call it before drawing.
     """

@@ -26,7 +26,10 @@ Data = Mapping[str, "NDArray[Any] | Sequence[str]"]  # numbers, or texts
 
 @dataclass(frozen=True)
 class Block:
-    """points (N, 3), cells (M, k) of one type, data by name: at points, in cells, of the whole."""
+    """A mesh with cells of one type and data by name.
+
+    points: (N, 3). cells: (M, k). whole: data of the whole block.
+    """
 
     points: Floats
     cells: NDArray[np.int64]
@@ -37,7 +40,10 @@ class Block:
 
 
 def write_block(block: Block, path: Path) -> None:
-    """Write a VTU file. Raises: OSError."""
+    """Write a VTU file.
+
+    Raises: OSError.
+    """
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     writer = vtkXMLUnstructuredGridWriter()
@@ -52,7 +58,7 @@ def write_block(block: Block, path: Path) -> None:
 
 
 def grid(block: Block) -> Any:
-    """The same as a vtkUnstructuredGrid."""
+    """Return the block as a vtkUnstructuredGrid."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
@@ -95,7 +101,7 @@ def _numbers(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
-    """Write a VTM file: blocks by name from files in the same folder."""
+    """Write a VTM file of blocks, each with its name and its file in the same folder."""
     lines = [
         f"    <DataSet index={quoteattr(str(i))} name={quoteattr(name)} file={quoteattr(file)}/>"
         for i, (name, file) in enumerate(blocks.items())
@@ -104,7 +110,7 @@ def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
 
 
 def write_series(parts: Sequence[tuple[float, str, str]], path: Path) -> None:
-    """Write a PVD file: time, name and file of every part, files in the same folder."""
+    """Write a PVD file of parts, each with its time, name and file in the same folder."""
     names = list(dict.fromkeys(name for _, name, _ in parts))
     lines = [
         f"    <DataSet timestep={quoteattr(repr(time))} part={quoteattr(str(names.index(name)))} "

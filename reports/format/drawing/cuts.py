@@ -12,7 +12,9 @@ HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
 
 
 def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
-    """On a pin whose start is at x = left, and its axis at y = axis, in pixels."""
+    """Return the SVG of a cut on a pin that starts at x = left with its axis at y = axis, in
+    pixels.
+    """
 
     def at(z: float, x: float) -> tuple[float, float]:
         return left + scale * z, axis - scale * x
@@ -34,7 +36,7 @@ def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
 
 
 def words(cut: CutShape) -> str:
-    """Sizes and place, in the report's unit of length."""
+    """Return the sizes and the place of a cut as text, in the report's unit of length."""
     kind, size, (low, high) = cut.name.split()[0], short(cut.size), cut.z
     deep = "through" if cut.depth is None else f"{short(cut.depth)} deep"
     between = f"z = {short(low)} to {short(high)}"

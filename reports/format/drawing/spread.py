@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def rows(places: Sequence[float], sizes: Sequence[float]) -> list[int]:
-    """The lowest row for each label such that none overlaps another of its row."""
+    """Return the lowest row for each label such that no two labels of a row overlap."""
     ends: list[float] = []
     found = []
     for place, size in zip(places, sizes, strict=True):

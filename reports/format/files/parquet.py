@@ -12,8 +12,9 @@ ROWS_PER_GROUP = 100_000  # rows of a group
 
 
 def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write rows under column names, a group of rows at a time. What the first group has decides
-    whether a column is of texts, truth values or numbers; None stays empty.
+    """Write rows under column names, a group of rows at a time; None stays empty.
+
+    The first group decides whether a column has texts, truth values or numbers.
     """
     import pyarrow as pa
     from pyarrow import parquet

@@ -47,7 +47,7 @@ class MarginRow:
         return dimension if dimension == RATIO_DIMENSION else unit_name(dimension, self.units)
 
     def with_unit(self, value: float | None) -> str:
-        """A demand or an allowable, for people."""
+        """Return a demand or an allowable with its unit, for people."""
         unit = "" if self.unit == RATIO_DIMENSION else f" {self.unit}"
         return f"{engineering(value)}{unit}"
 
@@ -109,7 +109,7 @@ def _rows(found: Iterable[PinMargin], results: Results) -> list[MarginRow]:
 
 
 def margins_table(results: Results) -> Table[MarginRow]:
-    """A row for every check of every pin and case, with all digits."""
+    """Return a row for every check of every pin and case, with all digits."""
     return Table("margins", COLUMNS, _rows(results.margins, results))
 
 
@@ -121,12 +121,12 @@ def _shown(
 
 
 def governing_table(results: Results) -> Table[MarginRow]:
-    """The governing check of every pin and case, the worst first, for people."""
+    """Return the governing check of every pin and case, the worst first, for people."""
     return _shown(governing(results), results, without=("clause",))
 
 
 def worst_table(results: Results) -> Table[MarginRow]:
-    """The same in brief, of the worst case of each pin; for terminals."""
+    """Return the governing check of the worst case of each pin, in brief, for terminals."""
     worst: dict[str, PinMargin] = {}
     for found in governing(results):
         worst.setdefault(found.pin, found)
@@ -135,14 +135,14 @@ def worst_table(results: Results) -> Table[MarginRow]:
 
 
 def pin_margins(results: Results, pin: str, case: str) -> Table[MarginRow]:
-    """All checks that were made of a pin in a case, the worst first, comparisons last."""
+    """Return all checks that were made of a pin in a case, the worst first, comparisons last."""
     own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
     order = sorted(own, key=lambda m: (not m.margin.governs, -m.used))
     return _shown(order, results, without=("pin", "case"))
 
 
 def not_made_words(results: Results) -> list[str]:
-    """A line for everything that checks need and the study does not give, with these checks."""
+    """Return a line for each datum that checks need and the study lacks, with these checks."""
     pins = {p.pin for p in results.pins}
     lines = []
     for needs, of in skipped(results).items():
@@ -154,7 +154,7 @@ def not_made_words(results: Results) -> list[str]:
 
 
 def not_made_briefly(results: Results) -> str:
-    """The same in a sentence without the checks; empty where all were made."""
+    """Return the missing data in a sentence without the checks; empty where all were made."""
     every = skipped(results)
     alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
     needs = ", ".join(alone)
@@ -162,13 +162,13 @@ def not_made_briefly(results: Results) -> str:
 
 
 def arms_table(results: Results) -> Table[ArmsRow]:
-    """Bending moments of formulas and models, with all digits."""
+    """Return the bending moments of formulas and models, with all digits."""
     rows = [ArmsRow(arms, results.units) for arms in results.arms]
     return Table("bending_arms", ARM_COLUMNS, rows)
 
 
 def shown_arms(results: Results) -> Table[ArmsRow]:
-    """The same for people, of the pins whose joint model has a moment."""
+    """Return the bending moments of the pins whose joint model has one, for people."""
     table = arms_table(results)
     return replace(table, rows=[row for row in table.rows if row.arms.joint])
 

@@ -53,7 +53,7 @@ class SensitivityRow:
 
     @property
     def one_sided(self) -> bool:
-        """Whether something else may govern with a little more of anything."""
+        """Whether something else may govern after a small increase of a parameter."""
         return bool(self.of.tied_places or self.of.tied_times or self.of.changing)
 
 
@@ -66,13 +66,13 @@ COLUMNS: list[Column[SensitivityRow]] = [
 
 
 def sensitivities_table(results: Results) -> Table[SensitivityRow]:
-    """A row for each parameter of every pin, with all digits."""
+    """Return a row for each parameter of every pin, with all digits."""
     rows = [SensitivityRow(x, by, results.units) for x in results.sensitivities for by in x.rows]
     return Table("sensitivities", COLUMNS, rows)
 
 
 def sensitivities_json(results: Results) -> list[dict[str, Any]]:
-    """The same for results.json, by pin and case."""
+    """Return the sensitivities for results.json, by pin and case."""
     parameters = in_order([c for c in COLUMNS if c.key in PARAMETER_KEYS], PARAMETER_KEYS)
     return [
         {
@@ -87,7 +87,7 @@ def sensitivities_json(results: Results) -> list[dict[str, Any]]:
 
 
 def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[SensitivityRow]:
-    """A row for each dimension that matters, the largest effects of each pin first, for people."""
+    """Return a row for each dimension that matters, the largest effects of each pin first."""
     columns: list[Column[SensitivityRow]] = [
         *texts("of.pin of.case dimension=by.key"),
         read_only("now", lambda row: short(row.by.value), "length"),
@@ -112,7 +112,7 @@ def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[S
 
 
 def _shown(found: PinSensitivities) -> list[Sensitivity]:
-    """Dimensions whose effect is not negligible."""
+    """Return the dimensions whose effect is not negligible."""
     least = MIN_SHOWN_EFFECT * found.maximum
     return [x for x in found.rows if x.kind == "length" and abs(x.stress * x.step) >= least]
 
@@ -125,7 +125,7 @@ def _change(per: float | None, step: float) -> str:
 
 
 def sensitivity_notes(results: Results) -> list[str]:
-    """What is to be known of the rows, a sentence or two each."""
+    """Return the notes on the rows, a sentence or two each."""
     units, notes = results.units, []
     for found in results.sensitivities:
         who = f"Pin {found.pin}, {found.case}"
