@@ -90,7 +90,7 @@ class ReactionTable:
 
     @property
     def largest(self) -> tuple[PeakReaction, ...]:
-        """The largest reaction of every connection: over the motion if known, else over the
+        """Return the largest reaction of every connection, over the motion or else over the
         instants.
         """
         return self.peaks or tuple(self._sampled(c) for c in range(len(self.connections)))
@@ -340,8 +340,7 @@ class LinkageMotion:
 
 @dataclass(frozen=True)
 class MotionCheck:
-    """The magnitudes (T,) of speed and acceleration of a joint, from the linkage and in closed
-    form.
+    """The magnitudes (T,) of a joint's speed and acceleration, from the linkage and in closed form.
 
     published: rows of time, published speed and acceleration in the study's units, and the computed
     speed and acceleration at that time.

@@ -24,7 +24,7 @@ class Spread:
         return self.high < other.low or other.high < self.low
 
     def or_narrower(self, weighted: Spread | None) -> Spread:
-        """Return the estimate by weighted samples if it is narrower and consistent, else this one."""
+        """Return the estimate by weighted samples if narrower and consistent, else this one."""
         if weighted is None or weighted.apart(self) or weighted.value <= 0.0:
             return self
         surer = self.low <= 0.0 or (
@@ -120,9 +120,7 @@ class Risk:
 
     @property
     def probability(self) -> Spread:
-        """The probability of failure with the narrower interval; by plain sampling if they
-        disagree.
-        """
+        """The probability of failure with the narrower interval; by plain sampling if they differ."""
         best = self.weighted if self.by_weights else None
         return best or self.sampled
 

@@ -15,7 +15,7 @@ DIGITS_OF_LARGEST = 4  # of the largest
 
 @dataclass(frozen=True)
 class Fixed:
-    """A format of a quantity: in `unit`, multiplied by `factor`, with a fixed number of decimals."""
+    """Format of a quantity: in `unit`, multiplied by `factor`, with a fixed number of decimals."""
 
     unit: str
     factor: float

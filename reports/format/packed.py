@@ -17,8 +17,8 @@ def deflated(content: bytes) -> str:
 
 
 def packed(values: np.ndarray[Any, Any], kind: str) -> dict[str, str]:
-    """Return numbers of a NumPy type, compressed and little-endian; read by `unpacked` of
-    packed.js.
+    """Return numbers of a NumPy type, compressed, little-endian; `unpacked` of packed.js reads
+    them.
 
     Integers are stored as the differences of successive ones, first the first bytes of all, then
     the

@@ -31,7 +31,7 @@ POINTER_PARAMETER: Spec = {
 
 @dataclass(frozen=True)
 class Plot:
-    """A plot: the name of its file without extension, its caption (a sentence), its specification."""
+    """A plot: the name of its file without extension, its caption, and its specification."""
 
     name: str
     caption: str

@@ -97,7 +97,7 @@ def texts(names: str, **same: Any) -> list[Column[Any]]:
 
 
 def unit_columns(names: str) -> list[Column[Any]]:
-    """Return columns of files that name the units, as in "stress time", of rows that have `units`."""
+    """Return columns of files for the units, named as in "stress time", of rows with `units`."""
     return [Column(f"{name}_unit", attrgetter(f"units.{name}")) for name in names.split()]
 
 
@@ -151,16 +151,14 @@ class Table(Generic[R]):
         return ([cell(row) for cell in cells] for row in self.rows)
 
     def write(self, directory: Path) -> Path:
-        """Write the table as CSV, or as Parquet where spreadsheets could not open it; return the
-        path.
-        """
+        """Write the table as CSV, or as Parquet if too long for spreadsheets; return the path."""
         large = len(self) > MAX_CSV_ROWS
         path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
         (write_parquet if large else write_csv)(path, self.keys, self.cells())
         return path
 
     def records(self) -> list[dict[str, Any]]:
-        """Return the rows as plain values by the keys of the columns; non-finite numbers are None."""
+        """Return the rows as plain values by the columns' keys; non-finite numbers are None."""
         return [dict(zip(self.keys, map(plain, row), strict=True)) for row in self.cells()]
 
     def for_people(self) -> list[tuple[Column[R], list[str]]]:

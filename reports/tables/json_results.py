@@ -119,7 +119,7 @@ def _drop(d: DropRecord) -> dict[str, Any]:
 
 
 def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
-    """Return a pin in a case: the JSON columns of the safety factors, and values that no table has."""
+    """Return a pin in a case: JSON columns of the safety factors, and values without a table."""
     pin, depends = of.pin, "depends_on" if outcome(of.pin) == DEPENDS else "safe_within"
     return {
         **json_of([column for column in table.columns if column.in_json], of),

@@ -14,9 +14,7 @@ from reports.tables.column import Column, Table, fields, read_only, texts
 
 @dataclass(frozen=True)
 class PublishedReaction:
-    """The largest force of a connection in a case, computed and published, in the study's force
-    unit.
-    """
+    """The largest force of a connection in a case, computed and published, in the study's unit."""
 
     case: str
     connection: str

@@ -23,7 +23,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class RiskRow:
-    """The probability of failure of a pin in a case, with the results of the study that it is from."""
+    """The probability of failure of a pin in a case, with all results of the study."""
 
     risk: Risk
     found: Reliability

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def sentence(found: Reliability, risk: Risk) -> str:
-    """Return a row's probability of failure with its interval and the effect of the model's error."""
+    """Return a row's probability of failure with its interval and the model's error."""
     per_cent = f"{100.0 * found.confidence:g} %"
     value, ends = risk.probability, risk.probability
     if value.value <= 0.0:

@@ -122,7 +122,7 @@ def _negative(results: Results) -> str:
 
 
 def _listed(rows: Iterable[tuple[str, str]]) -> str:
-    """Return pins with their cases in parentheses (many: their number); without any, the pin alone."""
+    """Return pins with their cases in parentheses (or their number); without any, the pin."""
     cases: dict[str, list[str]] = {}
     for pin, case in rows:
         cases.setdefault(pin, []).extend([case] if case else [])

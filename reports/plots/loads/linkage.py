@@ -121,7 +121,7 @@ def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
 
 
 def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
-    """Return the line of a rack; for a gear a radius that turns with it, and the circle from there."""
+    """Return the line of a rack, or a gear's circle with a radius that turns with it."""
     if not curve.round:
         return list(curve.ends[k])
     centre, mark = curve.ends[k]

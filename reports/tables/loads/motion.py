@@ -113,8 +113,7 @@ def motion_check_table(check: MotionCheck) -> Table[MotionCheck]:
 
 
 def leg_table(tables: tuple[LegTable, ...]) -> Table[LegTable]:
-    """Return the dynamics of a spatial leg in all cases: a line per instant, a column per
-    component.
+    """Return the dynamics of a spatial leg: a line per instant, a column per component, all cases.
 
     The columns carry their units; vectors end in _x, _y, _z (primed axes).
     """

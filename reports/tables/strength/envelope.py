@@ -44,7 +44,7 @@ COLUMNS: tuple[Column[EnvelopeRow], ...] = (
 
 
 def envelope_table(results: Results) -> Table[EnvelopeRow]:
-    """Return the largest force and moment on each connection, with the pin's results in the case."""
+    """Return the largest force and moment on each connection, with the pin's results."""
     rows = [
         EnvelopeRow(cell, load, results.units)
         for cell in envelope(results)

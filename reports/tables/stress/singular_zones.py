@@ -41,9 +41,7 @@ class ShownZone:
 
     @property
     def exponents(self) -> str:
-        """The measured and the theoretical exponent; at the edge of a load the theory is
-        logarithmic.
-        """
+        """The measured and the theoretical exponent; at a load's edge theory is logarithmic."""
         theory = self.found.exponent_theory
         known = "logarithm" if theory == 0.0 else engineering(theory, 3)
         return f"{engineering(self.found.exponent, 3)} / {known}"
