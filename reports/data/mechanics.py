@@ -90,9 +90,7 @@ class ReactionTable:
 
     @property
     def largest(self) -> tuple[PeakReaction, ...]:
-        """Return the largest reaction of every connection, over the motion or else over the
-        instants.
-        """
+        """The largest reaction of every connection, over the motion or else over the instants."""
         return self.peaks or tuple(self._sampled(c) for c in range(len(self.connections)))
 
     def _sampled(self, c: int) -> PeakReaction:

@@ -120,7 +120,7 @@ class Risk:
 
     @property
     def probability(self) -> Spread:
-        """The probability of failure with the narrower interval; by plain sampling if they differ."""
+        """The probability of failure with the narrower interval; by plain sampling if in doubt."""
         best = self.weighted if self.by_weights else None
         return best or self.sampled
 

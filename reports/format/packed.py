@@ -17,12 +17,11 @@ def deflated(content: bytes) -> str:
 
 
 def packed(values: np.ndarray[Any, Any], kind: str) -> dict[str, str]:
-    """Return numbers of a NumPy type, compressed, little-endian; `unpacked` of packed.js reads
-    them.
+    """Return numbers of a NumPy type, compressed and little-endian.
 
-    Integers are stored as the differences of successive ones, first the first bytes of all, then
-    the
-    second bytes, and so on, since more of these are equal.
+    The function `unpacked` of packed.js reads them. Integers are stored as the differences of
+    successive ones, first the first bytes of all, then the second bytes, and so on, since more of
+    these are equal.
     """
     flat = np.ascontiguousarray(values, dtype=kind).ravel()
     if flat.dtype.kind in "iu" and len(flat):

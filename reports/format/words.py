@@ -158,7 +158,7 @@ def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
 
 
 def _beneath(d: Dependence, units: Units) -> str:
-    """Return the words for stress beneath contact: its factor, and the depth where it is too large."""
+    """Return the words for stress beneath contact: its factor, and the depth of excess stress."""
     factor = f"FoS {engineering(d.factor, 3)}"
     if d.value:
         return f"{factor} {d.value}"

@@ -27,7 +27,7 @@ class View:
 
     @staticmethod
     def of(points: Floats, peak: Floats) -> View:
-        """Return the view from the side of the maximum, slightly from one end, with the axis level."""
+        """Return the view from the side of the maximum, slightly from one end, the axis level."""
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + VIEW_TURN_ANGLE
         end = _seen_from(points, peak)

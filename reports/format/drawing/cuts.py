@@ -12,7 +12,10 @@ HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
 
 
 def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
-    """Return the SVG of a cut on a pin that starts at x = left with its axis at y = axis, pixels."""
+    """Return the SVG of a cut on a pin that starts at x = left, with its axis at y = axis.
+
+    All lengths of the drawing are in pixels.
+    """
 
     def at(z: float, x: float) -> tuple[float, float]:
         return left + scale * z, axis - scale * x
