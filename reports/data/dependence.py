@@ -38,8 +38,7 @@ class Judged:
         """Return whether another maximum changes the outcome.
 
         It has the same relative error, or its own ends. From fails to safe the change must be
-        certain;
-        from safe to fails it suffices that it is possible.
+        certain; from safe to fails it suffices that it is possible.
         """
         low, high = ends or (stress * self.low / self.maximum, stress * self.high / self.maximum)
         return (high > self.permitted) if self.safe else (max(low, high) <= self.permitted)
@@ -98,8 +97,7 @@ def _over_joint(
     """Yield the variations of the joint that change the outcome.
 
     A row that fails is safe at another value only if the stress beneath contact is safe there, too.
-    A
-    row that is safe, beneath contact too, may no longer be so there.
+    A row that is safe, beneath contact too, may no longer be so there.
     """
     over = joint.range if joint else None
     if joint is None or over is None:

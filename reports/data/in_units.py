@@ -27,11 +27,9 @@ def in_units(value: T, unit: Unit) -> T:
 
     unit: returns the SI value of the unit of a dimension.
     Fields are annotated with their dimension (pinbase.dimensions): a name, or several with
-    exponents,
-    "stress length^0.5". A class whose dimensions differ from object to object has a property
-    `instead`, which maps the dimension of the annotation to that of the object; it holds for all
-    that
-    the object holds.
+    exponents, "stress length^0.5". A class whose dimensions differ from object to object has a
+    property `instead`, which maps the dimension of the annotation to that of the object; it holds
+    for all that the object holds.
     """
     instead: Mapping[str, str] = getattr(value, "instead", {})
 

@@ -131,8 +131,7 @@ class DriveTable:
     """One drive along a motion, all (T,).
 
     kind: a slider with length and force, or "rotary" with an angle in degrees, its rates in rad,
-    and
-    a torque.
+    and a torque.
     work, kinetic_energy, potential_energy: force x length; the energies are the whole linkage's.
     effort: over the motion, between the instants too; None: over the instants alone.
     time: None for a case at one instant.
@@ -274,8 +273,8 @@ class LinkageMotion:
     links: for each of B bodies the joints on it, in drawing order.
     centre, velocity, acceleration: (T, B, 2) of the centres of mass.
     angle: (T, B), direction from the body's first joint to its second, degrees counter-clockwise
-    from
-    x, without jumps; for a body with one joint the rotation since the drawing, for a particle NaN.
+    from x, without jumps; for a body with one joint the rotation since the drawing, for a particle
+    NaN.
     angular_velocity, angular_acceleration: (T, B) in rad.
     joints: J names, those of pitch points last. ground: joints that are fixed.
     joint_position, joint_velocity, joint_acceleration: (T, J, 2).

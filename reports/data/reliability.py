@@ -87,8 +87,8 @@ class Risk:
     mesh: by the estimated error of the stress. joint: by the range over the joint. None if unknown.
     beneath: the probability that the row fails or depends on the stress beneath contact, with its
     error; None where that is never more than the row's own.
-    curve: of the distribution (factor, probability to be lower, by plain (0) or importance
-    sampling (1)).
+    curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
+    (1)).
     """
 
     pin: str
@@ -137,10 +137,8 @@ class Risk:
         """Return the outcome: whether the probability of failure is within the allowed one.
 
         The interval with the error of the stress decides. A singular row cannot be safe. A row that
-        is
-        safe by surface and section depends on the stress beneath contact where the probability with
-        it
-        may exceed the allowed one.
+        is safe by surface and section depends on the stress beneath contact where the probability
+        with it may exceed the allowed one.
         """
         ends = self.probability
         low, high = ends.low, ends.high

@@ -131,12 +131,10 @@ class Dependence:
     what: "clearance", "impulse time", "beneath". value: in words where it is not a number
     ("guided").
     over: the owner of the range, or "beneath" for the stress beneath contact as the study has it;
-    for
-    that stress over a range, `value` is what changes ("clearance").
+    for that stress over a range, `value` is what changes ("clearance").
     factor: of safety at that value.
     given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
-    one
-    at which it changes, of `dimension`; None where it is not a number.
+    one at which it changes, of `dimension`; None where it is not a number.
     reach: depth below pressed cells at which the stress exceeds the permitted one.
     """
 
@@ -168,9 +166,8 @@ class PinResult:
     published_*: the publication's value, in the study's units.
     position_unit: as in ReactionTable. why: which model answered and why it was sufficient.
     singular_at: stress singularities. If one governs (verdict `singular`), maximum, factor and
-    history
-    exclude all of them; the intervals are those over half and twice the excluded distance, and
-    error_estimate reaches both ends.
+    history exclude all of them; the intervals are those over half and twice the excluded distance,
+    and error_estimate reaches both ends.
     error_parts: stresses by source of error (mesh, time, ..). loads: at the governing instant.
     joint: contact with the lugs at that instant, if lugs support the pin.
     places: surface, section and contact; the maximum is the larger of the first two; None where the
@@ -270,8 +267,7 @@ class CutShape:
     """The shape of a cut for drawing; its name is, for instance, "hole 1".
 
     z: its ends; of a hole its middle, twice. size: diameter or width; of a flat its distance from
-    the
-    axis. offset: of a passage from the axis. depth: None through the pin and for flats.
+    the axis. offset: of a passage from the axis. depth: None through the pin and for flats.
     angle: from x, degrees. lines: points (z, x) of edges in the view from y, and whether hidden.
     notches: (z, x) of two opposite corners of each piece cut from the silhouette.
     """
@@ -325,8 +321,7 @@ class Fatigue:
     points: the worst first. probability: of failure, None for that of the S-N data.
     life: for which pins are designed. left_out: sentences on what was not assessed.
     not_decided: by pin, the reason why its damage is not known although its material has the data;
-    its
-    points, if any, have at least their damage.
+    its points, if any, have at least their damage.
     """
 
     unit: str

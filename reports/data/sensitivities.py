@@ -43,8 +43,7 @@ class PinSensitivities:
 
     rows: the largest effect on the factor first.
     tied_places, tied_times: places (r, z) and times whose stress is within the error of the
-    maximum,
-    so that they may govern after a small increase of a parameter.
+    maximum, so that they may govern after a small increase of a parameter.
     without: keys of dimensions that have no derivative, and the reason.
     changing: number of cells of contact about to open or close, which makes derivatives one-sided.
     note: the reason why there are no derivatives.

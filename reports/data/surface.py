@@ -57,8 +57,7 @@ class SurfaceCase:
     largest: (P,), von Mises stress at the governing instant; of a meridian the maximum over the
     circumference outside excluded parts. location: (x, y, z) of the maximum at that instant.
     unread: (T, P, SURFACE_SECTORS), where lugs press on the surface or next to it, from the angle
-    of
-    `location` on; None without lugs.
+    of `location` on; None without lugs.
     pressure: (R, M), contact pressure at the governing instant on M sectors of R rings; None
     without.
     first: angle of the first sector from x, rad. rings: (P,), ring of each point, -1 on none.

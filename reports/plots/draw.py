@@ -42,8 +42,7 @@ def svg(spec: Spec) -> str:
     """Return the drawing of a specification with its configuration; no address is opened.
 
     Vega cuts long texts within characters that are two UTF-16 units, such as emoji, and fails:
-    these
-    are then written as U+1F600.
+    these are then written as U+1F600.
     Raises: ValueError where Vega-Lite fails, Damaged for an address in it.
     """
     require_no_address(spec, "the plot")

@@ -180,8 +180,7 @@ class ArrayTable(Table[R]):
     """A table of millions of lines, in which each row stands for many lines.
 
     A cell of a row is an array, a list, or one value for all its lines. The first column with an
-    array
-    gives their number.
+    array gives their number.
     """
 
     def __len__(self) -> int:

@@ -76,8 +76,7 @@ def summary(chart: Chart) -> str:
     """Return the sentences under the table.
 
     They give the cheapest model within the tolerance, the cost of equal errors, and the error of
-    the
-    beam on foundations.
+    the beam on foundations.
     """
     said = (_cheapest(chart), _ratio(chart), _foundation_error(chart))
     return " ".join(text for text in said if text)

@@ -44,10 +44,8 @@ def point_data(field: Field, units: Units) -> Arrays:
 
     They are displacement (N, 3), stress (N, 6: XX, YY, ZZ, XY, YZ, XZ, ParaView's components of a
     symmetric tensor), von Mises (N,), von Mises envelope (N,; NaN inside), with a yield strength
-    the
-    factor of safety, and for a pin in lugs the mean pressure of each cell of contact and whether it
-    is
-    pressed (0 or 1).
+    the factor of safety, and for a pin in lugs the mean pressure of each cell of contact and
+    whether it is pressed (0 or 1).
     """
     stress = units.stress
     data: Arrays = {
