@@ -36,13 +36,13 @@ class Arrow:
 
 def arrows(scene: Scene) -> list[Arrow]:
     """Return an arrow for each connection, with a length in proportion to its force."""
-    found = []
+    shown_arrows = []
     for c, ((fx, fy), joint) in enumerate(zip(scene.forces[0].tolist(), scene.tails, strict=True)):
         x, y = scene.joints[0, joint].tolist()
         length = MAX_ARROW_LENGTH * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
         colour = scene.colour(scene.motion.connections[c][1])
-        found.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
-    return found
+        shown_arrows.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
+    return shown_arrows
 
 
 def key(scene: Scene) -> tuple[float, Arrow] | None:
@@ -95,11 +95,11 @@ def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
     table = scene.table
     if table is None:
         return []
-    peaks, first, found = table.largest, scene.instants[0], []
+    peaks, first, force_rows = table.largest, scene.instants[0], []
     for c, (name, body, _) in enumerate(scene.motion.connections):
         fx, fy = (shown.force(v) for v in scene.forces[0, c].tolist())
         peak, when = peaks[c].force, peaks[c].time
-        found.append(
+        force_rows.append(
             ForceRow(
                 name,
                 body,
@@ -112,4 +112,4 @@ def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
                 "" if when is None else short(float(f"{when:.4g}")),
             )
         )
-    return found
+    return force_rows

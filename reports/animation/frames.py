@@ -24,9 +24,9 @@ def frames(
     peaks = [int(np.argmax(np.abs(d.force))) for d in drives if len(d.force) == count]
     if table is not None:
         peaks += table.magnitudes.argmax(axis=0).tolist()
-    kept = np.unique(peaks)[: MAX_FRAMES // 2]
-    even = np.linspace(0, count - 1, MAX_FRAMES - len(kept)).round().astype(int)
-    return np.union1d(even, kept)
+    peak_indices = np.unique(peaks)[: MAX_FRAMES // 2]
+    even = np.linspace(0, count - 1, MAX_FRAMES - len(peak_indices)).round().astype(int)
+    return np.union1d(even, peak_indices)
 
 
 @dataclass(frozen=True)

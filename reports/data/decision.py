@@ -19,8 +19,8 @@ def outcome(pin: PinResult) -> str:
 
     It is safe, fails, is not decided, or depends on what the study leaves open.
     """
-    found = as_described(pin)
-    return DEPENDS if found in (SAFE, BELOW_YIELD) and pin.depends_on else found
+    described = as_described(pin)
+    return DEPENDS if described in (SAFE, BELOW_YIELD) and pin.depends_on else described
 
 
 def as_described(pin: PinResult) -> str:

@@ -56,22 +56,24 @@ def dependences(
     """
     if judged.maximum <= 0.0:
         return ()
-    found = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
+    dependence_list = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if landing is not None:
-        found += _with_beneath(judged, contact, landing)
-    return tuple(found)
+        dependence_list += _with_beneath(judged, contact, landing)
+    return tuple(dependence_list)
 
 
 def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence, ...]:
     """Return what the outcome of a row depends on; empty where it is not decided as described."""
-    found = as_described(pin)
-    if found == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
+    described = as_described(pin)
+    if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
     strength = pin.safety_factor * pin.max_von_mises
     contact = pin.places.contact if pin.places else None
     high, low = (strength / end for end in factor_ends(pin))
     permitted = strength / (pin.required or 1.0)
-    judged = Judged(low, pin.max_von_mises, high, strength, permitted, found in (SAFE, BELOW_YIELD))
+    judged = Judged(
+        low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
+    )
     return dependences(judged, contact, pin.joint, landing)
 
 
@@ -104,24 +106,24 @@ def _over_joint(
         return
     given = max((band.clearance for band in joint.bands), default=None)
     deep = [v for v in over.variations if _upper_end(contact, v) > judged.permitted]
-    found = [
+    turning = [
         v
         for v in over.variations
         if judged.turns(v.max_von_mises, v.interval) and (judged.safe or v not in deep)
     ]
-    for v in found:
+    for v in turning:
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
             given=given if v.length is not None else None, at=v.length,
             flips_at=_crossing(judged, v, given), dimension="length",
         )  # fmt: skip
-    if not found and judged.safe and over.max_von_mises[1] > judged.permitted:
+    if not turning and judged.safe and over.max_von_mises[1] > judged.permitted:
         lugs = "assumed lugs" if over.assumed else "its lugs"
         factor = judged.strength / over.max_von_mises[1]
         yield Dependence("joint", f"contact with {lugs}", "joint", factor)
     if contact is None or not judged.safe or contact.upper_end > judged.permitted:
         return
-    for v in (v for v in deep if v not in found):
+    for v in (v for v in deep if v not in turning):
         end = _upper_end(contact, v)
         what = f"{v.what} {v.value}" if v.length is None else v.what
         yield Dependence(
@@ -178,8 +180,8 @@ def _with_beneath(
         return list(_over_landing(judged, r))
     if not judged.safe:
         return list(_over_landing(replace(judged, high=max(judged.high, contact.upper_end)), r))
-    if (found := list(_over_landing(judged, r))) or contact.upper_end > judged.permitted:
-        return found
+    if (over_landing := list(_over_landing(judged, r))) or contact.upper_end > judged.permitted:
+        return over_landing
     deep = replace(judged, low=contact.beneath, maximum=contact.beneath, high=contact.upper_end)
     scaled = replace(r, max_von_mises=r.max_von_mises * (contact.beneath / judged.maximum))
     return [
@@ -196,7 +198,7 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
     )
     pulse = np.array([name == r.nominal_pulse for name in r.pulses])
     turned = np.array([judged.turns(float(stress)) for stress in r.max_von_mises])
-    found = False
+    any_alone = False
     axes = (
         ("impulse time", "time", r.impulse_time, r.nominal[0], velocity & pulse),
         ("velocity change", "velocity", r.velocity_change, r.nominal[1], time & pulse),
@@ -204,7 +206,7 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
     for what, dimension, values, given, alone in axes:
         here = _nearest(values, given, alone & turned)
         if here is not None:
-            found = True
+            any_alone = True
             at, stress = float(values[here]), float(r.max_von_mises[here])
             flips = _between(judged, (given, judged.maximum), (at, stress))
             yield Dependence(
@@ -212,10 +214,10 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
                 given=given, at=at, flips_at=flips, dimension=dimension,
             )  # fmt: skip
     for k in np.flatnonzero(time & velocity & ~pulse & turned):
-        found = True
+        any_alone = True
         factor = judged.strength / float(r.max_von_mises[k])
         yield Dependence("pulse", r.pulses[int(k)], "landing", factor)
-    if not found and turned.any():
+    if not any_alone and turned.any():
         extreme = np.max if judged.safe else np.min
         factor = judged.strength / float(extreme(r.max_von_mises))
         yield Dependence(IMPULSE_RANGES_TOGETHER, "", "landing", factor)

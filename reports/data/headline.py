@@ -55,26 +55,26 @@ class JudgedCheck:
 def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
     rows = {(row.pin, row.case): row for row in results.pins}
-    found = [_of_row(row, limit(results)) for row in results.pins]
-    found += (
+    checks = [_of_row(row, limit(results)) for row in results.pins]
+    checks += (
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins
         if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0
     )
     open_ = results.fatigue.not_decided if results.fatigue else {}
-    found += (
+    checks += (
         JudgedCheck(pin, "", FATIGUE_LIFE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
         for pin, reason in open_.items()
     )
-    return sorted(found, key=lambda check: check.rank)
+    return sorted(checks, key=lambda check: check.rank)
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:
     """Return the worst check of every pin, in the order of the results."""
-    found: dict[str, JudgedCheck] = {}
+    worst: dict[str, JudgedCheck] = {}
     for check in judged_checks(results):
-        found.setdefault(check.pin, check)
-    return {row.pin: found[row.pin] for row in results.pins}
+        worst.setdefault(check.pin, check)
+    return {row.pin: worst[row.pin] for row in results.pins}
 
 
 def pins_with(worst: Iterable[JudgedCheck], *outcomes: str) -> list[str]:
@@ -112,15 +112,17 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
     )
 
 
-def _of_margin(found: PinMargin, row: PinResult | None) -> JudgedCheck:
+def _of_margin(pin_margin: PinMargin, row: PinResult | None) -> JudgedCheck:
     """Return the check of a margin.
 
     A margin has only the upper end of a demand; the model's stress has a lower end, too.
     """
-    m = found.margin
+    m = pin_margin.margin
     factor = m.allowable / m.demand if m.demand and m.allowable is not None else None
-    state = SAFE if found.used <= 1.0 else FAILS
+    state = SAFE if pin_margin.used <= 1.0 else FAILS
     if m.method == RUPTURE_METHOD and row is not None and row.safety_factor and state == FAILS:
         low, high = factor_ends(row)
-        state = FAILS if found.used * low / high > 1.0 else NOT_DECIDED
-    return JudgedCheck(found.pin, found.case, m.method, state, factor, m.factor, found.used)
+        state = FAILS if pin_margin.used * low / high > 1.0 else NOT_DECIDED
+    return JudgedCheck(
+        pin_margin.pin, pin_margin.case, m.method, state, factor, m.factor, pin_margin.used
+    )

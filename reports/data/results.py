@@ -386,11 +386,11 @@ class Results:
 
         Raises: KeyError.
         """
-        found = [p for p in self.pins if (p.pin, p.case) == row]
-        if not found:
-            there = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
-            raise KeyError(f"no row {row!r}; there are {there}")
-        return found[0]
+        matches = [p for p in self.pins if (p.pin, p.case) == row]
+        if not matches:
+            known_rows = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
+            raise KeyError(f"no row {row!r}; there are {known_rows}")
+        return matches[0]
 
     def in_units(self, units: Units, unit: Unit) -> Self:
         """Return the same results in other units.

@@ -44,10 +44,10 @@ def strict_json(content: bytes, name: str) -> Any:
     """
     try:
         text = content.decode("utf-8")
-        found = json.loads(text, parse_constant=_no_number)
-        _require_shallow(found)
+        values = json.loads(text, parse_constant=_no_number)
+        _require_shallow(values)
         if SURROGATE_ESCAPE_PATTERN.search(text):  # may be lone, which no file can be written with
-            json.dumps(found, ensure_ascii=False).encode()
+            json.dumps(values, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         raise Damaged(f"{name} is damaged: no UTF-8 from byte {error.start:,} on") from None
     except UnicodeEncodeError:
@@ -61,15 +61,15 @@ def strict_json(content: bytes, name: str) -> Any:
         raise Damaged(f"{name} is damaged: it has {error}, which is no number") from None
     except ValueError:  # of int()
         raise Damaged(f"{name} is damaged: it has a number of thousands of digits") from None
-    return found
+    return values
 
 
-def _require_shallow(found: Any) -> None:
+def _require_shallow(value: Any) -> None:
     """Check that values are not nested too deeply for what walks or copies them later.
 
     Raises: RecursionError.
     """
-    level = [found]
+    level = [value]
     for _ in range(MAX_JSON_DEPTH):
         holders = [x.values() if isinstance(x, dict) else x for x in level if x and _holds(x)]
         level = [below for holder in holders for below in holder if _holds(below)]

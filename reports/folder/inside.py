@@ -57,9 +57,9 @@ def read_inside(folder: Path, name: str, most: int) -> bytes:
         _require_file(place, last, name, most)
         descriptor = os.open(place.of(last), READ_FLAGS, dir_fd=place.descriptor)
         with open(descriptor, "rb") as file:
-            found = os.fstat(descriptor)
-            if not stat.S_ISREG(found.st_mode):
-                raise _not_plain(name, found.st_mode)
+            status = os.fstat(descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                raise _not_plain(name, status.st_mode)
             content = file.read(most + 1)
     if len(content) > most:  # it is growing
         raise _too_large(name, most)
@@ -73,9 +73,9 @@ def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
     Raises: NotPlain, OSError.
     """
     with _place(folder, name, make=True) as (place, last):
-        for there in (last, last + PARTIAL_SUFFIX):
+        for entry in (last, last + PARTIAL_SUFFIX):
             with suppress(FileNotFoundError):
-                _require_file(place, there, name + there[len(last) :])
+                _require_file(place, entry, name + entry[len(last) :])
         at, partial = place.descriptor, place.of(last + PARTIAL_SUFFIX)
         with suppress(FileNotFoundError):  # of a process that was killed
             os.unlink(partial, dir_fd=at)
@@ -95,9 +95,9 @@ def is_inside(folder: Path, name: str) -> bool:
     Raises: NotPlain where it is something else.
     """
     with suppress(FileNotFoundError), _place(folder, name) as (place, last):
-        found = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
-        if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
-            raise _not_plain(name, found.st_mode)
+        status = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
+        if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
+            raise _not_plain(name, status.st_mode)
         return True
     return False
 
@@ -142,16 +142,16 @@ def _by_path(folder: Path, between: list[str], make: bool) -> _Place:
 
 
 def _require_folder(place: _Place, name: str, shown: str) -> None:
-    found = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
-    if not stat.S_ISDIR(found.st_mode):
-        raise _not_plain(shown, found.st_mode)
+    status = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
+    if not stat.S_ISDIR(status.st_mode):
+        raise _not_plain(shown, status.st_mode)
 
 
 def _require_file(place: _Place, name: str, shown: str, most: int | None = None) -> None:
-    found = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
-    if not stat.S_ISREG(found.st_mode):
-        raise _not_plain(shown, found.st_mode)
-    if most is not None and found.st_size > most:
+    status = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
+    if not stat.S_ISREG(status.st_mode):
+        raise _not_plain(shown, status.st_mode)
+    if most is not None and status.st_size > most:
         raise _too_large(shown, most)
 
 

@@ -101,14 +101,14 @@ def result_words(pin: PinResult) -> str:
 
     Examples: "not decided: singular", "depends: joint", "fails (yields)".
     """
-    found = outcome(pin)
-    if found == NOT_DECIDED:
-        return f"{found}: {undecided_because(pin)}"
-    if found == DEPENDS:
-        return f"{found}: {over_words(pin.depends_on)}"
+    state = outcome(pin)
+    if state == NOT_DECIDED:
+        return f"{state}: {undecided_because(pin)}"
+    if state == DEPENDS:
+        return f"{state}: {over_words(pin.depends_on)}"
     more = [undecided_because(pin)] * (pin.verdict != "converged")
-    more += [YIELDS] * bool(pin.yields and found != YIELDS)
-    return f"{found} ({', '.join(more)})" if more else found
+    more += [YIELDS] * bool(pin.yields and state != YIELDS)
+    return f"{state} ({', '.join(more)})" if more else state
 
 
 def over_words(depends_on: Sequence[Dependence]) -> str:
@@ -147,13 +147,15 @@ def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
     """Return all ranges in words as a list of one text; empty without ranges."""
     parts = []
     for over in dict.fromkeys(d.over for d in depends_on if d.over != BENEATH_CONTACT):
-        each = list(dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over))
-        if len(each) > MAX_NAMED_PROPERTIES:
-            each = [
-                *each[: MAX_NAMED_PROPERTIES - 1],
-                f"and {len(each) - MAX_NAMED_PROPERTIES + 1} others",
+        properties = list(
+            dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over)
+        )
+        if len(properties) > MAX_NAMED_PROPERTIES:
+            properties = [
+                *properties[: MAX_NAMED_PROPERTIES - 1],
+                f"and {len(properties) - MAX_NAMED_PROPERTIES + 1} others",
             ]
-        parts.append(f"the {over} ({', '.join(each)})")
+        parts.append(f"the {over} ({', '.join(properties)})")
     return [f"the range of {' and of '.join(parts)}"] if parts else []
 
 

@@ -29,21 +29,21 @@ class PicturePair:
 
 
 def write_comparison(
-    found: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
+    comparison: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
 ) -> None:
     """Write the page.
 
     drawn: the plot as SVG, empty without one.
     """
-    plot = comparison_plot(found)
+    plot = comparison_plot(comparison)
     text = (
         environment()
         .get_template("comparison.html.j2")
         .render(
-            found=found,
-            headline=headline(found),
+            found=comparison,
+            headline=headline(comparison),
             sections=[
-                (name, t.grid(), note) for name, t, note in sections(found) if t.rows or note
+                (name, t.grid(), note) for name, t, note in sections(comparison) if t.rows or note
             ],
             plot=drawn,
             caption=plot.caption if plot and drawn else "",

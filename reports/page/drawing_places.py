@@ -32,18 +32,18 @@ class PlaceMark:
 
 def place_marks(results: Results, pin: str, length: float) -> list[PlaceMark]:
     """Return the marks of a pin, the worst cases first."""
-    found: list[PlaceMark] = []
+    marks: list[PlaceMark] = []
     for row in worst_first(results):
         if row.pin != pin or row.location is None:
             continue
         x, y, z = row.location
         by_section = row.places is not None and row.places.governs == "section"
         r = None if by_section else hypot(x, y)
-        for k, mark in enumerate(found):
+        for k, mark in enumerate(marks):
             near = abs(mark.z - z) <= PLACE_TOLERANCE * length and (mark.r is None) == (r is None)
             if near and abs((mark.r or 0.0) - (r or 0.0)) <= PLACE_TOLERANCE * length:
-                found[k] = PlaceMark(mark.z, mark.r, (*mark.cases, row.case))
+                marks[k] = PlaceMark(mark.z, mark.r, (*mark.cases, row.case))
                 break
         else:
-            found.append(PlaceMark(z, r, (row.case,)))
-    return found[:MAX_DRAWN_PLACES]
+            marks.append(PlaceMark(z, r, (row.case,)))
+    return marks[:MAX_DRAWN_PLACES]

@@ -77,15 +77,15 @@ def _factors(results: Results) -> Content | None:
 
 def _envelope(results: Results) -> Content | None:
     """Return the utilisations of pins in cases, in blocks as wide as the paper."""
-    found = matrix(results)
-    if found is None:
+    utilisations = matrix(results)
+    if utilisations is None:
         return None
     blocks = []
-    for first in range(0, len(found.pins), PINS_PER_MATRIX):
+    for first in range(0, len(utilisations.pins), PINS_PER_MATRIX):
         part = slice(first, first + PINS_PER_MATRIX)
-        rows = [[case, *map(_used, cells[part])] for case, cells in found.rows]
-        blocks.append({"head": ["case", *found.pins[part]], "body": rows})
-    return {"reading": ENVELOPE_NOTE, "note": found.note, "blocks": blocks}
+        rows = [[case, *map(_used, cells[part])] for case, cells in utilisations.rows]
+        blocks.append({"head": ["case", *utilisations.pins[part]], "body": rows})
+    return {"reading": ENVELOPE_NOTE, "note": utilisations.note, "blocks": blocks}
 
 
 def _used(cell: EnvelopeCell | None) -> Content | None:

@@ -80,11 +80,11 @@ def _packed(content: Mapping[str, Any]) -> str:
 
 
 def _read(page: str, name: str) -> Any:
-    found = re.search(PACKED_SCRIPT_PATTERN.format(name), page)
-    if found is None:
+    match = re.search(PACKED_SCRIPT_PATTERN.format(name), page)
+    if match is None:
         return None
     where = f"{REPORT_PAGE}, {name}"
-    return strict_json(inflated(found[1], MAX_UNPACKED_SIZE, where), where)
+    return strict_json(inflated(match[1], MAX_UNPACKED_SIZE, where), where)
 
 
 def _day(text: str) -> str:

@@ -33,11 +33,11 @@ def margin_part(results: Results) -> dict[str, Any] | None:
 
 def envelope_part(results: Results) -> dict[str, Any] | None:
     """Return the matrix of cases and pins; None for a single case."""
-    found = matrix(results)
+    utilisations = matrix(results)
     return (
         None
-        if found is None
-        else {"matrix": found, "reading": ENVELOPE_NOTE, "heat": heat, "text": cell_text}
+        if utilisations is None
+        else {"matrix": utilisations, "reading": ENVELOPE_NOTE, "heat": heat, "text": cell_text}
     )
 
 

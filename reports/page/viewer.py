@@ -60,14 +60,14 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
     surfaces = [s for s in results.surfaces if s.pin == pin]
     if not surfaces:
         return []
-    found = {p.case: p for p in results.pins if p.pin == pin}
-    order = {case: k for k, case in enumerate(found)}
+    results_by_case = {p.case: p for p in results.pins if p.pin == pin}
+    order = {case: k for k, case in enumerate(results_by_case)}
     shown = sorted(
         ((c, k, s) for k, s in enumerate(surfaces) for c in s.cases), key=lambda x: order[x[0].case]
     )
     cases = [c for c, _, _ in shown]
     shape = next((s for s in results.shapes if s.pin == pin), None)
-    opens = _governing([found[c.case] for c in cases])
+    opens = _governing([results_by_case[c.case] for c in cases])
     box = _box(surfaces[0])
     data = {
         "units": vars(results.units),
@@ -75,7 +75,8 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
         "required": results.required_safety_factor,
         "surfaces": [_surface(s) for s in surfaces],
         "cases": [
-            _case(c, found[c.case], k, s) | _row(found[c.case], results) for c, k, s in shown
+            _case(c, results_by_case[c.case], k, s) | _row(results_by_case[c.case], results)
+            for c, k, s in shown
         ],
         "opens": opens,
         "box": box.tolist(),
@@ -107,7 +108,7 @@ def _surface(surface: Surface) -> dict[str, Any]:
     largest = _largest(surface)
     # In units of stress: a point's error is a part of the point's own stress, not of the pin's.
     stress, moved = surface.stress * largest, surface.displacement * largest
-    each = np.abs(stress).max(axis=(1, 2), initial=0.0)
+    peaks = np.abs(stress).max(axis=(1, 2), initial=0.0)
     longest = np.abs(moved).max(axis=(0, 1), initial=0.0)
     return {
         "sectors": SURFACE_SECTORS if surface.revolved else 1,
@@ -115,8 +116,10 @@ def _surface(surface: Surface) -> dict[str, Any]:
         "triangles": None if surface.revolved else packed(surface.triangles, "<u4"),
         "n": surface.n.tolist(),
         "even": [int(e) for e in surface.even],
-        "stress": packed(np.rint(_parts(stress, each[:, None, None], MAX_STRESS_INTEGER)).T, "<i2"),
-        "stress_scale": packed(each / MAX_STRESS_INTEGER, "<f4"),
+        "stress": packed(
+            np.rint(_parts(stress, peaks[:, None, None], MAX_STRESS_INTEGER)).T, "<i2"
+        ),
+        "stress_scale": packed(peaks / MAX_STRESS_INTEGER, "<f4"),
         "moved": packed(np.rint(_parts(moved, longest, MAX_DISPLACEMENT_INTEGER)).T, "<i1"),
         "moved_scale": packed(longest / MAX_DISPLACEMENT_INTEGER, "<f4"),
     }
@@ -180,9 +183,9 @@ def _row(pin: PinResult, results: Results) -> dict[str, str]:
 
 def _short(maxima: Floats, instant: int) -> list[float]:
     """Return maxima with seven digits, but the governing one with all."""
-    found = [float(f"{value:.7g}") for value in maxima]
-    found[instant] = float(maxima[instant])
-    return found
+    rounded = [float(f"{value:.7g}") for value in maxima]
+    rounded[instant] = float(maxima[instant])
+    return rounded
 
 
 def _load(load: LoadCourse) -> dict[str, Any]:

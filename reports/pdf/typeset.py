@@ -54,21 +54,21 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
     data = {**content, "pins": pins, "captions": captions}
     files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
     day = content["block"]["date"]
-    made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else FIXED_DATE
+    timestamp = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else FIXED_DATE
     try:
-        return _compiled(files, made)
+        return _compiled(files, timestamp)
     except typst.TypstError:
         missing = _without_glyph("".join(text.decode() for text in files.values()))
     numbers = {ord(c): f"U+{ord(c):04X}" for c in missing}
     shown = {name: text.decode().translate(numbers).encode() for name, text in files.items()}
     try:
-        return _compiled(shown, made)
+        return _compiled(shown, timestamp)
     except typst.TypstError as error:
         said = str(error).splitlines()[0]
         raise Damaged(f"report.html has content that cannot be typeset: {said}") from None
 
 
-def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
+def _compiled(files: dict[str, bytes], timestamp: datetime) -> bytes:
     """Return the compiled PDF.
 
     Raises: TypstError, for instance for a character that no font has, which UA-1 forbids.
@@ -78,9 +78,9 @@ def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
     fonts = typst.Fonts(include_system_fonts=False)  # those of a machine would change the bytes
     with TemporaryDirectory(prefix="pinstress-") as nothing:  # else it reads the current folder
         compiler = typst.Compiler(files, root=nothing, font_paths=fonts)  # type: ignore[type-var]
-        found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
-    assert isinstance(found, bytes)
-    return found
+        pdf = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=timestamp)
+    assert isinstance(pdf, bytes)
+    return pdf
 
 
 def _without_glyph(text: str) -> list[str]:

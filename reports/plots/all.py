@@ -74,11 +74,11 @@ def _pins(results: Results) -> Iterator[Plot]:
         if pin.joint is not None and pin.joint.bands:
             yield joint_plot(pin.pin, pin.case, pin.joint, units)
     yield from _fatigue(results)
-    found = {(p.pin, p.case): p for p in results.pins}
+    pin_rows = {(p.pin, p.case): p for p in results.pins}
     shapes = {s.pin: s for s in results.shapes}
     for surface in results.surfaces:
         for shown in surface.cases if surface.revolved else ():
-            row, shape = found[surface.pin, shown.case], shapes.get(surface.pin)
+            row, shape = pin_rows[surface.pin, shown.case], shapes.get(surface.pin)
             yield surface_plot(surface, shown, row, shape, units)
 
 

@@ -47,15 +47,15 @@ def svg(spec: Spec) -> str:
     """
     require_no_address(spec, "the plot")
     text = json.dumps(still(spec), ensure_ascii=False)
-    named = TWO_UNIT_CHARACTER_PATTERN.sub(lambda found: f"U+{ord(found[0]):X}", text)
+    named = TWO_UNIT_CHARACTER_PATTERN.sub(lambda match: f"U+{ord(match[0]):X}", text)
     try:
-        made = _drawn(text)
+        drawing = _drawn(text)
     except ValueError:
         if named == text:
             raise
-        made = _drawn(named)
-    require_self_contained(made, "the plot")
-    return _numbered(made)
+        drawing = _drawn(named)
+    require_self_contained(drawing, "the plot")
+    return _numbered(drawing)
 
 
 def _drawn(text: str) -> str:
@@ -69,4 +69,4 @@ def _numbered(svg: str) -> str:
     number = {
         name: str(k) for k, name in enumerate(dict.fromkeys(CLIP_ID_PATTERN.findall(svg)), start=1)
     }
-    return CLIP_ID_PATTERN.sub(lambda found: number[found[0]], svg)
+    return CLIP_ID_PATTERN.sub(lambda match: number[match[0]], svg)

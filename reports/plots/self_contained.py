@@ -29,8 +29,10 @@ def require_no_address(spec: Any, name: str) -> None:
     while waiting:
         node = waiting.pop()
         if isinstance(node, dict):
-            if found := sorted(ADDRESS_KEYS & {str(key).lower() for key in node}):
-                raise Damaged(f"{name} has an address ({found[0]}), which no plot of pinstress has")
+            if address_keys := sorted(ADDRESS_KEYS & {str(key).lower() for key in node}):
+                raise Damaged(
+                    f"{name} has an address ({address_keys[0]}), which no plot of pinstress has"
+                )
             mark = node.get("mark")
             if IMAGE_MARK in (mark, mark.get("type") if isinstance(mark, dict) else None):
                 raise Damaged(f"{name} has a picture in it, which no plot of pinstress has")
@@ -58,8 +60,8 @@ def require_self_contained(svg: str, name: str) -> None:
             ):
                 raise Damaged(f"{name} refers to {value[:60]!r}, outside of itself")
 
-    def text(found: str) -> None:
-        if inside[-1] == "style" and EXTERNAL_REFERENCE_PATTERN.search(found):
+    def text(content: str) -> None:
+        if inside[-1] == "style" and EXTERNAL_REFERENCE_PATTERN.search(content):
             raise Damaged(f"{name} refers to something outside of itself")
 
     def doctype(*_: object) -> None:

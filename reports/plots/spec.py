@@ -194,12 +194,12 @@ def still(spec: Spec) -> Spec:
     """Return the specification without the parts that only a pointer needs."""
     if "params" in spec:
         spec = {key: value for key, value in spec.items() if key != "params"}
-    kept: Spec = {
+    parts: Spec = {
         key: [still(part) for part in spec[key] if POINTER_PARAMETER not in part.get("params", [])]
         for key in ("layer", "vconcat")
         if key in spec
     }
-    return {**spec, **kept}
+    return {**spec, **parts}
 
 
 # Layers with data of their own.

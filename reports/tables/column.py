@@ -194,8 +194,8 @@ class ArrayTable(Table[R]):
         )
 
     def values(self, column: Column[R]) -> Sequence[Cell]:
-        each = ((column.cell(row), self._lines(row)) for row in self.rows)
-        return list(chain(*(_listed(cells, 0, count) for cells, count in each)))
+        cells_and_counts = ((column.cell(row), self._lines(row)) for row in self.rows)
+        return list(chain(*(_listed(cells, 0, count) for cells, count in cells_and_counts)))
 
     def cells(self) -> Iterator[Sequence[Cell]]:
         for row in self.rows:

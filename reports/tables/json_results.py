@@ -127,7 +127,7 @@ def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
         **places_json(pin),
         "depends_on": [],
         "safe_within": [],
-        depends: [json_of(DEPENDENCE, each) for each in pin.depends_on],
+        depends: [json_of(DEPENDENCE, dependence) for dependence in pin.depends_on],
         "singular_at": [json_of(ZONE, zone) for zone in pin.singular_at],
         "hand_checks": [json_of(CHECK, check) for check in pin.hand_checks],
         "joint": joint_json(pin.joint),
@@ -137,7 +137,7 @@ def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
 
 
 def _headline(results: Results) -> dict[str, Any] | None:
-    found = headline_json(results, headline(results))
-    if found is not None:
-        found["worst"]["factor"] = finite(found["worst"]["factor"])
-    return found
+    decision = headline_json(results, headline(results))
+    if decision is not None:
+        decision["worst"]["factor"] = finite(decision["worst"]["factor"])
+    return decision

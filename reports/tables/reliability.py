@@ -102,14 +102,15 @@ DRIVER_COLUMNS: list[Column[DriverRow]] = [
 ]  # fmt: skip
 
 
-def write_reliability(found: Reliability, directory: Path) -> None:
+def write_reliability(reliability: Reliability, directory: Path) -> None:
     """Write reliability.csv, drivers.csv and reliability.json with all digits."""
-    Table("reliability", COLUMNS, [RiskRow(risk, found) for risk in found.risks]).write(directory)
-    drivers = [DriverRow(risk, driver) for risk in found.risks for driver in risk.drivers]
+    rows = [RiskRow(risk, reliability) for risk in reliability.risks]
+    Table("reliability", COLUMNS, rows).write(directory)
+    drivers = [DriverRow(risk, driver) for risk in reliability.risks for driver in risk.drivers]
     Table("drivers", DRIVER_COLUMNS, drivers).write(directory)
-    content = {"schema": RELIABILITY_SCHEMA, **plain(found)}
-    for risk, made in zip(found.risks, content["risks"], strict=True):
-        made |= {"result": risk.result(found.probability), "by_weights": risk.by_weights}
+    content = {"schema": RELIABILITY_SCHEMA, **plain(reliability)}
+    for risk, record in zip(reliability.risks, content["risks"], strict=True):
+        record |= {"result": risk.result(reliability.probability), "by_weights": risk.by_weights}
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     path = directory / "reliability.json"
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
@@ -157,35 +158,35 @@ def factor_interval(value: Spread | None) -> str:
     return f"{engineering(value.value, PROBABILITY_DIGITS)} ({' to '.join(ends)})"
 
 
-def risks_table(found: Reliability) -> Table[Risk]:
+def risks_table(reliability: Reliability) -> Table[Risk]:
     """Return a row per pin and case, for people.
 
     The stress beneath contact has columns only where it ever raises a probability.
     """
-    per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
-    limit = engineering(found.limit, PROBABILITY_DIGITS)
+    per_cent, p = f"{100.0 * reliability.confidence:g} %", chance(reliability.probability)
+    limit = engineering(reliability.limit, PROBABILITY_DIGITS)
     beneath: list[Column[Risk]] = [
         read_only(OR_BENEATH_CONTACT, lambda risk: chance_range(risk.beneath or risk.probability))
     ]
     columns: list[Column[Risk]] = [
         *texts("pin case"),
-        read_only("result", lambda risk: risk.result(found.probability), numeric=False),
+        read_only("result", lambda risk: risk.result(reliability.probability), numeric=False),
         read_only("FoS", lambda risk: risk.factor, rank=1),
         read_only(
             f"FoS at probability {p} ({per_cent})",
             lambda risk: factor_interval(risk.quantile), rank=2
         ),
         read_only(f"P(FoS < {limit}) ({per_cent})", lambda risk: chance_range(risk.probability)),
-        *beneath * found.deep,
+        *beneath * reliability.deep,
         read_only("by mesh error", lambda risk: _by_errors(risk.mesh), rank=3),
         read_only("over joint", lambda risk: _by_errors(risk.joint), rank=4),
     ]  # fmt: skip
-    return Table("risks", columns, found.risks)
+    return Table("risks", columns, reliability.risks)
 
 
-def ways_table(found: Reliability) -> Table[Risk]:
+def ways_table(reliability: Reliability) -> Table[Risk]:
     """Return the probability of failure by method, for people."""
-    per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
+    per_cent, p = f"{100.0 * reliability.confidence:g} %", chance(reliability.probability)
 
     def form(name: str, text: Callable[[float | None], str]) -> Callable[[Risk], str]:
         return lambda risk: text(getattr(risk.form, name)) if risk.form else DASH
@@ -193,7 +194,7 @@ def ways_table(found: Reliability) -> Table[Risk]:
     columns: list[Column[Risk]] = [
         *texts("pin case"),
         read_only(f"plain sampling ({per_cent})", lambda risk: chance_range(risk.sampled)),
-        read_only("failures", lambda risk: f"{risk.failures:,} of {found.samples:,}"),
+        read_only("failures", lambda risk: f"{risk.failures:,} of {reliability.samples:,}"),
         read_only(f"importance sampling ({per_cent})", lambda risk: chance_range(risk.weighted)),
         read_only("FORM", form("probability", chance)),
         read_only("reliability index", form("index", engineering), rank=1),
@@ -205,31 +206,31 @@ def ways_table(found: Reliability) -> Table[Risk]:
             "FoS, FORM", form("quantile", lambda x: engineering(x, PROBABILITY_DIGITS)), rank=2
         ),
     ]
-    return Table("ways", columns, found.risks)
+    return Table("ways", columns, reliability.risks)
 
 
-def _by_errors(found: ByErrors | None) -> str:
-    if found is None:
+def _by_errors(probabilities: ByErrors | None) -> str:
+    if probabilities is None:
         return DASH
-    ends = f"{chance(found.lower.value)} to {chance(found.higher.value)}"
-    return f"{ends} (stress {change(found)})"
+    ends = f"{chance(probabilities.lower.value)} to {chance(probabilities.higher.value)}"
+    return f"{ends} (stress {change(probabilities)})"
 
 
-def change(found: ByErrors) -> str:
+def change(probabilities: ByErrors) -> str:
     """Return the relative change of the stresses as text."""
-    least, most = 100.0 * found.least, 100.0 * found.most
+    least, most = 100.0 * probabilities.least, 100.0 * probabilities.most
     if least == -most:
         return f"±{most:.2g} %"
     return f"{least:+.2g} to {most:+.2g} %".replace("-", "−")
 
 
-def drivers_table(found: Reliability) -> Table[DriverRow]:
+def drivers_table(reliability: Reliability) -> Table[DriverRow]:
     """Return the parameters that matter to each row, the most important first, for people."""
     rows = [
-        DriverRow(risk, each)
-        for risk in found.risks
-        for each in sorted(risk.drivers, key=lambda d: -(d.importance or 0.0))
-        if each.importance is not None or each.first is not None
+        DriverRow(risk, driver)
+        for risk in reliability.risks
+        for driver in sorted(risk.drivers, key=lambda d: -(d.importance or 0.0))
+        if driver.importance is not None or driver.first is not None
     ]
     return Table("drivers", DRIVER_COLUMNS, rows)
 

@@ -129,8 +129,8 @@ def _write(sheet: Any, row: int, column: int, value: Cell, shape: Any, quoted: A
 
 def _numbers(column: Sequence[Cell]) -> list[float]:
     kinds = (float, int, np.integer)
-    found = [float(v) for v in column if isinstance(v, kinds) and not isinstance(v, bool)]
-    return [v for v in found if math.isfinite(v)]
+    numbers = [float(v) for v in column if isinstance(v, kinds) and not isinstance(v, bool)]
+    return [v for v in numbers if math.isfinite(v)]
 
 
 def _format(column: Sequence[Cell]) -> str:

@@ -84,12 +84,12 @@ def summary(chart: Chart) -> str:
 
 def _cheapest(chart: Chart) -> str:
     tolerance = percent(chart.tolerance)
-    found = [
+    tails = [
         staying(curve, chart.tolerance)
         for (model, _), curve in chart.curves.items()
         if model != FOUNDATION_MODEL
     ]
-    first = [within[0] for within in found if within]
+    first = [within[0] for within in tails if within]
     if not first:
         return f"No model stays within {tolerance}."
     best = min(first, key=lambda p: p.seconds or 0.0)
@@ -98,8 +98,8 @@ def _cheapest(chart: Chart) -> str:
         f"{engineering(best.memory, 2)} MB, error {percent(error(best))}."
     )
     if best.model == "beam" and not best.chosen:
-        own = chart.beam_error
-        why = "unknown" if own is None else percent(own)
+        beam_error = chart.beam_error
+        why = "unknown" if beam_error is None else percent(beam_error)
         text += f" (auto does not use it: the estimated error of the beam is {why}.)"
     return text
 
@@ -115,14 +115,14 @@ def _foundation_error(chart: Chart) -> str:
 def _curves(chart: Chart, models: dict[str, str]) -> tuple[str, dict[str, Curve]]:
     """Return the name and the curves by element of the first of some models that is charted."""
     for model, name in models.items():
-        found = {element: c for (m, element), c in chart.curves.items() if m == model}
-        if found:
-            return name, dict(found)
+        by_element = {element: c for (m, element), c in chart.curves.items() if m == model}
+        if by_element:
+            return name, dict(by_element)
     return "", {}
 
 
 def _fastest(curves: dict[str, Curve], wanted: float) -> tuple[str, Cost] | None:
-    costs = [(name, found) for name, c in curves.items() if (found := cost(c, wanted))]
+    costs = [(name, curve_cost) for name, c in curves.items() if (curve_cost := cost(c, wanted))]
     return min(costs, key=lambda c: c[1].seconds, default=None)
 
 
@@ -146,13 +146,13 @@ def _ratio(chart: Chart) -> str:
     plane = _fastest(planes, wanted)
     if solid is None or plane is None:
         return text + f"{_start(ours)} does not stay within {percent(wanted)}."
-    (_, own), (name, body) = plane, solid
-    least = "at least " if own.at_most else ""
+    (_, plane_cost), (name, body) = plane, solid
+    least = "at least " if plane_cost.at_most else ""
     if body.at_most:
-        least = "about " if own.at_most else "at most "
-    times = [body.seconds / own.seconds, body.memory / own.memory]
+        least = "about " if plane_cost.at_most else "at most "
+    times = [body.seconds / plane_cost.seconds, body.memory / plane_cost.memory]
     slow, large = (f"{least}{engineering(x, 2)}" for x in times)
-    ends = [who for who, c in ((ours, own), (theirs, body)) if c.at_most]
+    ends = [who for who, c in ((ours, plane_cost), (theirs, body)) if c.at_most]
     verb = "are" if len(ends) > 1 else "is"
     also = f"; {' and '.join(ends)} {verb} within it on the coarsest mesh" if ends else ""
     return (
@@ -195,13 +195,13 @@ def reference_line(chart: Chart) -> str:
 def failures(chart: Chart) -> list[str]:
     """Return the failed meshes with the reason, equal ones together."""
     meshes: dict[tuple[str, str], int] = {}
-    found: dict[tuple[str, str, str], list[int]] = {}
+    mesh_numbers: dict[tuple[str, str, str], list[int]] = {}
     for p in chart.points:
         meshes[p.model, p.element] = number = meshes.get((p.model, p.element), 0) + 1
         if p.failed:
-            found.setdefault((p.model, p.element, p.failed), []).append(number)
+            mesh_numbers.setdefault((p.model, p.element, p.failed), []).append(number)
     out = []
-    for (model, element, why), numbers in found.items():
+    for (model, element, why), numbers in mesh_numbers.items():
         if meshes[model, element] == len(numbers):
             which = "" if len(numbers) == 1 else ", all meshes"
         else:

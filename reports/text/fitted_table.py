@@ -23,13 +23,13 @@ def fitting(shown: Sequence[Shown[R]], width: int, gap: int = COLUMN_GAP) -> lis
 
     Those with the highest rank are left out first, those of rank 0 never.
     """
-    kept = list(shown)
-    while sum(_width(each) + gap for each in kept) - gap > width:
-        worst = max(kept, key=lambda each: each[0].rank)
+    columns = list(shown)
+    while sum(_width(column) + gap for column in columns) - gap > width:
+        worst = max(columns, key=lambda column: column[0].rank)
         if not worst[0].rank:
             break
-        kept.remove(worst)
-    return kept
+        columns.remove(worst)
+    return columns
 
 
 def _width(shown: Shown[R]) -> int:
@@ -52,22 +52,22 @@ def fitted_table(
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    made = RichTable(box=None, pad_edge=False, padding=(0, gap, 0, 0), header_style="bold")
+    rich_table = RichTable(box=None, pad_edge=False, padding=(0, gap, 0, 0), header_style="bold")
     shown = [(c, c.headed(units), texts) for c, texts in table.for_people()]
-    kept = fitting(shown, width, gap)
-    for column, heading, _ in kept:
+    columns = fitting(shown, width, gap)
+    for column, heading, _ in columns:
         # As Text: a unit in square brackets is no markup.
-        made.add_column(
+        rich_table.add_column(
             Text(heading),
             justify="right" if column.numeric else "left",
             no_wrap=column.numeric,
             overflow="fold",
         )
-    tints = [(colours or {}).get(heading, [""] * len(table.rows)) for _, heading, _ in kept]
+    tints = [(colours or {}).get(heading, [""] * len(table.rows)) for _, heading, _ in columns]
     for k in range(len(table.rows)):
-        cells = zip(kept, tints, strict=True)
-        made.add_row(*(Text(texts[k], tint[k]) for (_, _, texts), tint in cells))
-    return made
+        cells = zip(columns, tints, strict=True)
+        rich_table.add_row(*(Text(texts[k], tint[k]) for (_, _, texts), tint in cells))
+    return rich_table
 
 
 def print_table(console: Console, title: str, table: Table[R], units: Units | None = None) -> bool:

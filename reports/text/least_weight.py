@@ -137,11 +137,11 @@ def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> I
 def _details(rows: Sequence[LightRow], length: str) -> Iterator[str]:
     for row in rows:
         if row.dimensions:
-            each = (f"{d.key} {short(d.before)} → {short(d.after)}" for d in row.dimensions)
-            yield f"Pin {row.pin} [{length}]: {', '.join(each)}."
+            entries = (f"{d.key} {short(d.before)} → {short(d.after)}" for d in row.dimensions)
+            yield f"Pin {row.pin} [{length}]: {', '.join(entries)}."
         if row.binding:
-            each = (f"{text} ({multiplier:.2g})" for text, multiplier in row.binding)
-            yield f"  binding, with multipliers: {'; '.join(each)}."
+            entries = (f"{text} ({multiplier:.2g})" for text, multiplier in row.binding)
+            yield f"  binding, with multipliers: {'; '.join(entries)}."
         if row.bands:
             yield f"  the bores of its links must follow: {', '.join(row.bands)}."
         if row.way:

@@ -67,7 +67,7 @@ def _depending(results: Results) -> str:
     text = ""
     rows = [p for p in results.pins if outcome(p) == DEPENDS]
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
-        each = (
+        clauses = (
             f"{p.pin} ({p.case}), {but_words(p.depends_on, results.units, 'not')}"
             for p in rows[:MAX_LISTED_CASES]
         )
@@ -76,7 +76,7 @@ def _depending(results: Results) -> str:
             if len(rows) > MAX_LISTED_CASES
             else ""
         )
-        text = f"Safe as described: {'; '.join(each)}{more}."
+        text = f"Safe as described: {'; '.join(clauses)}{more}."
     for over in ("joint", "landing"):
         some = [
             (p.pin, p.case)
@@ -126,7 +126,7 @@ def _listed(rows: Iterable[tuple[str, str]]) -> str:
     cases: dict[str, list[str]] = {}
     for pin, case in rows:
         cases.setdefault(pin, []).extend([case] if case else [])
-    return ", ".join(pin + _of_cases(found) for pin, found in cases.items())
+    return ", ".join(pin + _of_cases(names) for pin, names in cases.items())
 
 
 def _of_cases(cases: list[str]) -> str:

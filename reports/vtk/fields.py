@@ -141,8 +141,8 @@ def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[flo
         pin, loads = f"pin_{i:03d}.vtu", f"loads_{i:03d}.vtu"
         write_block(Block(field.points, field.cells, field.cell_type, data), directory / pin)
         write_block(_loads(still.loads, units), directory / loads)
-        found = (("pin", pin), ("loads", loads), ("bands", "bands.vtu"))
-        parts += [(still.time, kind, file) for kind, file in found]
+        files = (("pin", pin), ("loads", loads), ("bands", "bands.vtu"))
+        parts += [(still.time, kind, file) for kind, file in files]
     return parts
 
 
@@ -170,15 +170,15 @@ def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
     k = (j + 1) % QUADS_AROUND_BAND
     ring = np.stack([j, k, k + QUADS_AROUND_BAND, j + QUADS_AROUND_BAND], axis=1)
     cells = [ring + 2 * QUADS_AROUND_BAND * i for i in range(len(loads))]
-    each = [load for load in loads for _ in range(QUADS_AROUND_BAND)]
+    cell_loads = [load for load in loads for _ in range(QUADS_AROUND_BAND)]
     return Block(
         np.concatenate(points),
         np.concatenate(cells),
         "quad",
         cell_data={
-            f"force [{units.force}]": np.array([load.force for load in each]),
-            "held": np.array([load.held for load in each], dtype=np.int8),
-            "connection": [load.connection for load in each],
+            f"force [{units.force}]": np.array([load.force for load in cell_loads]),
+            "held": np.array([load.held for load in cell_loads], dtype=np.int8),
+            "connection": [load.connection for load in cell_loads],
         },
     )
 

@@ -41,14 +41,16 @@ class Opened:
         Raises: ValueError, naming the existing rows.
         """
         rows = self.content["pins"]
-        found = [r for r in rows if r["pin"] == (pin or r["pin"])]
-        found = [r for r in found if r["case"] == (case or r["case"])]
-        if not found:
-            there = ", ".join(f"{r['pin']} in {r['case']}" for r in rows) or "none"
+        matches = [r for r in rows if r["pin"] == (pin or r["pin"])]
+        matches = [r for r in matches if r["case"] == (case or r["case"])]
+        if not matches:
+            known_rows = ", ".join(f"{r['pin']} in {r['case']}" for r in rows) or "none"
             wanted = " in ".join(name for name in (pin, case) if name)
-            raise ValueError(f"no {wanted or 'pin'}; there are {there}")
+            raise ValueError(f"no {wanted or 'pin'}; there are {known_rows}")
         # Without a yield strength the most stressed.
-        return min(found, key=lambda r: (r["safety_factor"] or np.inf, -(r["max_von_mises"] or 0)))
+        return min(
+            matches, key=lambda r: (r["safety_factor"] or np.inf, -(r["max_von_mises"] or 0))
+        )
 
     def title(self, row: dict[str, Any]) -> str:
         """Return the pin, the case, and the factor with its verdict."""
@@ -108,13 +110,13 @@ def _data(mesh: Vtu, key: str, width: int, name: str, gaps: bool = False) -> Flo
     gaps: whether some may be missing.
     Raises: Damaged.
     """
-    found = mesh.data.get(key)
-    if found is None or found.size != width * len(mesh.points):
+    values = mesh.data.get(key)
+    if values is None or values.size != width * len(mesh.points):
         raise Damaged(f"{name} is damaged: it has no {width} numbers {key!r} at each point")
-    known = found[~np.isnan(found)] if gaps else found
+    known = values[~np.isnan(values)] if gaps else values
     if not np.isfinite(known).all():
         raise Damaged(f"{name} is damaged: {key!r} is no number at some point")
-    return found
+    return values
 
 
 def open_results(directory: Path) -> Opened:

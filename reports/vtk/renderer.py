@@ -67,5 +67,5 @@ def _try(window: str) -> str | None:
     if done.returncode:
         return (done.stderr.strip().splitlines() or ["fails"])[-1]
     # VTK falls back, with warnings, from a window it cannot make.
-    found = done.stdout.split()[-1:]
-    return None if not window or found == [window] else "cannot be made"
+    last_words = done.stdout.split()[-1:]
+    return None if not window or last_words == [window] else "cannot be made"

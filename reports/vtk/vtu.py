@@ -62,11 +62,11 @@ def read_vtu(content: bytes, name: str) -> Vtu:
     Raises: Damaged.
     """
     try:
-        found = _Reader().read(content)
-        points, cells = found.count("NumberOfPoints"), found.count("NumberOfCells")
-        placed = found.array("Points", None, points)
-        data = {key: found.array("PointData", key, points) for key in found.names("PointData")}
-        cell_type, nodes = _cells(found, cells, points)
+        reader = _Reader().read(content)
+        points, cells = reader.count("NumberOfPoints"), reader.count("NumberOfCells")
+        placed = reader.array("Points", None, points)
+        data = {key: reader.array("PointData", key, points) for key in reader.names("PointData")}
+        cell_type, nodes = _cells(reader, cells, points)
     except (expat.ExpatError, ValueError, zlib.error) as error:
         raise Damaged(f"{name} is damaged: {error}") from None
     if placed.shape != (points, 3) or not points:
@@ -74,16 +74,16 @@ def read_vtu(content: bytes, name: str) -> Vtu:
     return Vtu(placed.astype(float), nodes, cell_type, data)
 
 
-def _cells(found: _Reader, count: int, points: int) -> tuple[str, NDArray[np.int64]]:
-    kinds = found.array("Cells", "types", count)
+def _cells(reader: _Reader, count: int, points: int) -> tuple[str, NDArray[np.int64]]:
+    kinds = reader.array("Cells", "types", count)
     names = [name for name, number in VTK_CELL_TYPES.items() if count and (kinds == number).all()]
     if not names:
         raise ValueError("its cells are not of one type that pinstress writes")
     width = NODES_PER_CELL[names[0]]
-    ends = found.array("Cells", "offsets", count)
+    ends = reader.array("Cells", "offsets", count)
     if not np.array_equal(ends, width * np.arange(1, count + 1)):
         raise ValueError(f"its cells have not {width} nodes each")
-    nodes = found.array("Cells", "connectivity", count * width).astype(np.int64)
+    nodes = reader.array("Cells", "connectivity", count * width).astype(np.int64)
     if nodes.min() < 0 or nodes.max() >= points:
         worst = nodes.min() if nodes.min() < 0 else nodes.max()
         raise ValueError(f"a cell has the node {worst:,} of {points:,}, counted from 0")

@@ -63,22 +63,22 @@ def grid(block: Block) -> Any:
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
-    made, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
+    vtk_grid, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
     points.SetData(numpy_to_vtk(_numbers(block.points), deep=True))
-    made.SetPoints(points)
+    vtk_grid.SetPoints(points)
     count, width = block.cells.shape
     ends = np.arange(0, count * width + 1, width, dtype=np.int32)
     nodes = np.ascontiguousarray(block.cells, dtype=np.int32).ravel()
     cells.SetData(numpy_to_vtk(ends, deep=True), numpy_to_vtk(nodes, deep=True))
-    made.SetCells(VTK_CELL_TYPES[block.cell_type], cells)
+    vtk_grid.SetCells(VTK_CELL_TYPES[block.cell_type], cells)
     for place, data in (
-        (made.GetPointData(), block.point_data),
-        (made.GetCellData(), block.cell_data),
-        (made.GetFieldData(), block.whole),
+        (vtk_grid.GetPointData(), block.point_data),
+        (vtk_grid.GetCellData(), block.cell_data),
+        (vtk_grid.GetFieldData(), block.whole),
     ):
         for name, values in data.items():
             place.AddArray(_array(name, values, seven=data is not block.whole))
-    return made
+    return vtk_grid
 
 
 def _array(name: str, values: NDArray[Any] | Sequence[str], seven: bool) -> Any:

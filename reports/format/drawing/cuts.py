@@ -44,13 +44,13 @@ def words(cut: CutShape) -> str:
     where = f" at {short(cut.angle % 360.0)}°"
     match kind:
         case "hole":
-            found = f"⌀{size}, {deep}, z = {short(low)},"
+            dimensions = f"⌀{size}, {deep}, z = {short(low)},"
         case "flat":
-            found = f"{size} from the axis, {between},"
+            dimensions = f"{size} from the axis, {between},"
         case "slot":
-            found = f"{size} wide, {deep}, {between},"
+            dimensions = f"{size} wide, {deep}, {between},"
         case _:
             aside = f"{short(cut.offset)} from the axis" if cut.offset else "on the axis"
-            found = f"⌀{size}, {deep}, {between}, {aside}"
+            dimensions = f"⌀{size}, {deep}, {between}, {aside}"
             where = where if cut.offset else ""
-    return f"{cut.name}: {found}{where}"
+    return f"{cut.name}: {dimensions}{where}"

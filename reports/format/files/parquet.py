@@ -21,8 +21,8 @@ def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Ce
 
     left = iter(rows)
     first = _group(left)
-    found = [pa.array(column, from_pandas=True).type for column in zip(*first, strict=True)]
-    kinds = [pa.float64() if pa.types.is_null(kind) else kind for kind in found]
+    types = [pa.array(column, from_pandas=True).type for column in zip(*first, strict=True)]
+    kinds = [pa.float64() if pa.types.is_null(kind) else kind for kind in types]
     schema = pa.schema(list(zip(columns, kinds, strict=True)))
     with parquet.ParquetWriter(path, schema) as writer:
         for group in chain([first], iter(lambda: _group(left), [])):

@@ -27,8 +27,8 @@ def landing_plot(
     for speed in speeds if len(speeds) <= 2 else [speeds[0], speeds[-1]]:
         shown: dict[str, Floats] = {}
         for name, (m, factor) in known.items():
-            own = np.array([pulse == m.nominal_pulse for pulse in m.pulses])
-            here = np.flatnonzero(np.isclose(m.velocity_change, speed) & own)
+            nominal_pulse = np.array([pulse == m.nominal_pulse for pulse in m.pulses])
+            here = np.flatnonzero(np.isclose(m.velocity_change, speed) & nominal_pulse)
             rank = here[np.argsort(m.impulse_time[here])]
             x, shown[name] = m.impulse_time[rank], factor[rank]
         heading = f"factor of safety, velocity change {short(speed)} {units.length}/{units.time}"

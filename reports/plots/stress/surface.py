@@ -95,10 +95,10 @@ def _sides(z: Floats) -> dict[str, slice]:
     little = 1e-9 * float(np.ptp(z))
     start = int(np.flatnonzero(z > z.min() + little)[0]) - 1
     end = np.flatnonzero(z >= z.max() - little)
-    found = {"outer surface": slice(max(start, 0), int(end[0]) + 1)}
+    sides = {"outer surface": slice(max(start, 0), int(end[0]) + 1)}
     if (z[end[-1] :] < z.max() - little).any():
-        found["bore"] = slice(int(end[-1]), len(z))
-    return found
+        sides["bore"] = slice(int(end[-1]), len(z))
+    return sides
 
 
 def _unread(case: SurfaceCase) -> Mask:

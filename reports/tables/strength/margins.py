@@ -104,8 +104,8 @@ ARM_COLUMNS: list[Column[ArmsRow]] = [
 ]
 
 
-def _rows(found: Iterable[PinMargin], results: Results) -> list[MarginRow]:
-    return [MarginRow(m.pin, m.case, m.margin, results.units) for m in found]
+def _rows(margins: Iterable[PinMargin], results: Results) -> list[MarginRow]:
+    return [MarginRow(m.pin, m.case, m.margin, results.units) for m in margins]
 
 
 def margins_table(results: Results) -> Table[MarginRow]:
@@ -114,10 +114,10 @@ def margins_table(results: Results) -> Table[MarginRow]:
 
 
 def _shown(
-    found: Iterable[PinMargin], results: Results, without: Collection[str]
+    margins: Iterable[PinMargin], results: Results, without: Collection[str]
 ) -> Table[MarginRow]:
     columns = [c for c in in_order(COLUMNS, DISPLAY_ORDER) if c.key not in without]
-    return Table("margins", columns, _rows(found, results))
+    return Table("margins", columns, _rows(margins, results))
 
 
 def governing_table(results: Results) -> Table[MarginRow]:
@@ -128,16 +128,16 @@ def governing_table(results: Results) -> Table[MarginRow]:
 def worst_table(results: Results) -> Table[MarginRow]:
     """Return the governing check of the worst case of each pin, in brief, for terminals."""
     worst: dict[str, PinMargin] = {}
-    for found in governing(results):
-        worst.setdefault(found.pin, found)
+    for pin_margin in governing(results):
+        worst.setdefault(pin_margin.pin, pin_margin)
     table = _shown(worst.values(), results, without=("time", "demand", "allowable"))
     return replace(table, columns=[replace(c, drop_if_empty=False) for c in table.columns])
 
 
 def pin_margins(results: Results, pin: str, case: str) -> Table[MarginRow]:
     """Return all checks that were made of a pin in a case, the worst first, comparisons last."""
-    own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
-    order = sorted(own, key=lambda m: (not m.margin.governs, -m.used))
+    made_checks = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
+    order = sorted(made_checks, key=lambda m: (not m.margin.governs, -m.used))
     return _shown(order, results, without=("pin", "case"))
 
 
@@ -146,8 +146,10 @@ def not_made_words(results: Results) -> list[str]:
     pins = {p.pin for p in results.pins}
     lines = []
     for needs, of in skipped(results).items():
-        own = list(dict.fromkeys(m.pin for m in of))
-        where = "" if len(own) == len(pins) else f" (pin{'s' * (len(own) > 1)} {', '.join(own)})"
+        named = list(dict.fromkeys(m.pin for m in of))
+        where = (
+            "" if len(named) == len(pins) else f" (pin{'s' * (len(named) > 1)} {', '.join(named)})"
+        )
         methods = "; ".join(dict.fromkeys(m.margin.method for m in of))
         lines.append(f"Skipped{where}, {needs} missing: {methods}.")
     return lines

@@ -23,15 +23,15 @@ def places_json(pin: PinResult) -> dict[str, Any]:
     places = pin.places
     if places is None:
         return {"governs": None}
-    found: dict[str, Any] = {"governs": places.governs}
+    keys: dict[str, Any] = {"governs": places.governs}
     for name, at in (("surface", places.surface), ("section", places.section)):
         if at is not None:
             factor = factor_at(pin, at.max_von_mises)
-            found[name] = {**plain(at), "safety_factor": finite(factor)}
+            keys[name] = {**plain(at), "safety_factor": finite(factor)}
     if places.contact is not None:
-        found["contact"] = plain(places.contact)
-        del found["contact"]["depths"]
-    return found
+        keys["contact"] = plain(places.contact)
+        del keys["contact"]["depths"]
+    return keys
 
 
 @dataclass(frozen=True)

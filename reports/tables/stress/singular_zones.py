@@ -65,11 +65,11 @@ def pin_zones(results: Results, pin: str) -> dict[str, list[ShownZone]]:
 
 def circles(zones: Iterable[ShownZone]) -> list[ShownZone]:
     """Return one zone per number, preferably from a case in which it governs."""
-    found: dict[int, ShownZone] = {}
+    by_number: dict[int, ShownZone] = {}
     for zone in zones:
-        if zone.number not in found or zone.found.governs:
-            found[zone.number] = zone
-    return [found[number] for number in sorted(found)]
+        if zone.number not in by_number or zone.found.governs:
+            by_number[zone.number] = zone
+    return [by_number[number] for number in sorted(by_number)]
 
 
 def _circle(zone: SingularZone) -> tuple[str, tuple[str, str], str, str]:
