@@ -30,7 +30,7 @@ class Arrow:
 
     @property
     def head(self) -> float:
-        """Length of the head, which shrinks with a short arrow."""
+        """The length of the head, which shrinks with a short arrow."""
         return min(ARROW_HEAD_LENGTH, 0.6 * self.length)
 
 

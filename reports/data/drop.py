@@ -42,7 +42,6 @@ class DropRecord:
     imbalance: largest imbalance of the energies over the first kinetic energy.
     impulse_force: m V over impulse_time. equal_impulse_time: the impulse time at which both agree.
     spin_up: largest drag by appendix D to 14 CFR part 23; None without a wheel.
-    drive: the largest force of the strut's drive in the mechanism.
     closing, opening: (P,) vertical force over the strokes (P,) of the first compression and
     extension.
     """

@@ -1,5 +1,7 @@
-"""What a run found: all that reports are made from. Made once, in SI; `Results.in_units` gives the
-same in the units of a study, from which tables and pages are written.
+"""Results of a run, from which all reports are made.
+
+They are computed once, in SI; `Results.in_units` converts them to the units of a study, from which
+tables and pages are written.
 """
 
 from __future__ import annotations
@@ -100,7 +102,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Units:
-    """Names of the units of results."""
+    """The names of the units of results."""
 
     length: str
     force: str
@@ -239,7 +241,7 @@ class PinResult:
 
 @dataclass(frozen=True)
 class LandingRange:
-    """One pin over the ranges of a landing's impulse, at P points.
+    """The results of one pin over the ranges of a landing's impulse, at P points.
 
     impulse_time, velocity_change, force, max_von_mises: (P,). pulses: (P,).
     safety_factor: (P,), None without a yield strength.

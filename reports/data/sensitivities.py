@@ -1,4 +1,4 @@
-"""How a pin's largest stress and its factor of safety change with all that they depend on."""
+"""Sensitivities of a pin's maximum stress and factor of safety to the parameters of the study."""
 
 from __future__ import annotations
 

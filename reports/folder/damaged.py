@@ -1,4 +1,4 @@
-"""JSON and compressed texts of files that may be damaged: errors say what is wrong, and where."""
+"""JSON and compressed texts of files that may be damaged; errors say what is wrong, and where."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""Files of a folder read and written without leaving it: no link inside it is followed, wherever
-it leads, and nothing but regular files is opened. The path to the folder is the user's own.
+"""Reading and writing files inside a folder without leaving it.
 
-Where the system can open a file relative to an open folder, nobody can exchange a part of the way
-between the look and the opening.
+No link inside the folder is followed, wherever it leads, and only regular files are opened. The
+path to the folder itself is trusted, since the user gives it.
 """
 
 from __future__ import annotations

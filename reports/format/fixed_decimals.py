@@ -1,4 +1,4 @@
-"""Numbers that change while one looks: the same decimals for all, so that they stand still."""
+"""Number formats for changing values: the same decimals for all, so that digits do not move."""
 
 from __future__ import annotations
 

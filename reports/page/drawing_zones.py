@@ -1,6 +1,7 @@
-"""Marks on the drawing of a pin: numbered rings at stress singularities, with their kind, and
-stripes where stress is excluded about them; dots where rows have their stress on the surface, and
-lines across the section that has it.
+"""Marks on the drawing of a pin for stress singularities and places of stress.
+
+Numbered rings mark stress singularities, with their kind; stripes mark excluded stress about them.
+Dots mark rows with their stress on the surface, and lines across the section that has it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Plots into files, without a browser."""
+"""Drawing of plots into files, without a browser."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""Plots and drawings that bring all they show: no address in them is opened, and no file.
-
-Of a report.html that another may have written. Vega-Lite is besides not allowed any address
-(reports.plots.draw); what draws SVG as PNG has no such switch and opens links of pictures.
-"""
+"""Checks that plots and drawings are self-contained, so that they open no address and no file."""
 
 from __future__ import annotations
 

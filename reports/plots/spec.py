@@ -49,7 +49,7 @@ class Abscissa:
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves (N,) by name above a common abscissa, NaN where there is no value.
+    """Curves (N,) by name above a common abscissa, NaN where values are missing.
 
     under, over: layers behind and in front of them. scale: of the ordinate.
     zero: whether a line is drawn at zero.

@@ -1,5 +1,6 @@
-"""Columns and tables, each described once for every writer: CSV, Parquet, workbook, JSON, Markdown,
-terminal, page, PDF.
+"""Columns and tables, each described once for every writer.
+
+The writers are CSV, Parquet, workbook, JSON, Markdown, terminal, page and PDF.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Tables that fit the terminal: columns that have no room are left out, never broken."""
+"""Tables that fit the terminal: columns that do not fit are left out, never broken."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether VTK can draw off-screen here, tried in another process: where it cannot, it crashes."""
+"""Test of whether VTK can draw off-screen, in another process, since VTK crashes where it cannot."""
 
 from __future__ import annotations
 

@@ -1,8 +1,4 @@
-"""Meshes with data as VTU files, by VTK's own writer, and XML files that put several together.
-
-Numbers are written with seven digits (float32), compressed by zlib at its first level: half the
-size and a quarter of the time of every digit at the usual level.
-"""
+"""Writer of meshes with data as VTU files, by VTK's own writer, and of XML files that group them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Cuts on the drawing of a pin: what they take from its silhouette, their edges, hidden ones
-dashed, and their sizes in words.
-"""
+"""Cuts on the drawing of a pin: silhouette, edges (hidden ones dashed), and sizes in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where to write the names of points, so that they hide neither lines nor each other."""
+"""Placement of the names of points, so that they hide neither lines nor each other."""
 
 from __future__ import annotations
 

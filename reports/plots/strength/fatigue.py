@@ -1,4 +1,4 @@
-"""Plots of fatigue: the stress at a pin's worst point, and how often which amplitude occurs."""
+"""Plots of fatigue: the stress at a pin's worst point, and the frequency of its amplitudes."""
 
 from __future__ import annotations
 

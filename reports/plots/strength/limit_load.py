@@ -1,4 +1,4 @@
-"""Plots of the load factor against the displacement of a pin that flows."""
+"""Plots of the load factor against the displacement of a yielding pin."""
 
 from __future__ import annotations
 

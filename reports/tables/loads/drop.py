@@ -1,4 +1,4 @@
-"""Drops as tables: the course over time, and their largest values."""
+"""Tables of drops: histories over time, and their largest values."""
 
 from __future__ import annotations
 

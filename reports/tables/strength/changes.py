@@ -1,4 +1,4 @@
-"""What to change: for every pin that does not reach its factor, what would do, each alone."""
+"""Changes that make a pin reach its factor, each sufficient alone, for every pin below its factor."""
 
 from __future__ import annotations
 

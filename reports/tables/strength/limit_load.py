@@ -1,4 +1,4 @@
-"""Past yield: at which part of its loads a pin collapses, and what it keeps of its shape."""
+"""Limit loads: the fraction of its loads at which a pin collapses, and its permanent deformation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sensitivities: what a little more of anything does to a pin's factor, as rows and for display."""
+"""Sensitivities of a pin's factor to each parameter, as rows and for display."""
 
 from __future__ import annotations
 
