@@ -1,4 +1,4 @@
-"""Test of whether VTK can draw off-screen, in another process, since VTK crashes where it cannot."""
+"""Test of off-screen drawing by VTK, in another process, since VTK crashes where it cannot."""
 
 from __future__ import annotations
 

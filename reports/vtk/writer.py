@@ -1,4 +1,4 @@
-"""Writer of meshes with data as VTU files, by VTK's own writer, and of XML files that group them."""
+"""Writer of meshes with data as VTU files, by VTK's own writer, and of XML files over them."""
 
 from __future__ import annotations
 

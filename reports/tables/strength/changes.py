@@ -1,4 +1,4 @@
-"""Changes that make a pin reach its factor, each sufficient alone, for every pin below its factor."""
+"""Changes that make a pin reach its factor, each sufficient alone, for pins below their factor."""
 
 from __future__ import annotations
 

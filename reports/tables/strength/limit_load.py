@@ -1,4 +1,4 @@
-"""Limit loads: the fraction of its loads at which a pin collapses, and its permanent deformation."""
+"""Limit loads: the fraction of its loads at which a pin collapses, and its permanent set."""
 
 from __future__ import annotations
 
