@@ -59,9 +59,7 @@ COMPARISON = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt
               ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}  # fmt: skip
 # Changes of a line that say the same, and why: no test could notice them.
 SAME = {
-    ("if value > best[3]:", "value > best[3] → value >= best[3]"):
-        "equal stresses at two places: either is the largest",
-    ("return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NONE) for b in bands),)",
+    ("return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NO_TRACTION) for b in bands),)",
      "0.0 → 1.0"): "the middle from which a slope of zero is counted",
     ("return root if root.real < 1.0 else 1.0 + 0.0j", "root.real < 1.0 → root.real <= 1.0"):
         "an eigenvalue of exactly 1 is what the other branch returns",

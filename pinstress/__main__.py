@@ -11,8 +11,11 @@ EXIT_NOT_WRITTEN = 2
 
 def main() -> None:
     """Run the command line; never returns."""
+    ours = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+    sys.path.insert(0, ours)  # a pinbase.py in the current folder is not ours
     from pinbase.processes.current_folder import leave_out_current_folder
 
+    sys.path.remove(ours)
     leave_out_current_folder()  # before anything else is imported
     from pinbase.processes import interrupts
 

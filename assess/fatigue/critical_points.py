@@ -39,7 +39,7 @@ NEIGHBOURS = 9  # points about a local maximum that are compared at all angles
 SCORE_BATCH = 16_384  # points and angles, times cases, at once: limits memory
 
 
-MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum is none
+MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum of principal stresses is zero
 
 
 @dataclass(frozen=True)
@@ -187,8 +187,9 @@ def _nearest(known: StressPoints, points: Floats) -> Ints:
 
 
 def signed_von_mises(stress: Floats) -> Floats:
-    """Von Mises stress (...) of stresses (..., 6), with the sign of the principal stress that is
-    largest by magnitude.
+    """The von Mises stress (...) of stresses (..., 6), signed.
+
+    The sign is that of the principal stress that is largest by magnitude.
 
     The largest and smallest principal stress sum to 2 p - 2 sqrt(J2 / 3) cos(lode - 2 pi / 3),
     whose sign is that of the larger one. In pure shear both are equal and the sign is open; it is

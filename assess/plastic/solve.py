@@ -206,25 +206,26 @@ def _of_solid(
     )
 
 
-def flow_field(made: PinBody, state: State, angle: float) -> FlowField:
-    """How a pin flows at its limit load, at the nodes of its mesh: a state in axes that are turned
-    by an angle (rad) from the pin's.
+def flow_field(pin: PinBody, state: State, angle: float) -> FlowField:
+    """The flow in a state, in the pin's axes.
+
+    angle: rad, by which the state's axes are turned from them.
     """
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     return FlowField(
-        points=made.mesh.nodes @ turn,
-        cells=made.mesh.elements[:, twenty()],
-        displacement=made.body.displacement(state.unknowns) @ turn,
-        plastic_strain=np.maximum(_at_nodes(made, state.flow.equivalent), 0.0),
-        von_mises=_at_nodes(made, von_mises(state.flow.stress)),
+        points=pin.mesh.nodes @ turn,
+        cells=pin.mesh.elements[:, twenty()],
+        displacement=pin.body.displacement(state.unknowns) @ turn,
+        plastic_strain=np.maximum(_at_nodes(pin, state.flow.equivalent), 0.0),
+        von_mises=_at_nodes(pin, von_mises(state.flow.stress)),
         factor=state.factor,
     )
 
 
-def _at_nodes(made: PinBody, values: Floats) -> Floats:
-    """(N,) means over the elements of what their values (M, 8) extrapolate to."""
-    each = values @ reading(np.asarray(ElementHexS2().doflocs)).T
-    numbers = made.mesh.elements.ravel()
-    total = np.bincount(numbers, each.ravel(), minlength=len(made.mesh.nodes))
-    return np.asarray(total / np.bincount(numbers, minlength=len(made.mesh.nodes)))
+def _at_nodes(pin: PinBody, values: Floats) -> Floats:
+    """Nodal means (N,) of what the elements' values (M, 8) at quadrature points extrapolate to."""
+    at_corners = values @ reading(np.asarray(ElementHexS2().doflocs)).T
+    numbers = pin.mesh.elements.ravel()
+    total = np.bincount(numbers, at_corners.ravel(), minlength=len(pin.mesh.nodes))
+    return np.asarray(total / np.bincount(numbers, minlength=len(pin.mesh.nodes)))

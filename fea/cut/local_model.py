@@ -384,7 +384,7 @@ class LocalModel:
         if not lost.max() < MAX_UNBALANCED_TRACTION:
             raise SolveError(
                 f"pin {self.piece.profile.name}: the stress of the uncut pin on the cuts is not in "
-                f"equilibrium (by {lost.max():.1e}), so a load acts on what is cut away",
+                f"equilibrium (by {lost.max():.1e}), so a load acts on the removed area",
                 "cut-unbalanced",
             )
         force_size = np.linalg.norm(forces.reshape(len(self.space.nodes), -1), axis=1)

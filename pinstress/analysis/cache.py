@@ -19,7 +19,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from pinbase.platform import portable
 from pinstress.analysis.serialise import pack, unpack
@@ -47,6 +47,14 @@ KEY_PATTERN, PARTIAL_SUFFIX = re.compile(r"[0-9a-f]{64}"), ".partial"
 CACHE_FILE_PATTERN = re.compile(rf"{KEY_PATTERN.pattern}(\w+{re.escape(PARTIAL_SUFFIX)})?")
 
 log = logging.getLogger(__name__)
+
+
+class OutcomeStore(Protocol):
+    """Where solved pins are kept by the content of all they depend on."""
+
+    def key(self, asked: object) -> str: ...
+    def read(self, key: str, kind: type[T]) -> T | None: ...
+    def write(self, key: str, value: object) -> None: ...
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 from fea.core.requirement import Model
 from pinbase.processes.pool import processes
 from pinbase.processes.threads import one_thread
+from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.solve import keep_none, solve_tasks
+from pinstress.study.reading.choices import require_count
 from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study
 from reports.data.results import Field, Results
@@ -164,7 +166,7 @@ def run(
 
     Raises: InputError for bad input.
     """
-    most = processes(jobs)
+    require_count("jobs", jobs)
     with one_thread():
         plan = prepare(
             study,
@@ -175,13 +177,17 @@ def run(
             memory=memory_limit,
             limit_load=limit_load,
         )
-    return solve(plan, fields=fields, jobs=most)
+    return solve(plan, fields=fields, jobs=jobs)
 
 
-def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResults:
-    """Solve what `prepare` returned; fields, jobs: as in `run`.
+def solve(
+    plan: Plan, *, fields: bool = False, jobs: int | None = 1, cache: OutcomeStore | None = None
+) -> RunResults:
+    """Solve what `prepare` returned; fields, jobs: as in `run`. cache: where pins that were solved
+    before are found, and the others kept.
 
-    Raises: InputError where the study has [fatigue] and its extra is not installed.
+    Raises: InputError where the study has [fatigue] and its extra is not installed, and for what is
+    no number of jobs.
     """
     require_fatigue(plan.study)
     kept: dict[tuple[str, str], Field] = {}
@@ -189,8 +195,11 @@ def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResul
     def keep(field: Field) -> None:
         kept[field.pin, field.case] = field
 
+    require_count("jobs", jobs)
     most = 1 if fields else processes(jobs)
     with one_thread():
-        results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
+        results = results_of(
+            plan, solve_tasks(plan, keep if fields else keep_none, jobs=most, cache=cache)
+        )
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
     return RunResults(**plain, fields=kept, plan=plan)

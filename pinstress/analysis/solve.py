@@ -24,7 +24,7 @@ from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
 from pinstress.analysis.assessed.situations import assessed
-from pinstress.analysis.cache import Cache
+from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.gather import gather
 from pinstress.analysis.gather.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
@@ -58,7 +58,7 @@ def solve_tasks(
     progress: Progress = lambda _, __: None,
     ask: Ask = _ask_none,
     jobs: int = 1,
-    cache: Cache | None = None,
+    cache: OutcomeStore | None = None,
 ) -> list[PinOutcome]:
     """What is found of every task of a plan, in their order, `jobs` of them at a time, each in its
     own process (pinbase.processes.pool); with 1, in this one. The answers are the same to the
@@ -107,7 +107,7 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
 
 def _attempt(
-    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: Cache | None, tell: Tell
+    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: OutcomeStore | None, tell: Tell
 ) -> PinOutcome:
     try:
         if cache is None:
@@ -121,7 +121,7 @@ def _attempt(
         return _failed(plan, task, str(error))
 
 
-def _solve_once(plan: Plan, task: Task, keep: Keep, cache: Cache, tell: Tell) -> PinOutcome:
+def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: Tell) -> PinOutcome:
     """From the cache; else solved, and kept there. What lacks a limit load for want of time has a
     key of its own: it is no answer where that limit load is requested.
     """

@@ -129,7 +129,7 @@ def report_missed(results: Results, decide: bool) -> int:
             f"Not decided: {_listed(which)}: {why}; a smaller tolerance may decide.", err=True
         )
     for which, reason in _together((p, p.note) for p in failed):
-        click.echo(f"Error: the numerics failed: {_listed(which)}: {reason}", err=True)
+        click.echo(f"Error: the solution failed: {_listed(which)}: {reason}", err=True)
     return EXIT_NUMERICS_FAILED if failed else int(bool(missed or near))
 
 

@@ -41,7 +41,7 @@ EXIT_REACHED, EXIT_NOT_REACHED, EXIT_BAD_INPUT, EXIT_NUMERICS_FAILED = 0, 1, 2, 
 
 def run_command_line(arguments: list[str]) -> int:
     """Exit status of a command: 0 done, 1 done but a requested result was not reached, 2 bad input,
-    3 the numerics failed, 130 interrupted.
+    3 the solution failed, 130 interrupted.
     """
     interrupts.listen()
     try:
@@ -75,11 +75,11 @@ def _status(error: BaseException) -> int | None:
             click.echo(f"Error: {about}", err=True)
             return EXIT_BAD_INPUT
         case ArithmeticError():  # MeshError, SolveError and what numpy raises
-            click.echo(f"Error: the numerics failed: {error}", err=True)
+            click.echo(f"Error: the solution failed: {error}", err=True)
             return EXIT_NUMERICS_FAILED
         case MemoryError():
             click.echo(
-                "Error: the numerics failed: out of memory; a larger --tolerance needs less",
+                "Error: the solution failed: out of memory; a larger --tolerance needs less",
                 err=True,
             )
             return EXIT_NUMERICS_FAILED
@@ -120,7 +120,7 @@ def _settle_environment() -> None:
     + "\nCompute reactions, stresses and safety factors. Prints the safety factor table; writes "
     "tables, VTK files and report.html with its plots.\n\n"
     "Exit status: 0 done; 1 done, but a requested accuracy was not reached or CalculiX disagrees; "
-    "2 bad input; 3 the numerics failed; 4 with --fail-on-miss, where a pin misses its "
+    "2 bad input; 3 the solution failed; 4 with --fail-on-miss, where a pin misses its "
     "requirements; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
@@ -275,7 +275,7 @@ def loads(
     "one of your pins. Prints a table; writes chart.csv, chart.svg and chart.png. Each mesh is "
     "solved in its own process; takes about three minutes.\n\n"
     "Exit status: 0 done; 1 done, but no result is within the tolerance, or the reference is not "
-    "accurate enough to tell; 2 bad input; 3 the numerics failed; 130 interrupted.",
+    "accurate enough to tell; 2 bad input; 3 the solution failed; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--pin", required=True, metavar="NAME", help="The pin.")
@@ -347,7 +347,7 @@ def chart(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
     + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
-    "Exit status: 0 done; 1 done, but a pin is not held, or its loads are not in equilibrium; "
+    "Exit status: 0 done; 1 done, but a pin is unconstrained, or its loads are not in equilibrium; "
     "2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))

@@ -26,14 +26,12 @@ from pinstress.cli.shared import choices, example, read_study
 @click.option(
     "--scheduler",
     metavar="ADDRESS",
-    help="Solve on your own cluster of dask, tcp://host:8786, instead of in processes of this "
+    help="Solve on an existing Dask cluster, tcp://host:8786, instead of in processes of this "
     "machine, which use no network. Unless dask is configured with TLS, whoever reaches a "
     "scheduler or a worker can run code there: start them with --host 127.0.0.1, or on a network "
     "that you trust.",
 )
-@click.option(
-    "--resume", is_flag=True, help="Go on with a sweep that did not end, or with a larger count."
-)
+@click.option("--resume", is_flag=True, help="Resume a sweep, or extend it to a larger count.")
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
 def sweep(
     study: Path,
@@ -61,8 +59,8 @@ def sweep(
     "[vary.parameters] says: its value at a stated probability, the probability of failure with "
     "its confidence interval by sampling, FORM and importance sampling, and what drives it. Keys "
     "in [reliability]. Writes reliability.csv, drivers.csv, reliability.json, reliability.html.\n\n"
-    "Exit status: 0 done; 1 done, but it is not decided whether a probability of failure is "
-    "within the allowed one; 2 bad input; 3 the numerics failed; 130 interrupted.",
+    "Exit status: 0 done; 1 done, but it could not be determined whether a probability of failure "
+    "is within the allowed one; 2 bad input; 3 the solution failed; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option(

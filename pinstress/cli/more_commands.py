@@ -49,7 +49,7 @@ def init(directory: Path, opens: bool) -> int:
     help=example("pinstress import shaft.step >> study.toml")
     + "\nRecognise the body in a CAD file (STEP, BREP, IGES) as a profile with cross holes and "
     "flats, and print its table for a study; the axis may have any direction.\n\n"
-    "Exit status: 0 done; 2 bad input, or a body that is not turned; 130 interrupted.",
+    "Exit status: 0 done; 2 bad input, or a body that is not a turned part; 130 interrupted.",
 )
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--pin", metavar="NAME", help="Name of the pin [the file's].")
@@ -195,10 +195,10 @@ def completion(context: click.Context, shell: str) -> None:
     + example("pinstress size studies/grenier2008.toml --least-weight")
     + "\nFind the smallest diameters with which every pin reaches a safety factor in all cases; "
     "write a new study with them. Lengths do not change; diameters, bores and fillets are scaled "
-    "together, or with --least-weight each for itself, so that the pin is as light as it can be. "
+    "together, or with --least-weight independently, so that the pin is as light as it can be. "
     "The new study is run before it is written.\n\n"
-    "Exit status: 0 done; 1 done, but a pin does not verifiably reach the factor; 2 bad input; "
-    "3 the numerics failed; 130 interrupted.",
+    "Exit status: 0 done; 1 done, but a pin is not shown to reach the factor; 2 bad input; "
+    "3 the solution failed; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option(
@@ -220,7 +220,11 @@ def completion(context: click.Context, shell: str) -> None:
 )
 @QUIET_OPTION
 @JOBS_OPTION
-@click.option("--least-weight", is_flag=True, help="Every dimension for itself: the lightest pins.")
+@click.option(
+    "--least-weight",
+    is_flag=True,
+    help="Vary every dimension independently: the lightest pins.",
+)
 @click.option(
     "--vary",
     callback=names,

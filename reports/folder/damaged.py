@@ -21,10 +21,10 @@ SURROGATE_ESCAPE_PATTERN = re.compile(
 MAX_JSON_DEPTH = 100  # parts in parts; pinstress writes no more than twenty
 ERROR_WORDS = {  # of pydantic's errors, which speak of Python
     "missing": "is missing",
-    "model_type": "is no object",
-    "dict_type": "is no object",
-    "list_type": "is no list",
-    "string_type": "is no text",
+    "model_type": "is not an object",
+    "dict_type": "is not an object",
+    "list_type": "is not a list",
+    "string_type": "is not a text",
     "float_type": "is no number",
     "bool_type": "is neither true nor false",
     "finite_number": "is no finite number",

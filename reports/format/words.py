@@ -91,7 +91,7 @@ def undecided_because(pin: PinResult) -> str:
         "unconverged": "not converged",
         "converged": "no yield strength",
         "rigid": "unconstrained",
-        "failed": "numerics failed",
+        "failed": "solution failed",
     }
     return reasons.get(pin.verdict, pin.verdict)
 

@@ -80,4 +80,4 @@ def print_reliability(reliability: Reliability, console: Console) -> None:
 
 def ways_title(reliability: Reliability) -> str:
     """Return the title of the table of methods, which exclude the stress beneath contact."""
-    return "By each way of finding it" + ", of surface and section" * reliability.deep
+    return "By method" + ", of surface and section" * reliability.deep

@@ -64,7 +64,8 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
 def _print_changes(results: Results, console: Console, study: str) -> None:
     from rich.text import Text
 
-    print_table(console, "What to change, each alone", changes_table(results), results.units)
+    title = "Ways to reach the factor (one at a time)"
+    print_table(console, title, changes_table(results), results.units)
     for note in change_notes(results):
         console.print(Text(note))
     sensitivities = shown_sensitivities(_of_changes(results), MAX_BRIEF_ROWS)

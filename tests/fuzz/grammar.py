@@ -62,7 +62,7 @@ class Result:
         """What was said, without the study's own names and numbers."""
         if self.kind == "wrong":
             return self.end.wrong or self._odd
-        said = self.end.err.partition("the numerics failed: ")[2] or self.end.err
+        said = self.end.err.partition("the solution failed: ")[2] or self.end.err
         said = re.sub(r"^(\w+ \([-\w]+\)(, |: ))+", "", said.partition("\n")[0])
         said = re.sub(r"Error: |study\.toml(:\d+)?: *|pin [A-Z](: )?", "", said)
         return re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", said)[:120]

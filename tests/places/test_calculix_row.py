@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -75,15 +74,9 @@ def test_rows_of_both_programs_agree() -> None:
 
 
 @pytest.mark.slow
-def test_prescribed_tractions_are_read_where_contact_leaves_the_pin_free() -> None:
-    """A foundation and even tractions have the row of the plain pin within the error of beams; none
-    of them reads what tractions do at the edges of bands.
-    """
+def test_a_foundation_has_the_row_of_contact() -> None:
+    """For a plain pin, within the error of beams."""
     problem = JointProblem(CLEVIS, STEEL, LUGS, PULL)
     contact = joint_result_on(problem, JointRung("contact", "")).maximum
     foundation = joint_result_on(problem, JointRung("foundation", "")).maximum
-    even = joint_result_on(problem, JointRung("prescribed", "")).maximum
     assert foundation == pytest.approx(contact, rel=0.12)
-    assert 1.0 < even / contact < 1.5  # more moment: the load of lugs is not near the gap
-    known = replace(problem, pressed=problem.arcs)
-    assert joint_result_on(known, JointRung("prescribed", "")).maximum == even

@@ -36,7 +36,7 @@ def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Resu
         ("singular", 1.5, False, 2.0, "Pin A fails: FoS 1.50 < 2 required (retract)."),
         ("unconverged", 3.0, None, 2.0, "Whether pin A is safe is not decided: not converged"),
         ("converged", 3.0, True, None, "Pin A stays below yield: FoS 3.00 ≥ 1 at yield"),
-        ("failed", None, None, 2.0, "pin A is safe is not decided: numerics failed (retract)."),
+        ("failed", None, None, 2.0, "pin A is safe is not decided: solution failed (retract)."),
     ],
 )
 def test_the_worst_row_in_a_sentence(

@@ -1,4 +1,4 @@
-"""A sweep on a cluster of dask whose scheduler and workers are processes of their own.
+"""A sweep on a Dask cluster whose scheduler and workers are processes of their own.
 
 Silently wrong, or not working at all, before: `--scheduler` ended in "No clients found" with every
 real scheduler; one that died ended it in a traceback (FuturesCancelledError); a force table that

@@ -205,10 +205,10 @@ BY_HAND: dict[str, tuple[Callable[[dict[str, Any]], object], str]] = {
     "number": (lambda c: c["pins"][0].update(yields=1), "yields is neither true nor false"),
     "two": (lambda c: c["pins"][0].update(location=[0.0, 1.0]), "pins[0].location is wrong"),
     "twice": (lambda c: c["pins"].append(c["pins"][0]), "pin B in landing is there more than once"),
-    "pins": (lambda c: c.update(pins={}), "pins is no list"),
+    "pins": (lambda c: c.update(pins={}), "pins is not a list"),
     "NaN": (lambda c: c.update(tolerance=float("nan")), "it has NaN, which is no number"),
     "units": (lambda c: c["units"].pop("time"), "units.time is missing"),
-    "loads": (lambda c: c["loads"].append(None), "loads[1] is no object"),
+    "loads": (lambda c: c["loads"].append(None), "loads[1] is not an object"),
 }
 
 

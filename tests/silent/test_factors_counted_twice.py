@@ -132,7 +132,8 @@ def test_commands_and_results_say_it(
     assert said.count("Warning") == 1
     assert "Warning" not in out
     found = run(load_study(Path("s.toml")))
-    assert found.assumptions[-1].startswith("Hardly meant: analysis.required_safety_factor: 1.5 is")
+    last = found.assumptions[-1]
+    assert last.startswith("Possible mistake: analysis.required_safety_factor: 1.5 is")
 
 
 def test_no_shipped_study_counts_twice() -> None:

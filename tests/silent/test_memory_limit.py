@@ -1,7 +1,7 @@
 """Too little memory for the engines of pictures and of the PDF costs these alone.
 
 Before, `ulimit -v 9000000; pinstress run ... --plots --pdf` ended by signal 5 inside Vega's engine,
-or 6 inside typst's, and with 1,000,000 by "the numerics failed: out of memory": no results at all,
+or 6 inside typst's, and with 1,000,000 by "the solution failed: out of memory": no results at all,
 where the same run without --plots and --pdf was complete under each limit.
 
 What is independent: the limit is the shell's own, in a process of its own; what a complete folder

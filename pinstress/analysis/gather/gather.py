@@ -164,7 +164,7 @@ def _results(
             *table.assumptions,
             *factor_assumption(study, strength),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
-            *(f"Hardly meant: {q}" for q in study.questions),
+            *(f"Possible mistake: {q}" for q in study.questions),
         ),
         versions={name: version(name) for name in REQUIRED_PACKAGES},
         study_text=study.text,

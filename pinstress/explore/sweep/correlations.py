@@ -58,7 +58,7 @@ def correlations_of(
     least = float(np.linalg.eigvalsh(matrix)[0])
     if least < -EIGENVALUE_ROUND_OFF:
         raise study.error(
-            "vary.correlations: no variables have these correlations together (the least "
+            "vary.correlations: the correlation matrix is not positive semidefinite (the least "
             f"eigenvalue of their matrix is {least:.3g}, and must not be negative); if A goes with "
             "B and B with C, A must go with C",
             code="no-correlation-matrix",

@@ -100,7 +100,7 @@ def solved(
     tell: Callable[[str], None] = log.warning,
 ) -> pa.Table:
     """The table of all designs, of which those in the store are not solved again. jobs: processes
-    on this machine, by default as many as there are cores; scheduler: address of a cluster of dask
+    on this machine, by default as many as there are cores; scheduler: address of a Dask cluster
     instead. report: called with the number of designs that are solved, and of all. tell: called
     with what is odd about a cluster.
 

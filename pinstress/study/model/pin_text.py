@@ -50,7 +50,7 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
         require_readable(file)
         if file.meshed:
             raise GeometryError(
-                f"{path.name} is no CAD file (STEP, BREP, IGES) whose faces could be recognised",
+                f"{path.name} is not a CAD file (STEP, BREP, IGES) whose faces could be recognised",
                 "not-cad",
             )
         return _text(file, turned_apart(file, upright=False), unit, material)

@@ -232,7 +232,7 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
     if found is None and MINUS_SIGN in text:
         hyphen = text.replace(MINUS_SIGN, "-")
         raise ArgumentError(
-            f"{as_text(text)} has a minus that is no hyphen; write {hyphen!r}", "not-a-number"
+            f"{as_text(text)} has a Unicode minus sign; write {hyphen!r}", "not-a-number"
         )
     if found is None:
         raise ArgumentError(

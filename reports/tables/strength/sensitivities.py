@@ -91,8 +91,8 @@ def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[S
     """Return a row for each dimension that matters, the largest effects of each pin first."""
     columns: list[Column[SensitivityRow]] = [
         *texts("of.pin of.case dimension=by.key"),
-        read_only("now", lambda row: short(row.by.value), "length"),
-        read_only("more by", lambda row: f"+{short(row.by.step)}", "length"),
+        read_only("current", lambda row: short(row.by.value), "length"),
+        read_only("increment", lambda row: f"+{short(row.by.step)}", "length"),
         read_only(
             "safety factor", lambda row: engineering(row.of.factor, 3), rank=1, drop_if_empty=True
         ),

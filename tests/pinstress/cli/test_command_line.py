@@ -234,7 +234,7 @@ def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
     assert "the harmonic model failed: pin B: no mesh" in said.err
     assert run_command_line([*command, "--model", "harmonic"]) == 3
     said = capsys.readouterr()
-    assert "the numerics failed: B (landing): pin B: no mesh" in said.err
+    assert "the solution failed: B (landing): pin B: no mesh" in said.err
     assert "failed" in said.out
     failed, solved = json.loads(Path("out/study/results.json").read_text())["pins"]
     assert (failed["pin"], failed["verdict"], failed["note"]) == ("B", "failed", "pin B: no mesh")

@@ -103,7 +103,7 @@ def test_a_name_cannot_write_into_the_study(
     [
         ("gone.step", (), "does not exist"),
         ("text.step", (), "cannot be read as geometry"),
-        ("mesh.msh", (), "is no CAD file"),
+        ("mesh.msh", (), "is not a CAD file"),
         ("box.step", (), "geometry = "),
         ("pin.step", ("--pin", "a/b"), "cannot be part of a file name"),
         ("pin.step", ("--out", "text.step"), "exists already"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -28,10 +29,14 @@ def heard() -> Iterator[None]:
             signal.signal(each, signal.SIG_IGN)
 
 
+GRACE_SECONDS = 2.0  # s after the end of a program until none of its processes is left
+
+
 @contextmanager
 def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[str]]:
     """A program in a session of its own, so with no terminal, that hears signals. Whatever happens
-    within, none of its processes is left afterwards.
+    within, none of its processes is left afterwards; Python's own tracker of resources ends a
+    moment after the program that started it.
 
     Raises: AssertionError when one was, but for the program itself.
     """
@@ -44,7 +49,9 @@ def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen
                 yield process
             finally:
                 process.kill()
-        left = alive(process.pid)
+        deadline = time.monotonic() + GRACE_SECONDS
+        while (left := alive(process.pid)) and time.monotonic() < deadline:
+            time.sleep(0.02)
     finally:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)

@@ -1,0 +1,139 @@
+"""A study that can be asked again, with changes; what a change does not touch is not solved again.
+
+Every answer is that of `pinstress.run` on the changed study, to the last bit, whatever was asked
+before: what is remembered has the content of everything it depends on as its key, and nothing is
+updated in place.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import OrderedDict
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Literal, TypeVar
+
+from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.results import RunResults, solve
+from pinstress.analysis.serialise import pack, unpack
+from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import changed_study
+from reports.data.results import PinResult
+
+T = TypeVar("T")
+Accuracy = Literal["full", "quick"]
+Changes = Mapping[str, float | str]  # "pin.E.profile[2].diameter": 2.4, in the study's units
+
+AS_IS: Changes = MappingProxyType({})
+QUICK_TOLERANCE = 0.1  # of a quick answer, whose error says how far it is to be believed
+MAX_MEMO_SIZE = 2 * 10**8  # bytes
+
+
+class Memo:
+    """Solved pins by the content of all they depend on, in memory; the oldest go first.
+
+    max_size: bytes that are kept.
+    """
+
+    def __init__(self, max_size: int = MAX_MEMO_SIZE) -> None:
+        self._max_size, self._size = max_size, 0
+        self._entries: OrderedDict[str, bytes] = OrderedDict()
+
+    def key(self, asked: object) -> str:
+        """The name of the answer to what is asked (pinstress.analysis.serialise takes it)."""
+        return hashlib.sha256(pack(asked)).hexdigest()
+
+    def read(self, key: str, kind: type[T]) -> T | None:
+        """The value of a key, a `kind`; None where nothing is remembered."""
+        if key not in self._entries:
+            return None
+        self._entries.move_to_end(key)
+        return unpack(kind, self._entries[key])
+
+    def write(self, key: str, value: object) -> None:
+        """Remember a value."""
+        self._size -= len(self._entries.pop(key, b""))
+        self._entries[key] = pack(value)
+        self._size += len(self._entries[key])
+        while self._size > self._max_size and len(self._entries) > 1:
+            self._size -= len(self._entries.popitem(last=False)[1])
+
+
+class Engine:
+    """A study, asked with changes. It lives in one process.
+
+    pins, cases: names; all by default. memo: shared with other engines, perhaps.
+    """
+
+    def __init__(
+        self,
+        study: Study,
+        *,
+        pins: Iterable[str] | None = None,
+        cases: Iterable[str] | None = None,
+        memo: Memo | None = None,
+    ) -> None:
+        self.study = study
+        self._pins = None if pins is None else list(pins)
+        self._cases = None if cases is None else list(cases)
+        self._memo = memo or Memo()
+
+    def changed(self, changes: Changes = AS_IS) -> Study:
+        """The study with other values by their keys, in its own units or as texts with a unit.
+
+        Raises: InputError with the key and what is wrong with its value.
+        """
+        return changed_study(self.study, changes) if changes else self.study
+
+    def answer(self, changes: Changes = AS_IS, *, accuracy: Accuracy = "full") -> RunResults:
+        """All results, as from `pinstress.run`; a "quick" answer has a larger error, and says so.
+
+        Raises: InputError for a study that cannot be built.
+        """
+        return self._solved(changes, self._pins, accuracy)
+
+    def row(
+        self, changes: Changes, pin: str, case: str, *, accuracy: Accuracy = "full"
+    ) -> PinResult:
+        """One row of the answer, for which no other pin is solved. Raises: InputError."""
+        return self._solved(changes, [pin], accuracy)[pin, case]
+
+    def slopes(
+        self, changes: Changes, pin: str, case: str, keys: Collection[str]
+    ) -> dict[str, float] | str:
+        """The derivatives of the largest stress of a row with respect to lengths and other numbers
+        of its pin, by their keys ("pin.E.profile[2].diameter"), in the study's units; or, as a
+        text, why there are none. Raises: InputError.
+        """
+        results = self._solved(changes, [pin], "full", sensitive=True)
+        found = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
+        if found.note:
+            return found.note
+        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in found.rows}
+        missing = [key for key in keys if key not in by_key]
+        if missing:
+            return f"no derivative with respect to {', '.join(missing)}"
+        return {key: by_key[key] for key in keys}
+
+    def _solved(
+        self,
+        changes: Changes,
+        pins: Iterable[str] | None,
+        accuracy: Accuracy,
+        sensitive: bool = False,
+    ) -> RunResults:
+        plan = prepare(self.changed(changes), pins=pins, cases=self._cases)
+        plan = replace(plan, sensitive=sensitive)
+        return solve(_quick(plan) if accuracy == "quick" else plan, cache=self._memo)
+
+
+def _of_pin(key: str) -> bool:
+    """Whether a parameter is one of the pin's own table: others are of loads and materials."""
+    return not key.startswith(("force ", "moment ", "material."))
+
+
+def _quick(plan: Plan) -> Plan:
+    """A plan with a tolerance that few meshes meet, and rough cells of contact."""
+    tolerance = max(plan.asked.tolerance, QUICK_TOLERANCE)
+    return replace(plan, asked=replace(plan.asked, tolerance=tolerance, cells="rough"))

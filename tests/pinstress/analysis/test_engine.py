@@ -1,0 +1,135 @@
+"""A study asked again, with changes: the same as a run of the changed study, solved once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import pinstress
+from fea.solve.solve import solve as solve_problem
+from fea.support.support import PinProblem
+from pinstress.analysis import solve as solving
+from pinstress.analysis.engine import Engine, Memo
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.in_python import changed_study, study_from
+from reports.tables.json_results import to_json
+
+STUDY = """
+title = "Two pins"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+yield_strength = "600 MPa"
+[pin.A]
+material = "steel"
+clamp = ["start"]
+profile = [{ length = 20, diameter = 30 }, { length = 40, diameter = 20, connection = "A" }]
+fillet = 4
+[pin.B]
+material = "steel"
+clamp = ["start"]
+profile = [{ length = 10, diameter = 31 }, { length = 20, diameter = 24, connection = "B" }]
+fillet = 3
+[case.press]
+kind = "given"
+forces = { A = [30.0, 40.0], B = [0.0, 90.0] }
+[analysis]
+model = "harmonic"
+tolerance = 0.2
+"""
+DIAMETER = "pin.A.profile[2].diameter"
+
+
+@pytest.fixture
+def solved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The names of the pins that were solved, in their order."""
+    names: list[str] = []
+
+    def counted(problem: PinProblem, *rest: Any) -> Any:
+        names.append(problem.pin.name)
+        return solve_problem(problem, *rest)
+
+    monkeypatch.setattr(solving, "solve", counted)
+    return names
+
+
+def numbers(results: Any) -> dict[str, Any]:
+    """All of results.json but what depends on the clock and on the file."""
+
+    def timeless(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {k: timeless(v) for k, v in value.items() if k not in ("seconds", "created")}
+        return [timeless(v) for v in value] if isinstance(value, list) else value
+
+    found: dict[str, Any] = timeless(to_json(results))
+    return found
+
+
+def test_an_answer_is_a_run_of_the_changed_study(solved: list[str]) -> None:
+    """Whatever was asked before; the run is made without an engine."""
+    study = study_from(STUDY)
+    engine = Engine(study)
+    engine.answer()
+    ours = engine.answer({DIAMETER: "0.8 in", "pin.B.fillet": 2.5})
+    theirs = pinstress.run(changed_study(study, {DIAMETER: "0.8 in", "pin.B.fillet": 2.5}))
+    assert numbers(ours)["pins"] == numbers(theirs)["pins"]
+    assert numbers(engine.answer())["pins"] == numbers(pinstress.run(study))["pins"]
+
+
+def test_what_a_change_does_not_touch_is_not_solved_again(solved: list[str]) -> None:
+    engine = Engine(study_from(STUDY))
+    engine.answer()
+    assert sorted(solved) == ["A", "B"]
+    solved.clear()
+    wide = engine.answer({DIAMETER: 22.0})
+    assert solved == ["A"]
+    again = engine.answer({DIAMETER: 22})  # the same number, written otherwise
+    row = engine.row({DIAMETER: 22.0}, "A", "press")
+    assert row.max_von_mises == again["A", "press"].max_von_mises
+    assert solved == ["A"]
+    assert numbers(again)["pins"] == numbers(wide)["pins"]
+
+
+def test_a_memo_is_bounded_and_may_be_shared(solved: list[str]) -> None:
+    """One that is smaller than two pins has the last one."""
+    memo, study = Memo(1), study_from(STUDY)
+    Engine(study, pins=["A"], memo=memo).answer()
+    Engine(study, pins=["A"], memo=memo).answer()
+    assert solved == ["A"]
+    Engine(study, pins=["B"], memo=memo).answer()
+    Engine(study, pins=["A"], memo=memo).answer()
+    assert solved == ["A", "B", "A"]
+
+
+def test_slopes_are_those_of_finite_changes() -> None:
+    """Of the diameter by central differences of answers on their own meshes, which scatter."""
+    study = study_from(STUDY.replace("tolerance = 0.2", "tolerance = 0.005"))
+    engine = Engine(study)
+    slopes = engine.slopes({}, "A", "press", [DIAMETER])
+    assert isinstance(slopes, dict)
+    high, low = (engine.row({DIAMETER: d}, "A", "press").max_von_mises for d in (20.4, 19.6))
+    assert high is not None
+    assert low is not None
+    assert slopes[DIAMETER] == pytest.approx((high - low) / 0.8, rel=0.03)
+    assert "no derivative" in str(engine.slopes({}, "A", "press", ["pin.A.colour"]))
+
+
+def test_a_quick_answer_lies_within_its_error() -> None:
+    engine = Engine(study_from(STUDY.replace("tolerance = 0.2", "tolerance = 0.002")))
+    full = engine.row({}, "A", "press").max_von_mises
+    quick = engine.row({}, "A", "press", accuracy="quick")
+    assert full is not None
+    assert quick.max_von_mises is not None
+    assert quick.error_estimate is not None
+    assert abs(quick.max_von_mises - full) <= quick.error_estimate
+    assert quick.error_estimate > 0.002 * quick.max_von_mises
+
+
+def test_what_cannot_be_built_says_its_key() -> None:
+    engine = Engine(study_from(STUDY))
+    with pytest.raises(InputError, match=r"pin\.A\.profile\[2\]\.diameter"):
+        engine.answer({DIAMETER: -3.0})
+    with pytest.raises(InputError, match=r"no 'C' there"):
+        engine.row({"pin.C.fillet": 1.0}, "A", "press")
