@@ -48,7 +48,10 @@ def write_pages(results: Results, directory: Path) -> Path:
 
 
 def _write_tables(results: Results, directory: Path, others: Sequence[Table[Any]]) -> None:
-    """others: tables that come before those of the loads."""
+    """Write all tables.
+
+    others: tables that come before those of the loads.
+    """
     directory.mkdir(parents=True, exist_ok=True)
     write_json(results, directory / "results.json")
     tables = [*others, *load_tables(results)]

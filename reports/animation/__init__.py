@@ -1,1 +1,1 @@
-"""Pages on which a linkage moves."""
+"""Pages with animated linkages."""

@@ -18,7 +18,10 @@ KEY_ARROW_SHARE = 0.45  # of the largest force, about: the arrow that explains t
 
 @dataclass(frozen=True)
 class Arrow:
-    """A force at the first frame: where, how long on the picture, and its direction in degrees."""
+    """The arrow of a force at the first frame.
+
+    at: its tail on the picture. length: on the picture. angle: its direction, degrees.
+    """
 
     colour: str
     at: tuple[float, float]
@@ -27,23 +30,23 @@ class Arrow:
 
     @property
     def head(self) -> float:
-        """Length of the head, which shrinks with a short arrow."""
+        """The length of the head, which shrinks with a short arrow."""
         return min(ARROW_HEAD_LENGTH, 0.6 * self.length)
 
 
 def arrows(scene: Scene) -> list[Arrow]:
-    """One per connection, in proportion to its force."""
-    found = []
+    """Return an arrow for each connection, with a length in proportion to its force."""
+    shown_arrows = []
     for c, ((fx, fy), joint) in enumerate(zip(scene.forces[0].tolist(), scene.tails, strict=True)):
         x, y = scene.joints[0, joint].tolist()
         length = MAX_ARROW_LENGTH * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
         colour = scene.colour(scene.motion.connections[c][1])
-        found.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
-    return found
+        shown_arrows.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
+    return shown_arrows
 
 
 def key(scene: Scene) -> tuple[float, Arrow] | None:
-    """A round force and its arrow; None without forces."""
+    """Return a round force and its arrow for the key; None without forces."""
     if not scene.largest > 0.0:
         return None
     force = nice(KEY_ARROW_SHARE * scene.largest)
@@ -52,7 +55,7 @@ def key(scene: Scene) -> tuple[float, Arrow] | None:
 
 @dataclass(frozen=True)
 class Shown:
-    """How forces are written, and of each drive its position and its force."""
+    """The number formats of the forces and, for each drive, of its position and its force."""
 
     force: Fixed
     drives: list[tuple[Fixed, Fixed]]
@@ -74,7 +77,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class ForceRow:
-    """A connection in the table: numbers at the first frame, and its largest with the time."""
+    """A connection in the table: its values at the first frame, its largest force and the time."""
 
     name: str
     body: str
@@ -88,15 +91,15 @@ class ForceRow:
 
 
 def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
-    """One per connection, in the order of the joints."""
+    """Return a row for each connection, in the order of the joints."""
     table = scene.table
     if table is None:
         return []
-    peaks, first, found = table.largest, scene.instants[0], []
+    peaks, first, force_rows = table.largest, scene.instants[0], []
     for c, (name, body, _) in enumerate(scene.motion.connections):
         fx, fy = (shown.force(v) for v in scene.forces[0, c].tolist())
         peak, when = peaks[c].force, peaks[c].time
-        found.append(
+        force_rows.append(
             ForceRow(
                 name,
                 body,
@@ -109,4 +112,4 @@ def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
                 "" if when is None else short(float(f"{when:.4g}")),
             )
         )
-    return found
+    return force_rows

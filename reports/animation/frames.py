@@ -17,21 +17,24 @@ PICTURE_MARGIN = 36.0  # room for names and for what is drawn around a joint
 def frames(
     motion: LinkageMotion, table: ReactionTable | None, drives: list[DriveTable]
 ) -> NDArray[np.int64]:
-    """Indices of at most 240 instants: evenly spaced, and those of the peaks."""
+    """Return the indices of at most 240 instants: evenly spaced ones, and those of the peaks."""
     count = len(motion.joint_position)
     if count <= MAX_FRAMES:
         return np.arange(count)
     peaks = [int(np.argmax(np.abs(d.force))) for d in drives if len(d.force) == count]
     if table is not None:
         peaks += table.magnitudes.argmax(axis=0).tolist()
-    kept = np.unique(peaks)[: MAX_FRAMES // 2]
-    even = np.linspace(0, count - 1, MAX_FRAMES - len(kept)).round().astype(int)
-    return np.union1d(even, kept)
+    peak_indices = np.unique(peaks)[: MAX_FRAMES // 2]
+    even = np.linspace(0, count - 1, MAX_FRAMES - len(peak_indices)).round().astype(int)
+    return np.union1d(even, peak_indices)
 
 
 @dataclass(frozen=True)
 class Viewport:
-    """From lengths in the study's unit to the picture, y downwards: scale, then the corner."""
+    """A mapping from lengths in the study's unit to the picture, whose y axis points downwards.
+
+    scale: picture units per length. left, top: the corner. height: of the picture.
+    """
 
     scale: float
     left: float
@@ -40,8 +43,11 @@ class Viewport:
 
     @staticmethod
     def of(points: Floats, tails: Floats, arrows: Floats) -> Viewport:
-        """Such that all points (N, 2) fit, and the arrows (M, 2; on the picture, y upwards) from
-        their tails (M, 2).
+        """Return the viewport in which all points and arrows fit.
+
+        points: (N, 2), in the study's unit.
+        tails: (M, 2), the points at which the arrows start, in the study's unit.
+        arrows: (M, 2), in units of the picture, y upwards.
         """
         all_points = np.concatenate([points, tails])
         offsets = np.concatenate([np.zeros_like(points), arrows])
@@ -62,7 +68,7 @@ class Viewport:
         return Viewport(low, float(left), float(top), height)
 
     def __call__(self, points: Floats) -> Floats:
-        """Positions (..., 2) in the picture."""
+        """Return the positions (..., 2) in the picture of points (..., 2)."""
         return np.stack(
             [self.left + self.scale * points[..., 0], self.top - self.scale * points[..., 1]],
             axis=-1,
@@ -70,7 +76,7 @@ class Viewport:
 
 
 def nice(value: float) -> float:
-    """The largest 1, 2 or 5 times a power of ten that is not above the value."""
+    """Return the largest 1, 2 or 5 times a power of ten that does not exceed the value."""
     if not value > 0.0 or not np.isfinite(value):
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))

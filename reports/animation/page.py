@@ -20,7 +20,7 @@ SCALE_BAR_SHARE = 0.2  # of the linkage's size, about: the bar that shows a leng
 
 
 def write_animations(results: Results, directory: Path) -> list[Path]:
-    """Write a file for every case whose linkage is known; returns their paths."""
+    """Write an animation for every case whose linkage is known, and return the paths."""
     paths = []
     for motion in results.motion:
         path = directory / animation_name(motion.case)
@@ -30,7 +30,7 @@ def write_animations(results: Results, directory: Path) -> list[Path]:
 
 
 def render_animation(motion: LinkageMotion, results: Results) -> str:
-    """The file's text."""
+    """Return the text of the HTML file of a case."""
     table = next((_matched(t, motion) for t in results.reactions if t.case == motion.case), None)
     drives = [d for d in results.drive if d.case == motion.case]
     scene = Scene(motion, frames(motion, table, drives), table)
@@ -66,7 +66,7 @@ def render_animation(motion: LinkageMotion, results: Results) -> str:
 
 
 def _matched(table: ReactionTable, motion: LinkageMotion) -> ReactionTable | None:
-    """The table in the order of the linkage's connections; None when some are not in it."""
+    """Return the table in the order of the linkage's connections; None when some are missing."""
     names = [name for name, _, _ in motion.connections]
     if not set(names) <= set(table.connections):
         return None
@@ -83,13 +83,13 @@ def _matched(table: ReactionTable, motion: LinkageMotion) -> ReactionTable | Non
 
 
 def _bar(scene: Scene, units: Units) -> tuple[float, str]:
-    """A bar's length on the picture, and the round length for which it stands."""
+    """Return the length of a scale bar on the picture, and the round length that it represents."""
     length = nice(SCALE_BAR_SHARE * scene.size)
     return length * scene.view.scale, f"{short(length)} {units.length}"
 
 
 def _strips(scene: Scene, drives: list[DriveTable], shown: Shown, units: Units) -> list[Strip]:
-    """Forces on the pins against time, then a panel for each drive."""
+    """Return a panel of the forces on the pins against time, then a panel for each drive."""
     time, at = scene.motion.time, scene.instants
     if time is None or len(at) < 2:
         return []

@@ -16,7 +16,7 @@ WATCHABLE_SECONDS = (2.0, 12.0)  # seconds that need no other speed
 
 
 def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[str, Any]:
-    """Positions and values by frame."""
+    """Return the positions and values of every frame for the script."""
     at = scene.instants
     time = scene.motion.time
     return {
@@ -63,7 +63,7 @@ def _connections(scene: Scene) -> list[dict[str, Any]]:
 
 
 def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:
-    """Speeds to choose from, in times of the real, with their words; True for that to begin with.
+    """Return the speeds of playback: the factor on real time, its label, whether it is the default.
 
     A motion of milliseconds or of hours plays in seconds.
     """
@@ -80,7 +80,7 @@ def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:
 
 
 def digits(values: Floats, significant: int = 5) -> list[float | None]:
-    """Numbers rounded relative to the largest; None for missing ones."""
+    """Return the numbers rounded relative to the largest; None for missing ones."""
     finite = values[np.isfinite(values)]
     largest = float(np.abs(finite).max(initial=0.0))
     decimals = significant - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
@@ -88,7 +88,7 @@ def digits(values: Floats, significant: int = 5) -> list[float | None]:
 
 
 def pixels(points: Floats) -> list[float]:
-    """Coordinates one after the other, to a hundredth of a pixel."""
+    """Return the coordinates as one flat list, rounded to a hundredth of a pixel."""
     return [_plain(round(v, 2)) for v in points.reshape(-1).tolist()]
 
 

@@ -27,9 +27,9 @@ RAIL_OVERHANG = 30.0  # that a rail goes on past the block
 
 @dataclass(frozen=True)
 class Slide:
-    """A slider: as cylinder and rod (`cylinder` long), or as a block on a fixed `rail`.
+    """A slider, drawn as cylinder and rod (`cylinder` long) or as a block on a fixed `rail`.
 
-    ends: (F, 2, 2). base, moving: colours of its bodies.
+    ends: (F, 2, 2), its two ends in every frame. base, moving: the colours of its bodies.
     """
 
     name: str
@@ -42,7 +42,7 @@ class Slide:
 
     @property
     def barrel(self) -> Floats:
-        """(2, 2) the ends of the cylinder at the first frame."""
+        """The ends (2, 2) of the cylinder at the first frame."""
         a, b = self.ends[0]
         length = float(np.linalg.norm(b - a))
         part = min(self.cylinder / length, 1.0) if length else 0.0
@@ -50,13 +50,13 @@ class Slide:
 
     @property
     def run(self) -> float:
-        """Length of the rail."""
+        """The length of the rail."""
         return 0.0 if self.rail is None else float(np.linalg.norm(self.rail[1] - self.rail[0]))
 
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything in the picture, F frames: positions in its own unit, y downwards."""
+    """The contents of the picture in F frames, with positions in its own unit, y downwards."""
 
     motion: LinkageMotion
     instants: NDArray[np.int64]
@@ -64,7 +64,7 @@ class Scene:
 
     @cached_property
     def points(self) -> Floats:
-        """(N, 2) all that must be seen, in the study's unit."""
+        """The points (N, 2) that must be visible, in the study's unit."""
         motion = self.motion
         single = [b for b, joints in enumerate(motion.links) if len(joints) < 2]
         parts = [motion.joint_position, motion.centre[:, single], *motion.slides.values()]
@@ -75,7 +75,7 @@ class Scene:
 
     @cached_property
     def size(self) -> float:
-        """Of the linkage, in the study's unit."""
+        """The size of the linkage, in the study's unit."""
         return float(np.ptp(self.points, axis=0).max()) or 1.0
 
     @cached_property
@@ -89,14 +89,14 @@ class Scene:
 
     @cached_property
     def forces(self) -> Floats:
-        """(F, C, 2) on the pins, in the plane of the linkage."""
+        """The forces (F, C, 2) on the pins, in the plane of the linkage."""
         if self.table is None:
             return np.zeros((len(self.instants), 0, 2))
         return self.table.forces[self.instants, :, :2]
 
     @cached_property
     def tails(self) -> list[int]:
-        """For each connection of the table the index of its joint."""
+        """The index of the joint of each connection of the table."""
         if self.table is None:
             return []
         return [self.motion.joints.index(joint) for _, _, joint in self.motion.connections]
@@ -108,36 +108,36 @@ class Scene:
 
     @cached_property
     def joints(self) -> Floats:
-        """(F, J, 2)."""
+        """The positions (F, J, 2) of the joints."""
         return self.view(self.motion.joint_position[self.instants])
 
     @cached_property
     def centres(self) -> Floats:
-        """(F, B, 2) of the bodies' masses."""
+        """The positions (F, B, 2) of the centres of mass of the bodies."""
         return self.view(self.motion.centre[self.instants])
 
     @cached_property
     def members(self) -> list[list[int]]:
-        """For each body the indices of its joints."""
+        """The indices of the joints of each body."""
         index = {name: j for j, name in enumerate(self.motion.joints)}
         return [[index[name] for name in link] for link in self.motion.links]
 
     def shape(self, body: str) -> Floats:
-        """(joints, 2) of a body at the first frame."""
+        """Return the positions (joints, 2) of the joints of a body at the first frame."""
         return self.joints[0, self.members[self.motion.bodies.index(body)]]
 
     def track(self, joint: str) -> Floats:
-        """(F, 2) of a joint."""
+        """Return the positions (F, 2) of a joint."""
         return self.joints[:, self.motion.joints.index(joint)]
 
     @cached_property
     def curves(self) -> dict[str, Floats]:
-        """(F, 2) of the paths of named points."""
+        """The paths (F, 2) of the named points."""
         return {name: self.view(p.position[self.instants]) for name, p in self.motion.paths.items()}
 
     @cached_property
     def pitch(self) -> list[tuple[str, Floats, float]]:
-        """Of every pitch circle or line the colour, its ends (F, 2, 2), and its radius or 0."""
+        """The colour, the ends (F, 2, 2) and the radius (or 0) of every pitch circle or line."""
         return [
             (
                 self.colour(c.body),
@@ -148,8 +148,9 @@ class Scene:
         ]
 
     def named_between(self, body: str) -> list[int] | None:
-        """The two joints of a body between which its name is furthest from any joint; None where
-        the name is too long.
+        """Return the two joints of a body between which its name is farthest from any joint.
+
+        None where the name is too long.
         """
         members = self.members[self.motion.bodies.index(body)]
         at = self.joints[0]
@@ -163,7 +164,7 @@ class Scene:
         return best if best and 2.0 * clear(best) > JOINT_LETTER_WIDTH * len(body) else None
 
     def colour(self, body: str) -> str:
-        """The class of a body; anything that is not a body of the linkage is ground."""
+        """Return the colour class of a body; what is not a body of the linkage is ground."""
         if body not in self.motion.bodies:
             return "ground"
         return f"b{self.motion.bodies.index(body) % BODY_COLOUR_COUNT}"
@@ -193,7 +194,7 @@ class Scene:
         return Slide(name, ends, cylinder, rail, angle, *owners)
 
     def _owner(self, end: Floats) -> str:
-        """Colour of the body that owns the end of a slider: the one whose only joint is there."""
+        """Return the colour of the body whose only joint is at this end of a slider."""
         for b, members in enumerate(self.members):
             if len(members) == 1:
                 off = self.motion.joint_position[:, members[0]] - end
@@ -203,7 +204,7 @@ class Scene:
 
     @cached_property
     def names(self) -> Floats:
-        """(J, 2) from each joint to the middle of its name."""
+        """The offsets (J, 2) from each joint to the middle of its name."""
         wide = [JOINT_LETTER_WIDTH * len(clipped(name)) + 4.0 for name in self.motion.joints]
         few = np.unique(np.linspace(0, len(self.instants) - 1, 12).round().astype(int))
         pairs = [
@@ -221,5 +222,5 @@ class Scene:
 
 
 def clipped(name: str) -> str:
-    """A name that is short enough for the picture."""
+    """Return a name that is short enough for the picture."""
     return name if len(name) <= MAX_NAME_LETTERS else name[: MAX_NAME_LETTERS - 1] + "…"

@@ -26,7 +26,7 @@ class Tick:
 
 @dataclass(frozen=True)
 class Curve:
-    """A line's path, its colour's class, and where and how large its peak is."""
+    """The path of a line, its colour class, and the position and value of its peak."""
 
     path: str
     colour: str
@@ -61,7 +61,10 @@ def strip(
     colours: Sequence[str],
     factor: float,
 ) -> Strip:
-    """A panel; curves: each (F,), labelled in parts of `factor`."""
+    """Return a panel of curves against time.
+
+    curves: each (F,), labelled in multiples of `factor`.
+    """
     low = min(0.0, *(float(np.min(c)) for c in curves))
     high = max(0.0, *(float(np.max(c)) for c in curves))
     if high == low:
@@ -90,12 +93,12 @@ def strip(
 
 
 def extremes(low: float, high: float) -> list[float]:
-    """Zero, and the ends of the range that are far enough from it to be labelled."""
+    """Return zero, and the ends of the range that are far enough from it to be labelled."""
     return [v for v in (low, high) if abs(v) > 0.35 * (high - low)] + [0.0]
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
-    """Round numbers from low to high, about as many as requested."""
+    """Return round numbers from low to high, about as many as requested."""
     step = nice((high - low) / most)
     if (high - low) / step > 1.5 * most:
         step = nice(2.6 * step)

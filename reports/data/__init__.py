@@ -1,1 +1,1 @@
-"""What a run found, as plain data in the study's own units."""
+"""Results of a run as plain data in the study's own units."""

@@ -1,4 +1,4 @@
-"""What to change so that a pin reaches its factor of safety."""
+"""Changes with which a pin reaches its factor of safety."""
 
 from __future__ import annotations
 
@@ -10,12 +10,16 @@ from pinbase.dimensions import Stress, Time
 
 @dataclass(frozen=True)
 class Remedy:
-    """Each alone makes a pin reach the required factor in the worst of its cases: a yield strength;
-    a factor on all loads, exact where stress is `proportional` to them, as it is not in contact;
-    a factor on all diameters, bores and fillets, None where `diameter_note` says why; the time of
-    the impulse that loads it, None without one or where no time is long enough (given_time: as it
-    is). Of a singular row they are by the upper end of its range. singular: the factor is reached
-    only outside the excluded zones.
+    """The changes that make a pin reach the required factor in all cases, each sufficient alone.
+
+    For a singular row they are computed with the upper end of its stress range.
+    yield_strength: that would suffice.
+    load_factor: on all loads; exact where stress is `proportional` to them (not in contact).
+    diameter_factor: on all diameters, bores and fillets; None where `diameter_note` gives a reason.
+    impulse_time: of the impulse that loads the pin; None without one or where no time is long
+    enough.
+    given_time: the impulse time of the study.
+    singular: whether the factor is reached only outside the excluded zones.
     """
 
     pin: str
@@ -32,7 +36,7 @@ class Remedy:
 
 
 def command(changes: tuple[Remedy, ...], study: str, required: float | None) -> str:
-    """The command that finds the diameters of the pins that have any; empty if none has."""
+    """Return the command that sizes the pins for which diameters can be found; empty if none."""
     pins = [c.pin for c in changes if c.diameter_factor or "pinstress size" in c.diameter_note]
     if not pins:
         return ""

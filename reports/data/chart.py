@@ -10,10 +10,14 @@ CHART_NAME = "chart"
 
 @dataclass(frozen=True)
 class ChartPoint:
-    """One mesh of one element of a model. dofs: unknowns, 0 of a beam. seconds: median wall time
-    from the mesh to the maximum over the motion. memory: the most it took above the process with
-    its libraries loaded, MB. error: of the maximum relative to the reference. chosen: whether
-    `auto` ends on it. All are None where it `failed`, for that reason.
+    """The cost and the error of one mesh of one element of a model.
+
+    All numbers are None if it `failed`, which states the reason.
+    dofs: unknowns, 0 for a beam.
+    seconds: median wall time from the mesh to the maximum over the motion.
+    memory: peak above that of the process with its libraries loaded, MB.
+    error: relative error of the maximum with respect to the reference.
+    chosen: whether `auto` ends on this mesh.
     """
 
     model: str
@@ -29,7 +33,10 @@ class ChartPoint:
 
 @dataclass(frozen=True)
 class Reference:
-    """What the errors are measured by, with its own estimated error, relative."""
+    """The solution against which errors are measured.
+
+    error: its own estimated relative error.
+    """
 
     model: str
     element: str
@@ -40,9 +47,13 @@ class Reference:
 
 @dataclass(frozen=True)
 class Chart:
-    """points: by model and element, coarse to fine. bare: memory of the process with its libraries
-    loaded, MB. runs: of which seconds are medians. beam_error: what the beam says of its own error,
-    relative, if anything. note: of what the maximum is one, where not of the whole pin.
+    """The speed-accuracy chart of a pin in a case.
+
+    points: by model and element, coarse to fine.
+    bare: memory of the process with its libraries loaded, MB.
+    runs: the number of runs of which `seconds` are medians.
+    beam_error: the relative error that the beam estimates for itself, if any.
+    note: the part of the pin whose maximum is charted, where it is not the whole pin.
     """
 
     pin: str
@@ -58,7 +69,7 @@ class Chart:
 
     @property
     def curves(self) -> dict[tuple[str, str], list[ChartPoint]]:
-        """Points that did not fail, by model and element."""
+        """Return the points that did not fail, by model and element."""
         out: dict[tuple[str, str], list[ChartPoint]] = {}
         for p in self.points:
             if not p.failed:
@@ -67,6 +78,6 @@ class Chart:
 
 
 def error(point: ChartPoint) -> float:
-    """Relative error of a point that did not fail, never zero."""
+    """Return the relative error of a point that did not fail; it is never zero."""
     assert point.error is not None
     return max(point.error, MIN_CHART_ERROR)

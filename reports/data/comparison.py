@@ -1,5 +1,7 @@
-"""Two runs compared, from their results.json: which inputs differ, which results changed, and
-whether by more than their errors.
+"""Comparison of two runs, read from their results.json.
+
+It lists the inputs that differ, the results that changed, and whether these changed by more than
+their errors.
 """
 
 from __future__ import annotations
@@ -30,8 +32,11 @@ CHANGE_KINDS = (
 
 @dataclass(frozen=True)
 class Side:
-    """A pin in a case of one of the runs: the maximum and its range by its error, in the units of
-    the first run, the safety factor, and what was decided. None where there is no number.
+    """A pin in a case of one run; None where there is no number.
+
+    maximum, low, high: the maximum stress and its range by the error, in the units of the first
+    run.
+    factor: safety factor. outcome: as in reports.data.decision.
     """
 
     maximum: float | None
@@ -44,7 +49,7 @@ class Side:
 
 @dataclass(frozen=True)
 class RowPair:
-    """A pin in a case of both runs, None where it is not in one."""
+    """A pin in a case of both runs; a side is None where its run lacks the row."""
 
     pin: str
     case: str
@@ -53,7 +58,7 @@ class RowPair:
 
     @property
     def kind(self) -> str:
-        """One of CHANGE_KINDS."""
+        """The kind of the change, one of CHANGE_KINDS."""
         a, b = self.first, self.second
         if a is None or b is None:
             return ONLY_IN_ONE_RUN[a is None]
@@ -68,7 +73,7 @@ class RowPair:
 
     @property
     def change(self) -> float | None:
-        """Of the maximum, relative to the first run's."""
+        """The change of the maximum relative to that of the first run."""
         a, b = self.first, self.second
         if a is None or b is None or not a.maximum or b.maximum is None:
             return None
@@ -77,7 +82,7 @@ class RowPair:
 
 @dataclass(frozen=True)
 class ValuePair:
-    """Something else that differs, by its names; None where it is not in a run."""
+    """Another value that differs, by its names; None where a run lacks it."""
 
     names: tuple[str, ...]
     first: Any
@@ -85,7 +90,7 @@ class ValuePair:
 
     @property
     def change(self) -> float | None:
-        """Relative to the first, of numbers."""
+        """The change of a number relative to that of the first run."""
         if not self.first or self.second is None:
             return None
         return float(self.second) / float(self.first) - 1.0
@@ -93,10 +98,12 @@ class ValuePair:
 
 @dataclass(frozen=True)
 class RunComparison:
-    """folders, titles and stress and force units of both; forces in those of the first. inputs:
-    values that differ by key, None without those of a run, which an earlier version wrote. forces:
-    largest ones by case and connection. margins: of each pin the check that governs, and its
-    margin.
+    """The differences of two runs.
+
+    folders, titles: of both runs. stress, force: units of both; forces are in those of the first.
+    inputs: values that differ by key; None where a run of an earlier version wrote no inputs.
+    forces: largest forces by case and connection.
+    margins: the governing check of each pin, and its margin.
     """
 
     folders: tuple[str, str]
@@ -110,7 +117,7 @@ class RunComparison:
     versions: tuple[ValuePair, ...]
 
     def count(self, kind: str) -> int:
-        """How many rows are of a kind."""
+        """Return the number of rows of a kind."""
         return sum(row.kind == kind for row in self.rows)
 
 
@@ -120,7 +127,10 @@ def compared(
     folders: tuple[str, str],
     units: tuple[float, float] = (1.0, 1.0),
 ) -> RunComparison:
-    """Of what two results.json contain. units: stress and force of the second, in the first's."""
+    """Return the comparison of the contents of two results.json.
+
+    units: stress and force unit of the second run, in those of the first.
+    """
     stress, force = units
     both = first, second
     a, b = ({(p["pin"], p["case"]): p for p in run["pins"]} for run in both)
@@ -162,7 +172,7 @@ def _above(low: float | None, high: float | None) -> bool:
 
 
 def _place(row: RowPair) -> tuple[int, bool, float]:
-    """The most important first."""
+    """Return the sort key of a row: the most important change comes first."""
     change = row.change
     worse = row.second is not None and row.second.outcome in (FAILS, YIELDS, NOT_DECIDED, DEPENDS)
     size = 0.0 if change is None else -abs(math.log(max(1.0 + change, 1e-300)))
@@ -211,7 +221,7 @@ def _forces(run: Mapping[str, Any], unit: float) -> dict[tuple[str, ...], float]
 
 
 def _margins(run: Mapping[str, Any]) -> dict[tuple[str, ...], tuple[float, str]]:
-    """By pin, the least margin and its check; to six digits, which round-off does not change."""
+    """Return the least margin of each pin and its check, to six digits against round-off."""
     least: dict[tuple[str, ...], tuple[float, str]] = {}
     for row in run.get("margins", ()):
         if row["margin"] is None:

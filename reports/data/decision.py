@@ -1,4 +1,4 @@
-"""Whether a row meets the factor that is required of it, by how much, and which row is worst."""
+"""Outcome of a row: whether it meets its required factor, by how much, and which row is worst."""
 
 from __future__ import annotations
 
@@ -15,20 +15,24 @@ Ends = tuple[float, float]
 
 
 def outcome(pin: PinResult) -> str:
-    """Whether a pin meets its required factor: safe, fails, not decided, or depends on what the
-    study leaves open; without a required factor, whether it yields.
+    """Return whether a pin meets its required factor, or yields if no factor is required.
+
+    It is safe, fails, is not decided, or depends on what the study leaves open.
     """
-    found = as_described(pin)
-    return DEPENDS if found in (SAFE, BELOW_YIELD) and pin.depends_on else found
+    described = as_described(pin)
+    return DEPENDS if described in (SAFE, BELOW_YIELD) and pin.depends_on else described
 
 
 def as_described(pin: PinResult) -> str:
-    """The outcome of a pin that is exactly as its study describes it."""
+    """Return the outcome of a pin that is exactly as its study describes it."""
     return in_words(pin.decided, pin.required)
 
 
 def in_words(decided: bool | None, required: float | None) -> str:
-    """decided: whether a maximum stays below what is permitted (fea.core.peak.meets_limit)."""
+    """Return the outcome that follows from a decision.
+
+    decided: whether a maximum stays below what is permitted (fea.core.peak.meets_limit).
+    """
     if decided is None:
         return NOT_DECIDED
     if required is None:
@@ -37,8 +41,9 @@ def in_words(decided: bool | None, required: float | None) -> str:
 
 
 def factor_ends(pin: PinResult) -> Ends:
-    """The safety factor of a row that has one, from its lower to its upper end by the error of the
-    maximum; inf where no stress may be left.
+    """Return the lower and upper end of a row's safety factor, by the error of the maximum.
+
+    An end is inf where no stress may be left. The row must have a factor.
     """
     if pin.safety_factor_interval is not None:
         low, high = pin.safety_factor_interval
@@ -51,13 +56,15 @@ def factor_ends(pin: PinResult) -> Ends:
 
 
 def limit(results: Results) -> float:
-    """The factor that is required; where none is, 1, at which a pin yields."""
+    """Return the factor that is required; 1, at which a pin yields, where none is required."""
     return results.required_safety_factor or 1.0
 
 
 def utilisation(pin: PinResult, limit: float) -> Ends | None:
-    """Required over actual factor: from the lower to the upper end of a range, inf where no end is
-    known; equal where the factor is a number, None where there is none.
+    """Return the lower and upper end of required over actual factor.
+
+    The ends are equal where the factor is a number, inf where they are unknown; None without a
+    factor.
     """
     if pin.safety_factor is None:
         return None
@@ -66,7 +73,7 @@ def utilisation(pin: PinResult, limit: float) -> Ends | None:
 
 
 def worst_first(results: Results) -> list[PinResult]:
-    """The rows: first those that fail, then those not decided, each by their utilisation."""
+    """Return the rows that fail, then those not decided, then the others, each by utilisation."""
 
     def place(pin: PinResult) -> tuple[int, float]:
         used = utilisation(pin, 1.0)

@@ -1,10 +1,4 @@
-"""What the outcome of a row depends on: values within the study's own ranges at which it changes.
-
-A row is judged as its study describes it. What the study gives as a range (the impulse of a
-landing), or what is seldom known of a joint, may still turn "safe" into "fails"; then a factor that
-is met is met on a condition, and this names it. So does what lies beneath contact with lugs: a row
-is the larger of surface and section, and safe only if that meets the factor too.
-"""
+"""Dependence of a row's outcome on values within the study's own ranges."""
 
 from __future__ import annotations
 
@@ -27,8 +21,10 @@ IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 
 @dataclass(frozen=True)
 class Judged:
-    """A maximum with the lower and upper end of its error, the yield strength, and the stress that
-    the required factor permits, all of one unit; safe: as described.
+    """A maximum stress as it is judged, all in one stress unit.
+
+    low, high: the ends of its error. strength: yield strength.
+    permitted: the stress that the required factor permits. safe: the outcome as described.
     """
 
     low: float
@@ -39,8 +35,10 @@ class Judged:
     safe: bool
 
     def turns(self, stress: float, ends: tuple[float, float] | None = None) -> bool:
-        """Whether another maximum, with the same relative error or with its own ends, is judged
-        otherwise for certain (fails to safe), or possibly (safe to fails).
+        """Return whether another maximum changes the outcome.
+
+        It has the same relative error, or its own ends. From fails to safe the change must be
+        certain; from safe to fails it suffices that it is possible.
         """
         low, high = ends or (stress * self.low / self.maximum, stress * self.high / self.maximum)
         return (high > self.permitted) if self.safe else (max(low, high) <= self.permitted)
@@ -52,33 +50,38 @@ def dependences(
     joint: JointResult | None,
     landing: LandingRange | None,
 ) -> tuple[Dependence, ...]:
-    """Everything that changes the outcome: what lies beneath contact, then the ranges, that of the
-    joint first; empty where nothing does.
+    """Return everything that changes the outcome; empty where nothing does.
+
+    The stress beneath contact comes first, then the ranges, that of the joint first.
     """
     if judged.maximum <= 0.0:
         return ()
-    found = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
+    dependence_list = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
     if landing is not None:
-        found += _with_beneath(judged, contact, landing)
-    return tuple(found)
+        dependence_list += _with_beneath(judged, contact, landing)
+    return tuple(dependence_list)
 
 
 def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence, ...]:
-    """What the outcome of a row depends on; empty where it is not decided as described."""
-    found = as_described(pin)
-    if found == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
+    """Return what the outcome of a row depends on; empty where it is not decided as described."""
+    described = as_described(pin)
+    if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
     strength = pin.safety_factor * pin.max_von_mises
     contact = pin.places.contact if pin.places else None
     high, low = (strength / end for end in factor_ends(pin))
     permitted = strength / (pin.required or 1.0)
-    judged = Judged(low, pin.max_von_mises, high, strength, permitted, found in (SAFE, BELOW_YIELD))
+    judged = Judged(
+        low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
+    )
     return dependences(judged, contact, pin.joint, landing)
 
 
 def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependence]:
-    """Of a row that is safe as described: no distance from the edges of lugs makes it plainly so
-    while the field away from them says otherwise.
+    """Yield the stress beneath contact if it contradicts a row that is safe as described.
+
+    It does where no distance from the edges of lugs makes the row plainly safe, and the field away
+    from them exceeds the limit.
     """
     if contact is None or not judged.safe or contact.upper_end <= judged.permitted:
         return
@@ -93,32 +96,34 @@ def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependenc
 def _over_joint(
     judged: Judged, contact: ContactPlace | None, joint: JointResult | None
 ) -> Iterator[Dependence]:
-    """A row that fails is safe at another value only if what lies beneath is, too; one that is
-    safe, beneath, too, may no longer be so there.
+    """Yield the variations of the joint that change the outcome.
+
+    A row that fails is safe at another value only if the stress beneath contact is safe there, too.
+    A row that is safe, beneath contact too, may no longer be so there.
     """
     over = joint.range if joint else None
     if joint is None or over is None:
         return
     given = max((band.clearance for band in joint.bands), default=None)
     deep = [v for v in over.variations if _upper_end(contact, v) > judged.permitted]
-    found = [
+    turning = [
         v
         for v in over.variations
         if judged.turns(v.max_von_mises, v.interval) and (judged.safe or v not in deep)
     ]
-    for v in found:
+    for v in turning:
         yield Dependence(
             v.what, v.value, "joint", judged.strength / _counted(judged, v),
             given=given if v.length is not None else None, at=v.length,
             flips_at=_crossing(judged, v, given), dimension="length",
         )  # fmt: skip
-    if not found and judged.safe and over.max_von_mises[1] > judged.permitted:
+    if not turning and judged.safe and over.max_von_mises[1] > judged.permitted:
         lugs = "assumed lugs" if over.assumed else "its lugs"
         factor = judged.strength / over.max_von_mises[1]
         yield Dependence("joint", f"contact with {lugs}", "joint", factor)
     if contact is None or not judged.safe or contact.upper_end > judged.permitted:
         return
-    for v in (v for v in deep if v not in found):
+    for v in (v for v in deep if v not in turning):
         end = _upper_end(contact, v)
         what = f"{v.what} {v.value}" if v.length is None else v.what
         yield Dependence(
@@ -129,8 +134,9 @@ def _over_joint(
 
 
 def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
-    """Of what lies beneath contact with something of the joint changed, with the relative error
-    that it has as the study has the joint.
+    """Return the upper end of the stress beneath contact with a variation of the joint.
+
+    Its relative error is that of the joint as the study has it.
     """
     if contact is None or not contact.beneath or v.beneath is None:
         return 0.0
@@ -138,13 +144,15 @@ def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
 
 
 def _counted(judged: Judged, v: Variation) -> float:
-    """The stress that turns a safe row is the upper end of a variation's own interval."""
+    """Return the stress that decides: for a safe row the upper end of its interval, if any."""
     return v.interval[1] if judged.safe and v.interval else v.max_von_mises
 
 
 def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None:
-    """Where between the given length and the varied one the permitted stress is reached, linearly;
-    the varied one where the maximum as given is not of the same model.
+    """Return the length at which the permitted stress is reached, interpolated linearly.
+
+    It lies between the given length and the varied one; it is the varied one where the maximum as
+    given is of another model.
     """
     end = judged.high if judged.safe else judged.low
     return _on_the_way(judged, v, given, (end, v.max_von_mises * end / judged.maximum))
@@ -153,7 +161,7 @@ def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None
 def _on_the_way(
     judged: Judged, v: Variation, given: float | None, ends: tuple[float, float]
 ) -> float | None:
-    """The same of stresses as given and as varied."""
+    """Return the same length for stresses as given and as varied."""
     (first, last) = ends
     if v.length is None or given is None or v.interval is not None or first == last:
         return v.length
@@ -164,15 +172,16 @@ def _on_the_way(
 def _with_beneath(
     judged: Judged, contact: ContactPlace | None, r: LandingRange
 ) -> list[Dependence]:
-    """Over the landing, what lies beneath contact with the row: both go with the load. A row that
-    fails is safe at another value only if what lies beneath is, too.
+    """Return the dependences over a landing's range, with stress beneath contact, which scales too.
+
+    A row that fails is safe at another value only if the stress beneath contact is safe, too.
     """
     if contact is None or contact.beneath <= 0.0:
         return list(_over_landing(judged, r))
     if not judged.safe:
         return list(_over_landing(replace(judged, high=max(judged.high, contact.upper_end)), r))
-    if (found := list(_over_landing(judged, r))) or contact.upper_end > judged.permitted:
-        return found
+    if (over_landing := list(_over_landing(judged, r))) or contact.upper_end > judged.permitted:
+        return over_landing
     deep = replace(judged, low=contact.beneath, maximum=contact.beneath, high=contact.upper_end)
     scaled = replace(r, max_von_mises=r.max_von_mises * (contact.beneath / judged.maximum))
     return [
@@ -182,14 +191,14 @@ def _with_beneath(
 
 
 def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
-    """One range alone, all else as the case has it; else all together."""
+    """Yield the ranges that change the outcome alone, or all ranges together if none does."""
     time, velocity = (
         np.isclose(x, given)
         for x, given in zip((r.impulse_time, r.velocity_change), r.nominal, strict=True)
     )
     pulse = np.array([name == r.nominal_pulse for name in r.pulses])
     turned = np.array([judged.turns(float(stress)) for stress in r.max_von_mises])
-    found = False
+    any_alone = False
     axes = (
         ("impulse time", "time", r.impulse_time, r.nominal[0], velocity & pulse),
         ("velocity change", "velocity", r.velocity_change, r.nominal[1], time & pulse),
@@ -197,7 +206,7 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
     for what, dimension, values, given, alone in axes:
         here = _nearest(values, given, alone & turned)
         if here is not None:
-            found = True
+            any_alone = True
             at, stress = float(values[here]), float(r.max_von_mises[here])
             flips = _between(judged, (given, judged.maximum), (at, stress))
             yield Dependence(
@@ -205,17 +214,17 @@ def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
                 given=given, at=at, flips_at=flips, dimension=dimension,
             )  # fmt: skip
     for k in np.flatnonzero(time & velocity & ~pulse & turned):
-        found = True
+        any_alone = True
         factor = judged.strength / float(r.max_von_mises[k])
         yield Dependence("pulse", r.pulses[int(k)], "landing", factor)
-    if not found and turned.any():
+    if not any_alone and turned.any():
         extreme = np.max if judged.safe else np.min
         factor = judged.strength / float(extreme(r.max_von_mises))
         yield Dependence(IMPULSE_RANGES_TOGETHER, "", "landing", factor)
 
 
 def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> int | None:
-    """Of those, the one that is nearest to what the case has, in ratio."""
+    """Return the index of the marked value that is nearest in ratio to that of the case."""
     places = np.flatnonzero(which)
     if not len(places):
         return None
@@ -224,7 +233,7 @@ def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> in
 
 
 def _between(judged: Judged, one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Where stress, a power of the value between two points, reaches what is permitted."""
+    """Return where the stress, a power law between two points, reaches the permitted one."""
     end = judged.high if judged.safe else judged.low
     wanted = judged.permitted * judged.maximum / end
     (x, a), (y, b) = one, other

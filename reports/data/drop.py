@@ -1,4 +1,4 @@
-"""A drop in results."""
+"""Results of a drop."""
 
 from __future__ import annotations
 
@@ -34,12 +34,14 @@ class DropPeak:
 
 @dataclass(frozen=True)
 class DropRecord:
-    """A landing as a drop: (T,) over time; sink_velocity of the sprung mass, positive downwards;
-    strut: force along it; leg_drag: what the leg passes on of the drag. peaks: by name of
-    PEAK_QUANTITIES. load_factor: vertical force over the weight. imbalance: largest, of the
-    energies over the first kinetic energy. impulse_force: m V over impulse_time;
-    equal_impulse_time: that at which both agree. spin_up: largest drag by appendix D to 14 CFR
-    part 23; None without a wheel. drive: the largest force of the strut's drive in the mechanism.
+    """A landing as a drop: histories (T,) over time and the values derived from them.
+
+    sink_velocity: of the sprung mass, positive downwards. strut: force along it.
+    leg_drag: the part of the drag that the leg transmits. peaks: by the names of PEAK_QUANTITIES.
+    load_factor: vertical force over the weight.
+    imbalance: largest imbalance of the energies over the first kinetic energy.
+    impulse_force: m V over impulse_time. equal_impulse_time: the impulse time at which both agree.
+    spin_up: largest drag by appendix D to 14 CFR part 23; None without a wheel.
     closing, opening: (P,) vertical force over the strokes (P,) of the first compression and
     extension.
     """

@@ -1,4 +1,4 @@
-"""Every pin in every case: which case governs a pin, and what a report of many cases shows."""
+"""The envelope of all pins and cases: the governing cases, and the rows that a report shows."""
 
 from __future__ import annotations
 
@@ -15,8 +15,11 @@ MAX_DETAILED_CASES = (
 
 @dataclass(frozen=True)
 class EnvelopeCell:
-    """A pin in a case: the largest force and moment of each of its connections, the utilisation (of
-    a range the upper end, None without one), and whether the case governs the pin.
+    """A pin in a case.
+
+    used: utilisation, the upper end of a range, None without one. governs: whether the case
+    governs.
+    largest: the largest force and moment of each of its connections.
     """
 
     result: PinResult
@@ -27,12 +30,12 @@ class EnvelopeCell:
 
 
 def governing_cases(results: Results) -> dict[str, str]:
-    """The worst case of every pin."""
+    """Return the worst case of every pin."""
     return {row.pin: row.case for row in reversed(worst_first(results))}
 
 
 def envelope(results: Results) -> list[EnvelopeCell]:
-    """Of every pin in every case in which it was solved."""
+    """Return a cell for every pin in every case in which it was solved."""
     governs, required = governing_cases(results), limit(results)
     largest: dict[tuple[str, str], list[PeakReaction]] = {}
     for table in results.reactions:
@@ -51,12 +54,12 @@ def envelope(results: Results) -> list[EnvelopeCell]:
 
 
 def case_names(results: Results) -> list[str]:
-    """The cases in which pins were solved."""
+    """Return the names of the cases in which pins were solved."""
     return list(dict.fromkeys(row.case for row in results.pins))
 
 
 def omitted_note(results: Results) -> str:
-    """Where the cases are that are not shown in detail; empty if all are."""
+    """Return a note on where to find the cases not shown in detail; empty if all are shown."""
     if len(cases := case_names(results)) <= MAX_DETAILED_CASES:
         return ""
     return (
@@ -66,7 +69,7 @@ def omitted_note(results: Results) -> str:
 
 
 def detailed_rows(results: Results) -> Results:
-    """What is shown in detail: all, or of many cases the governing one of each pin."""
+    """Return the results to show in detail: all, or of many cases the governing one of each pin."""
     if len(case_names(results)) <= MAX_DETAILED_CASES:
         return results
     governs = governing_cases(results)

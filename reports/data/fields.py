@@ -23,8 +23,10 @@ from pinbase.dimensions import (
 
 @dataclass(frozen=True)
 class BandLoad:
-    """A band of a pin, from z0 to z1 on a radius, with the force (3,) and the moment (3,) about its
-    middle on the axis that are applied there, in the pin's axes; zero where it is `held`.
+    """A band of a pin and the load applied to it, in the pin's axes.
+
+    z: its two ends. radius: of the band. force: (3,). moment: (3,), about its middle on the axis.
+    held: whether the band is held; force and moment are zero then.
     """
 
     connection: str
@@ -36,14 +38,16 @@ class BandLoad:
 
     @property
     def middle(self) -> Floats:
-        """On the axis, (3,)."""
+        """The middle (3,) of the band on the axis."""
         return np.array([0.0, 0.0, 0.5 * (self.z[0] + self.z[1])])
 
 
 @dataclass(frozen=True)
 class Still:
-    """The pin of a Field at another instant: displacement (N, 3), von_mises (N,), its loads, and
-    where lugs press on it, (N,), None without lugs.
+    """The pin of a Field at another instant.
+
+    displacement: (N, 3). von_mises: (N,). loads: at this instant.
+    pressed: (N,), where lugs press on it; None without lugs.
     """
 
     time: Time
@@ -55,8 +59,10 @@ class Still:
 
 @dataclass(frozen=True)
 class Volume:
-    """All of a revolved pin: points (N, 3), cells (M, 6; "wedge"), displacement (N, 3), stress
-    (N, 6) as a Field's, von_mises (N,), pressed (N,) as a Still's.
+    """The whole volume of a revolved pin.
+
+    points: (N, 3). cells: (M, 6), type "wedge". displacement: (N, 3).
+    stress: (N, 6), components as in Field. von_mises: (N,). pressed: (N,), as in Still.
     """
 
     points: Lengths
@@ -70,16 +76,19 @@ class Volume:
 
 @dataclass(frozen=True)
 class Field:
-    """A mesh with results at its nodes: points (N, 3), cells (M, 10; VTK's order of "tetra10") or
-    (M, 4; "quad": the surface alone), displacement (N, 3), stress (N, 6: xx, yy, zz, yz, xz, xy),
-    von_mises (N,), and envelope (N,): the largest von Mises over all instants at surface nodes, NaN
-    inside. yield_strength: for the factor of safety at each point, None without one. outside: where
-    zones are excluded or lugs press on the surface, the largest stress that is read of it and where
-    it is (x, y, z). time: None without a motion. loads: what acts at this instant. stills: along
-    the motion, and volume: all of a revolved pin, if wanted. contact_pressure: (N,) of its lugs;
-    pressed: (N,) where they press on what is shown, and where the envelope has only the instants at
-    which they do not (NaN if there are none); None without lugs. solids: between which z local
-    solids are about cuts.
+    """A mesh with results at its nodes.
+
+    points: (N, 3). cells: (M, 10) in VTK's order of "tetra10", or (M, 4) "quad" for a surface
+    alone.
+    displacement: (N, 3). stress: (N, 6), components xx, yy, zz, yz, xz, xy. von_mises: (N,).
+    envelope: (N,), the largest von Mises stress over all instants at surface nodes, NaN inside.
+    yield_strength: for the factor of safety at each point, None without one.
+    outside: the largest stress outside excluded zones and pressed surface, and its place (x, y, z).
+    time: None without a motion. loads: at this instant. stills: along the motion, if requested.
+    volume: the whole volume of a revolved pin, if requested. contact_pressure: (N,), from its lugs.
+    pressed: (N,), where lugs press on the part shown, and where the envelope has only the instants
+    at which they do not (NaN if there are none); None without lugs.
+    solids: the ranges of z of local solids about cuts.
     """
 
     pin: str

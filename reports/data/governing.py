@@ -1,5 +1,6 @@
-"""Which check governs beside the model's stress against yield, which has rows of its own: the one
-with the least margin of safety.
+"""The governing check besides the model's stress against yield: the one with the least margin.
+
+The model's stress has rows of its own.
 """
 
 from __future__ import annotations
@@ -10,20 +11,20 @@ from reports.data.results import Results
 
 
 def governing(results: Results) -> list[PinMargin]:
-    """Of every pin in every case, the worst first; none of those of which no check was made."""
-    found: dict[tuple[str, str], PinMargin] = {}
+    """Return the governing check of every pin in every case that has one, the worst first."""
+    worst: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:
         key = margin.pin, margin.case
         may = margin.margin.governs and margin.used >= 0.0 and margin.margin.method != YIELD_METHOD
-        if may and (key not in found or margin.used > found[key].used):
-            found[key] = margin
-    return sorted(found.values(), key=lambda margin: -margin.used)
+        if may and (key not in worst or margin.used > worst[key].used):
+            worst[key] = margin
+    return sorted(worst.values(), key=lambda margin: -margin.used)
 
 
 def skipped(results: Results) -> dict[str, list[PinMargin]]:
-    """The checks that were not made, by what they need."""
-    found: dict[str, list[PinMargin]] = {}
+    """Return the checks that were not made, grouped by the data that they need."""
+    by_need: dict[str, list[PinMargin]] = {}
     for margin in results.margins:
         if margin.margin.needs:
-            found.setdefault(margin.margin.needs, []).append(margin)
-    return found
+            by_need.setdefault(margin.margin.needs, []).append(margin)
+    return by_need

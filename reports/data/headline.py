@@ -1,8 +1,4 @@
-"""What a run decides about its pins: the worst of all checks that count, of each pin and of all.
-
-A pin is as safe as the worst of its checks: the von Mises stress of the model against yield with
-the required factor, and every margin of safety that governs (fatigue, rupture, collapse, clauses).
-"""
+"""Decision of a run about its pins: the worst of all checks that count, of each pin and of all."""
 
 from __future__ import annotations
 
@@ -31,10 +27,13 @@ from reports.data.results import PinResult, Results
 
 @dataclass(frozen=True)
 class JudgedCheck:
-    """One check of a pin in a case (empty: over several). check: its name. outcome: one of
-    reports.data.decision. factor: allowable over demand, `required`: of it. used: required over
-    factor, the upper end of a range, by which checks are compared. row: of the model's maximum,
-    None for a margin. reason: why a check other than that is not decided.
+    """One check of a pin in a case (empty if over several cases).
+
+    check: its name. outcome: one of reports.data.decision. factor: allowable over demand.
+    required: the required factor.
+    used: required over actual factor, the upper end of a range, by which checks are compared.
+    row: the row of the model's maximum, None for a margin.
+    reason: why a check other than the model's maximum is not decided.
     """
 
     pin: str
@@ -49,42 +48,42 @@ class JudgedCheck:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """The worst first."""
+        """The sort key of the check: the worst comes first."""
         return OUTCOME_ORDER[self.outcome], -self.used
 
 
 def judged_checks(results: Results) -> list[JudgedCheck]:
-    """All checks that count, the worst first."""
+    """Return all checks that count, the worst first."""
     rows = {(row.pin, row.case): row for row in results.pins}
-    found = [_of_row(row, limit(results)) for row in results.pins]
-    found += (
+    checks = [_of_row(row, limit(results)) for row in results.pins]
+    checks += (
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins
         if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0
     )
     open_ = results.fatigue.not_decided if results.fatigue else {}
-    found += (
+    checks += (
         JudgedCheck(pin, "", FATIGUE_LIFE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
         for pin, reason in open_.items()
     )
-    return sorted(found, key=lambda check: check.rank)
+    return sorted(checks, key=lambda check: check.rank)
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:
-    """Of every pin, in the order of the results."""
-    found: dict[str, JudgedCheck] = {}
+    """Return the worst check of every pin, in the order of the results."""
+    worst: dict[str, JudgedCheck] = {}
     for check in judged_checks(results):
-        found.setdefault(check.pin, check)
-    return {row.pin: found[row.pin] for row in results.pins}
+        worst.setdefault(check.pin, check)
+    return {row.pin: worst[row.pin] for row in results.pins}
 
 
 def pins_with(worst: Iterable[JudgedCheck], *outcomes: str) -> list[str]:
-    """The pins whose worst check has one of some outcomes."""
+    """Return the pins whose worst check has one of some outcomes."""
     return [check.pin for check in worst if check.outcome in outcomes]
 
 
 def headline_json(results: Results, sentence: str) -> dict[str, Any] | None:
-    """For results.json; None where nothing was solved."""
+    """Return the headline for results.json; None where nothing was solved."""
     worst = worst_checks(results)
     if not worst:
         return None
@@ -113,12 +112,17 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
     )
 
 
-def _of_margin(found: PinMargin, row: PinResult | None) -> JudgedCheck:
-    """A margin is of the upper end of a demand; the model's stress has a lower one, too."""
-    m = found.margin
+def _of_margin(pin_margin: PinMargin, row: PinResult | None) -> JudgedCheck:
+    """Return the check of a margin.
+
+    A margin has only the upper end of a demand; the model's stress has a lower end, too.
+    """
+    m = pin_margin.margin
     factor = m.allowable / m.demand if m.demand and m.allowable is not None else None
-    state = SAFE if found.used <= 1.0 else FAILS
+    state = SAFE if pin_margin.used <= 1.0 else FAILS
     if m.method == RUPTURE_METHOD and row is not None and row.safety_factor and state == FAILS:
         low, high = factor_ends(row)
-        state = FAILS if found.used * low / high > 1.0 else NOT_DECIDED
-    return JudgedCheck(found.pin, found.case, m.method, state, factor, m.factor, found.used)
+        state = FAILS if pin_margin.used * low / high > 1.0 else NOT_DECIDED
+    return JudgedCheck(
+        pin_margin.pin, pin_margin.case, m.method, state, factor, m.factor, pin_margin.used
+    )

@@ -1,4 +1,4 @@
-"""From SI to a study's units: whole results at once, by the dimensions of their fields."""
+"""Conversion of whole results from SI to a study's units, by the dimensions of their fields."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ SYSTEM_INDEPENDENT_DIMENSIONS = (
 
 
 def in_units(value: T, unit: Unit) -> T:
-    """A dataclass of results with its numbers, and those of all it holds, in other units.
+    """Return a dataclass of results with its numbers, and those of all it holds, in other units.
 
-    unit: SI value of the unit of a dimension. Fields are annotated with theirs
-    (pinbase.dimensions): a name, or several with exponents, "stress length^0.5". What differs from
-    one object to the next a class says by a property `instead`, from the dimension of the
-    annotation to that of the object; it holds for all that the object holds.
+    unit: returns the SI value of the unit of a dimension.
+    Fields are annotated with their dimension (pinbase.dimensions): a name, or several with
+    exponents, "stress length^0.5". A class whose dimensions differ from object to object has a
+    property `instead`, which maps the dimension of the annotation to that of the object; it holds
+    for all that the object holds.
     """
     instead: Mapping[str, str] = getattr(value, "instead", {})
 
@@ -43,7 +44,7 @@ def in_units(value: T, unit: Unit) -> T:
 
 
 def _factor(dimension: str, unit: Unit) -> float:
-    """Product of the units of "stress length^0.5"."""
+    """Return the product of the units of a dimension such as "stress length^0.5"."""
     if dimension in SYSTEM_INDEPENDENT_DIMENSIONS:
         return 1.0
     product = 1.0
@@ -55,7 +56,7 @@ def _factor(dimension: str, unit: Unit) -> float:
 
 @cache
 def _dimensioned(kind: type) -> tuple[tuple[str, Any], ...]:
-    """Fields with a dimension somewhere in them, and their annotations."""
+    """Return the fields that have a dimension somewhere in them, and their annotations."""
     hints = get_type_hints(kind, include_extras=True)
     return tuple((f.name, hints[f.name]) for f in fields(kind) if _matters(hints[f.name]))
 
@@ -85,7 +86,7 @@ def _converted(value: Any, hint: Any, unit: Unit) -> Any:
 
 
 def _scaled(value: Any, factor: float) -> Any:
-    """Arrays keep their precision."""
+    """Return the value times the factor; arrays keep their precision."""
     if isinstance(value, np.ndarray):
         return value if factor == 1.0 else value / factor
     return value / factor

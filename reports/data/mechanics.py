@@ -1,4 +1,4 @@
-"""Mechanics in results: forces, drives, motion, and what they are compared with."""
+"""Results of mechanics: forces, drives, motion, and the values with which they are compared."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ def shown_position(position_unit: str) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class PeakReaction:
-    """A connection's largest force over the time of a motion, between the instants too: its size,
-    when, its components and the drive's position then; and the largest moment. frictionless: the
-    largest force if nothing rubbed, where something does.
+    """The largest force and the largest moment of a connection over a motion, between instants too.
+
+    time, components, position: when the force is largest, its components and the drive's position.
+    frictionless: the largest force without friction, where there is friction.
     """
 
     connection: str
@@ -49,14 +50,17 @@ class PeakReaction:
 
 @dataclass(frozen=True)
 class ReactionTable:
-    """One case's forces on the pins, world axes: forces, moments (T, C, 3).
+    """The forces on the pins in one case, in world axes.
 
-    times, position (T,): None without a motion. pins: (C,) the pin on which each connection bears.
-    shared: connections whose forces follow the study's sharing rule. published: magnitudes by
-    connection, in the study's units. note: how the case came about (an impulse estimate, say).
-    peaks: along a motion, of every connection. turn: (T, C) rad, how far each pin's own axes are
-    turned about z. position_unit: "deg" of a rotary drive; empty of a slider, for a length.
-    unresolved: times between which forces change too quickly for their peaks to be certain.
+    forces, moments: (T, C, 3). times, position: (T,), None without a motion.
+    pins: (C,), the pin on which each connection bears.
+    shared: connections whose forces follow the study's sharing rule.
+    published: magnitudes by connection, in the study's units.
+    note: the origin of the case (an impulse estimate, say).
+    peaks: of every connection, along a motion.
+    turn: (T, C), rotation of each pin's own axes about z, rad.
+    position_unit: "deg" for a rotary drive; empty for a slider, whose position is a length.
+    unresolved: the time intervals in which forces change too quickly for their peaks to be certain.
     """
 
     case: str
@@ -81,12 +85,12 @@ class ReactionTable:
 
     @cached_property
     def magnitudes(self) -> Floats:
-        """(T, C)."""
+        """The magnitudes (T, C) of the forces."""
         return np.asarray(np.linalg.norm(self.forces, axis=2))
 
     @property
     def largest(self) -> tuple[PeakReaction, ...]:
-        """Of every connection: over the time where that is known, else of the instants."""
+        """The largest reaction of every connection, over the motion or else over the instants."""
         return self.peaks or tuple(self._sampled(c) for c in range(len(self.connections)))
 
     def _sampled(self, c: int) -> PeakReaction:
@@ -104,9 +108,12 @@ class ReactionTable:
 
 @dataclass(frozen=True)
 class DriveEffort:
-    """Force or torque of a drive over a time: largest magnitude and when, mean, and RMS; largest
-    magnitude of its power and when; stroke: between its extreme positions. frictionless: the
-    largest if nothing rubbed, where something does.
+    """The force or torque of a drive over a motion.
+
+    largest, time: largest magnitude and its time. mean, rms: over the motion.
+    power, power_time: largest magnitude of the power and its time.
+    stroke: between the extreme positions.
+    frictionless: the largest magnitude without friction, where there is friction.
     """
 
     largest: Force
@@ -121,10 +128,13 @@ class DriveEffort:
 
 @dataclass(frozen=True)
 class DriveTable:
-    """One drive along a motion, all (T,): a slider's length and force, or (kind "rotary") an angle
-    in degrees with its rates in rad and the torque. Energies and work in force x length; the
-    energies are the whole linkage's. effort: of the force over the time, between the instants too;
-    None: of the instants alone. time: None for a case at one instant.
+    """One drive along a motion, all (T,).
+
+    kind: a slider with length and force, or "rotary" with an angle in degrees, its rates in rad,
+    and a torque.
+    work, kinetic_energy, potential_energy: force x length; the energies are the whole linkage's.
+    effort: over the motion, between the instants too; None: over the instants alone.
+    time: None for a case at one instant.
     """
 
     case: str
@@ -148,22 +158,22 @@ class DriveTable:
 
     @property
     def largest(self) -> float:
-        """Largest magnitude of the force or torque."""
+        """The largest magnitude of the force or torque."""
         return self.effort.largest if self.effort else float(np.abs(self.force).max())
 
     @property
     def largest_power(self) -> float:
-        """Largest magnitude of the power."""
+        """The largest magnitude of the power."""
         return self.effort.power if self.effort else float(np.abs(self.power).max())
 
     @property
     def stroke(self) -> float:
-        """Between the extreme positions."""
+        """The distance between the extreme positions."""
         return self.effort.stroke if self.effort else float(np.ptp(self.position))
 
     @property
     def mean(self) -> float:
-        """Mean force or torque over the time; what is only rounding is zero."""
+        """The mean force or torque over the time; zero where it is only round-off."""
         if self.effort:
             return self.effort.mean
         if self.time is None:
@@ -173,7 +183,7 @@ class DriveTable:
 
     @property
     def rms(self) -> float:
-        """Root of the mean square of the force or torque over the time."""
+        """The root mean square of the force or torque over the time."""
         if self.effort:
             return self.effort.rms
         if self.time is None:
@@ -183,8 +193,11 @@ class DriveTable:
 
 @dataclass(frozen=True)
 class PowerLedger:
-    """Who puts power in, (T,) each: drives, gravity, applied loads, friction (never positive)
-    against the rate of kinetic energy. violation: the largest difference over the largest term.
+    """The balance of powers, each (T,).
+
+    drives, gravity, applied, friction: power put in; that of friction is never positive.
+    kinetic_rate: rate of the kinetic energy, which equals their sum.
+    violation: the largest difference over the largest term.
     """
 
     drives: Powers
@@ -197,8 +210,10 @@ class PowerLedger:
 
 @dataclass(frozen=True)
 class Extremes:
-    """Smallest transmission angles by link and joint, degrees, and the largest condition number
-    over a time, each with when.
+    """The extremes of a motion over its time, each with the time at which it occurs.
+
+    transmission: smallest transmission angles by link and joint, degrees.
+    condition: largest condition number.
     """
 
     transmission: dict[str, tuple[float, Time]]
@@ -207,7 +222,10 @@ class Extremes:
 
 @dataclass(frozen=True)
 class GuideForces:
-    """(T,) each: normal (left of the axis), couple about the slider's end, friction along it."""
+    """The forces of a slider, each (T,).
+
+    normal: to the left of the axis. couple: about the slider's end. friction: along the axis.
+    """
 
     normal: Forces
     couple: Energies
@@ -216,8 +234,11 @@ class GuideForces:
 
 @dataclass(frozen=True)
 class PointPath:
-    """Of a point: position and velocity (T, 2), speed (T,), and curvature (T,) of its path,
-    positive where it bends to the left of the way it goes; NaN where it stands still.
+    """The motion of a point.
+
+    position, velocity: (T, 2). speed: (T,).
+    curvature: (T,) of the path, positive where it bends to the left of the direction of travel; NaN
+    where the point stands still.
     """
 
     position: Lengths
@@ -228,8 +249,10 @@ class PointPath:
 
 @dataclass(frozen=True)
 class PitchCurve:
-    """The pitch circle of a gear, or (not round) the pitch line of a rack. ends: (T, 2, 2) the
-    centre and a point of the circle that turns with the gear, or the ends of the line.
+    """The pitch circle of a gear (`round`) or the pitch line of a rack.
+
+    ends: (T, 2, 2), the centre and a point of the circle that turns with the gear, or the line's
+    ends.
     """
 
     body: str
@@ -238,27 +261,31 @@ class PitchCurve:
 
     @property
     def radius(self) -> float:
-        """Of the circle; of a line half its length."""
+        """The radius of the circle; half the length of the line."""
         size = float(np.linalg.norm(self.ends[0, 1] - self.ends[0, 0]))
         return size if self.round else 0.5 * size
 
 
 @dataclass(frozen=True)
 class LinkageMotion:
-    """How a linkage moves in one case: T instants (one, without time, when it is at rest).
+    """The motion of a linkage in one case, at T instants (one, without time, when it is at rest).
 
-    links: for each of B bodies the joints on it, in the order to draw them. centre, velocity,
-    acceleration: (T, B, 2) of the centres of mass. angle: (T, B) direction from the body's first
-    joint to its second, degrees counter-clockwise from x, without jumps (of a body with one joint
-    since the drawing, NaN for a particle); angular_velocity, angular_acceleration: (T, B) in rad.
-    joints: J names, those of pitch points last; joint_position, joint_velocity,
-    joint_acceleration: (T, J, 2). ground: joints that stand still. slides: by slider, its two ends
-    (T, 2, 2). pitch: of gears and racks. connections: (name, body, joint) in the order of the
-    case's ReactionTable. transmission: by link and joint, (T,) degrees, 90 is best, 0 is a dead
-    point. condition: (T,) of the loop equations. shaking_force (T, 2), shaking_moment (T,): of the
-    linkage on its ground, the moment about the joint `shaking_about`. slider_forces: by slider of
-    the base on the moving body. paths: of named points. extremes: over the time, between the
-    instants too; None: of the instants alone.
+    links: for each of B bodies the joints on it, in drawing order.
+    centre, velocity, acceleration: (T, B, 2) of the centres of mass.
+    angle: (T, B), direction from the body's first joint to its second, degrees counter-clockwise
+    from x, without jumps; for a body with one joint the rotation since the drawing, for a particle
+    NaN.
+    angular_velocity, angular_acceleration: (T, B) in rad.
+    joints: J names, those of pitch points last. ground: joints that are fixed.
+    joint_position, joint_velocity, joint_acceleration: (T, J, 2).
+    slides: by slider, its two ends (T, 2, 2). pitch: curves of gears and racks.
+    connections: (name, body, joint) in the order of the case's ReactionTable.
+    transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
+    condition: (T,), condition number of the loop equations.
+    shaking_force: (T, 2). shaking_moment: (T,), about the joint `shaking_about`; both act from the
+    linkage on its ground.
+    slider_forces: by slider, from the base on the moving body. paths: of named points.
+    extremes: over the motion, between the instants too; None: over the instants alone.
     """
 
     case: str
@@ -291,7 +318,7 @@ class LinkageMotion:
 
     @property
     def poorest(self) -> dict[str, tuple[float, float | None]]:
-        """Smallest transmission angle of each link and joint that has one, and when."""
+        """The smallest transmission angle of each link and joint that has one, and its time."""
         if self.extremes:
             return dict(self.extremes.transmission)
         angles = {k: v for k, v in self.transmission.items() if np.isfinite(v).any()}
@@ -299,7 +326,7 @@ class LinkageMotion:
 
     @property
     def worst_condition(self) -> tuple[float, float | None]:
-        """Largest condition number, and when."""
+        """The largest condition number, and its time."""
         if self.extremes:
             return self.extremes.condition
         return self._sampled(self.condition, int(np.argmax(self.condition)))
@@ -310,9 +337,10 @@ class LinkageMotion:
 
 @dataclass(frozen=True)
 class MotionCheck:
-    """Speed and acceleration magnitude of a joint, from the linkage and in closed form, (T,);
-    published: rows of time, speed, acceleration, as published in the study's units, with ours at
-    that time (time, v, a, our v, our a).
+    """The magnitudes (T,) of a joint's speed and acceleration, from the linkage and in closed form.
+
+    published: rows of time, published speed and acceleration in the study's units, and the computed
+    speed and acceleration at that time.
     """
 
     joint: str
@@ -340,8 +368,9 @@ class Dimensioned:
 
 @dataclass(frozen=True)
 class LegTable:
-    """The dynamics of a spatial leg: vectors (T, 3) and scalars (T,) by name; axes: of the
-    components.
+    """The dynamics of a spatial leg.
+
+    vectors: (T, 3) by name. scalars: (T,) by name. axes: of the components.
     """
 
     case: str
@@ -353,8 +382,10 @@ class LegTable:
 
 @dataclass(frozen=True)
 class PublishedValue:
-    """A published number with ours: of a `quantity` of what is called `name` in a case (at a time,
-    or None), published in `unit`; reason: why they differ. dimension: of ours.
+    """A published number compared with the computed one.
+
+    quantity, name: the quantity, and what it belongs to. time: None for a case as a whole.
+    published: in `unit`. reason: of the difference. dimension: of `ours`.
     """
 
     case: str

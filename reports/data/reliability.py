@@ -20,11 +20,11 @@ class Spread:
     high: float
 
     def apart(self, other: Spread) -> bool:
-        """Whether the intervals do not overlap."""
+        """Return whether the intervals do not overlap."""
         return self.high < other.low or other.high < self.low
 
     def or_narrower(self, weighted: Spread | None) -> Spread:
-        """Of a probability: that of weighted samples, where it is surer and no contradiction."""
+        """Return the estimate by weighted samples if narrower and consistent, else this one."""
         if weighted is None or weighted.apart(self) or weighted.value <= 0.0:
             return self
         surer = self.low <= 0.0 or (
@@ -35,9 +35,10 @@ class Spread:
 
 @dataclass(frozen=True)
 class Driver:
-    """How much a parameter matters to a factor of safety: the square of its part in the direction
-    of FORM's design point; the part of the factor's variance that is its own (first-order Sobol
-    index) and that it takes part in (total). None where it was not found.
+    """The importance of a parameter for a factor of safety; None where it could not be determined.
+
+    importance: squared direction cosine of the parameter at FORM's design point.
+    first, total: first-order and total Sobol index of the factor's variance.
     """
 
     parameter: str
@@ -48,8 +49,10 @@ class Driver:
 
 @dataclass(frozen=True)
 class FirstOrder:
-    """FORM: the reliability index, the probability of failure and the quantile by it; NaN with
-    `why` where it does not converge. points: number of distinct design points found.
+    """The results of FORM; NaN with the reason `why` where it does not converge.
+
+    index: reliability index. probability: of failure. quantile: of the factor.
+    points: number of distinct design points.
     """
 
     index: float
@@ -61,8 +64,10 @@ class FirstOrder:
 
 @dataclass(frozen=True)
 class ByErrors:
-    """Probabilities of failure with all stresses changed by an error or a range of the model: by
-    `least`, a part of the stress that is usually negative, and by `most`.
+    """The probabilities of failure with all stresses changed by an error or a range of the model.
+
+    least, most: relative change of the stress; `least` is usually negative.
+    lower, higher: the probabilities for `least` and `most`.
     """
 
     least: float
@@ -73,16 +78,17 @@ class ByErrors:
 
 @dataclass(frozen=True)
 class Risk:
-    """A pin in a case, or SYSTEM_ROW for the lowest factor of all rows.
+    """Probability of failure of a pin in a case, or of the lowest factor of all rows (SYSTEM_ROW).
 
-    verdict, factor: of the study as it is; None where it has no factor. sampled, weighted: the
-    probability of failure by plain and by importance sampling, None without a design point.
-    failures: of the plain samples; unknown: of them without a result. quantile_sampled,
-    quantile_weighted: the factor of safety that is not reached with the stated probability. mesh:
-    by the estimated error of the stress, joint: by the range over the joint; None where not known.
-    beneath: the probability that it fails or depends on what lies beneath contact, with its error;
-    None where that is never more than the row. curve: of the distribution
-    (factor, probability to be lower, by plain (0) or importance sampling (1)).
+    verdict, factor: of the study as it is; None where it has no factor.
+    sampled, weighted: by plain and by importance sampling, None without a design point.
+    failures: of the plain samples. unknown: number of them without a result.
+    quantile_sampled, quantile_weighted: the factor not reached with the stated probability.
+    mesh: by the estimated error of the stress. joint: by the range over the joint. None if unknown.
+    beneath: the probability that the row fails or depends on the stress beneath contact, with its
+    error; None where that is never more than the row's own.
+    curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
+    (1)).
     """
 
     pin: str
@@ -114,13 +120,13 @@ class Risk:
 
     @property
     def probability(self) -> Spread:
-        """Of failure, by the narrower interval; by plain sampling where they contradict."""
+        """The probability of failure with the narrower interval; by plain sampling if in doubt."""
         best = self.weighted if self.by_weights else None
         return best or self.sampled
 
     @property
     def quantile(self) -> Spread:
-        """The factor that is not reached with the stated probability, by the narrower interval."""
+        """The factor not reached with the stated probability, with the narrower interval."""
         plain, best = self.quantile_sampled, self.quantile_weighted
         if best is None or self.disagrees or best.apart(plain):
             return plain
@@ -128,9 +134,11 @@ class Risk:
         return best if next(widths) < next(widths) else plain
 
     def result(self, allowed: float) -> str:
-        """Whether the probability of failure is within the allowed one: decided by the interval,
-        with the error of the stress. A singular row cannot be safe; one that is safe by surface and
-        section depends on what lies beneath contact, where that may take more than is allowed.
+        """Return the outcome: whether the probability of failure is within the allowed one.
+
+        The interval with the error of the stress decides. A singular row cannot be safe. A row that
+        is safe by surface and section depends on the stress beneath contact where the probability
+        with it may exceed the allowed one.
         """
         ends = self.probability
         low, high = ends.low, ends.high
@@ -150,10 +158,13 @@ class Risk:
 
 @dataclass(frozen=True)
 class Reliability:
-    """A study whose numbers are random. limit: the factor of yield below which a pin fails.
-    probability: for which the factor is found, and that allowed. parameters: keys with their laws
-    as text. correlations: as text. solved: designs by what for; reasons: why designs failed, with
-    how many. notes: what the probabilities do not include, for people.
+    """The results of a study with random parameters.
+
+    limit: the factor of yield below which a pin fails.
+    probability: the allowed one, for which the quantile of the factor is computed.
+    parameters: keys with their laws as text. correlations: as text.
+    solved: number of designs solved, by purpose. reasons: of failed designs, with their number.
+    notes: sentences on what the probabilities do not include.
     """
 
     title: str
@@ -172,5 +183,5 @@ class Reliability:
 
     @property
     def deep(self) -> bool:
-        """Whether what lies beneath contact is ever more than a row."""
+        """Whether the stress beneath contact ever raises the probability of a row."""
         return any(risk.beneath is not None for risk in self.risks)

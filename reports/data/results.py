@@ -1,5 +1,7 @@
-"""What a run found: all that reports are made from. Made once, in SI; `Results.in_units` gives the
-same in the units of a study, from which tables and pages are written.
+"""Results of a run, from which all reports are made.
+
+They are computed once, in SI; `Results.in_units` converts them to the units of a study, from which
+tables and pages are written.
 """
 
 from __future__ import annotations
@@ -100,7 +102,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Units:
-    """Names of the units of results."""
+    """The names of the units of results."""
 
     length: str
     force: str
@@ -113,8 +115,9 @@ SI = Units("m", "N", "Pa", "s")
 
 @dataclass(frozen=True)
 class GoverningLoad:
-    """What a body does to the pin at a connection at the governing instant: force and moment (3,),
-    world axes.
+    """The load of a body on the pin at a connection at the governing instant.
+
+    force, moment: (3,), world axes.
     """
 
     connection: str
@@ -125,15 +128,16 @@ class GoverningLoad:
 
 @dataclass(frozen=True)
 class Dependence:
-    """Something that the study gives as a range, or that is seldom known, and that changes the
-    outcome of a row.
+    """A value given as a range or seldom known that changes the outcome of a row.
 
-    what: "clearance", "impulse time", "beneath"; value: in words where it is not a number
-    ("guided"). over: whose range, or "beneath" of what lies beneath contact as the study has it;
-    of what lies beneath over a range, value is what changes ("clearance"). factor: of safety
-    there. given, at, flips_at: as the study has it, where the outcome is another, and between them
-    where it changes (interpolated), of `dimension`; None where it is not a number. reach: how far
-    from pressed cells stress beneath contact exceeds what is permitted.
+    what: "clearance", "impulse time", "beneath". value: in words where it is not a number
+    ("guided").
+    over: the owner of the range, or "beneath" for the stress beneath contact as the study has it;
+    for that stress over a range, `value` is what changes ("clearance").
+    factor: of safety at that value.
+    given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
+    one at which it changes, of `dimension`; None where it is not a number.
+    reach: depth below pressed cells at which the stress exceeds the permitted one.
     """
 
     what: str
@@ -153,22 +157,24 @@ class Dependence:
 
 @dataclass(frozen=True)
 class PinResult:
-    """One pin in one case. Numbers are None for `rigid` and `failed`, time without a motion.
+    """The result of one pin in one case; numbers are None for `rigid` and `failed`.
 
+    time: None without a motion. location: x, y, z in the pin's own axes.
     decided: whether the maximum with its error stays below what the `required` factor permits (1
-    where none is required), as the study describes the pin; None where that is open. depends_on:
-    what within its range changes that. location: x, y, z in the pin's own axes. held: the supports
-    of the pin, in words. left_out: given forces that were not applied because their band is
-    clamped. published_*: the publication's value, in the study's units. position_unit: as a
-    ReactionTable's.
-    why: which model answered and why it was enough. singular_at: stress singularities; where one
-    governs (verdict `singular`) maximum and factor are those outside all of them, as are those of
-    the history; the intervals are those over half and twice the excluded distance, and
-    error_estimate reaches both ends. error_parts: stresses by what they come from (mesh, time,
-    ..). loads: at the governing instant. joint: contact with the lugs there, if that holds the pin.
-    places: surface, section and contact, of which the maximum is the larger of the first two; None
-    where the model has none. second_opinion: that of CalculiX, if there is one. limit_load: past
-    yield, if requested.
+    where none is required), for the pin as described; None where that is open.
+    depends_on: values within the study's ranges that change that outcome.
+    held: the supports of the pin, in words.
+    left_out: given forces that were not applied because their band is clamped.
+    published_*: the publication's value, in the study's units.
+    position_unit: as in ReactionTable. why: which model answered and why it was sufficient.
+    singular_at: stress singularities. If one governs (verdict `singular`), maximum, factor and
+    history exclude all of them; the intervals are those over half and twice the excluded distance,
+    and error_estimate reaches both ends.
+    error_parts: stresses by source of error (mesh, time, ..). loads: at the governing instant.
+    joint: contact with the lugs at that instant, if lugs support the pin.
+    places: surface, section and contact; the maximum is the larger of the first two; None where the
+    model has none.
+    second_opinion: of CalculiX, if any. limit_load: past yield, if requested.
     """
 
     pin: str
@@ -213,15 +219,16 @@ class PinResult:
 
     @property
     def yield_strength(self) -> float | None:
-        """Of the material; None where it has none, or the row has no stress."""
+        """The yield strength of the material; None where it has none, or the row has no stress."""
         if self.safety_factor is None or not self.max_von_mises:
             return None
         return self.safety_factor * self.max_von_mises
 
     @property
     def meets_required(self) -> bool | None:
-        """True exactly where the row is safe over all that is known to be uncertain; None where
-        nothing is required, or the error leaves it open.
+        """Whether the row is safe over all that is known to be uncertain.
+
+        None where no factor is required, or the error leaves it open.
         """
         if self.required is None:
             return None
@@ -234,10 +241,12 @@ class PinResult:
 
 @dataclass(frozen=True)
 class LandingRange:
-    """One pin over the ranges of a landing's impulse, at (P,) points each: impulse time, velocity
-    change, pulse, force, maximum von Mises and factor of safety (None without a yield strength).
-    nominal, nominal_pulse: those of the case itself. verdict: of the case, which holds for all
-    points. spread: of a `singular` one the ends of its interval of the factor, over the factor.
+    """The results of one pin over the ranges of a landing's impulse, at P points.
+
+    impulse_time, velocity_change, force, max_von_mises: (P,). pulses: (P,).
+    safety_factor: (P,), None without a yield strength.
+    nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
+    spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
     """
 
     pin: str
@@ -257,11 +266,12 @@ class LandingRange:
 
 @dataclass(frozen=True)
 class CutShape:
-    """A cut by its name, "hole 1", for drawing. z: its ends, of a hole its middle twice; size:
-    diameter or width, of a flat its distance from the axis; offset: of a passage from the axis;
-    depth: None through the pin and of flats; angle: from x, degrees; lines: points (z, x) of edges
-    in the view from y, and whether they are hidden; notches: (z, x) of two opposite corners of what
-    is cut from the silhouette.
+    """The shape of a cut for drawing; its name is, for instance, "hole 1".
+
+    z: its ends; of a hole its middle, twice. size: diameter or width; of a flat its distance from
+    the axis. offset: of a passage from the axis. depth: None through the pin and for flats.
+    angle: from x, degrees. lines: points (z, x) of edges in the view from y, and whether hidden.
+    notches: (z, x) of two opposite corners of each piece cut from the silhouette.
     """
 
     name: str
@@ -276,10 +286,12 @@ class CutShape:
 
 @dataclass(frozen=True)
 class PinShape:
-    """A pin's profile for drawing: segments (length, diameter, bore, label, kind) in order, where
-    kind is "band", "held" or "plain"; its weight (None without a density). far_ends: diameter and
-    bore at the segments' far ends, where any is a cone. solids: between which z local solids are
-    about cuts.
+    """The profile of a pin for drawing.
+
+    segments: (length, diameter, bore, label, kind) in order; kind is "band", "held" or "plain".
+    weight: None without a density.
+    far_ends: diameter and bore at the segments' far ends, where any is a cone.
+    solids: the ranges of z of local solids about cuts.
     """
 
     pin: str
@@ -293,8 +305,9 @@ class PinShape:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a number of the study comes from: given, derived, fitted or assumed. value: as the
-    study writes it, in the study's units where it has none.
+    """The source of a number of the study: given, derived, fitted or assumed.
+
+    value: as the study writes it, in the study's units where it has none.
     """
 
     key: str
@@ -305,10 +318,12 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Fatigue:
-    """Fatigue under a spectrum, by how often each case occurs per `unit`. points: the worst first.
-    probability: of failure, None for that of the S-N data. life: for which pins are designed.
-    left_out: what was not assessed, in sentences. not_decided: by pin, why its damage is not known,
-    though its material has the data; points of it, if there are any, have at least their damage.
+    """The fatigue under a spectrum that states how often each case occurs per `unit`.
+
+    points: the worst first. probability: of failure, None for that of the S-N data.
+    life: for which pins are designed. left_out: sentences on what was not assessed.
+    not_decided: by pin, the reason why its damage is not known although its material has the data;
+    its points, if any, have at least their damage.
     """
 
     unit: str
@@ -323,7 +338,7 @@ class Fatigue:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What the study says of its report; empty texts are filled in by hand. date: ISO 8601."""
+    """The title block of the study's report; empty texts are filled in by hand. date: ISO 8601."""
 
     revision: str = ""
     date: str = ""
@@ -369,13 +384,19 @@ class Results:
     title_block: TitleBlock = field(default_factory=TitleBlock)
 
     def __getitem__(self, row: tuple[str, str]) -> PinResult:
-        """A pin in a case: results["E", "landing"]. Raises: KeyError."""
-        found = [p for p in self.pins if (p.pin, p.case) == row]
-        if not found:
-            there = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
-            raise KeyError(f"no row {row!r}; there are {there}")
-        return found[0]
+        """Return the result of a pin in a case: results["E", "landing"].
+
+        Raises: KeyError.
+        """
+        matches = [p for p in self.pins if (p.pin, p.case) == row]
+        if not matches:
+            known_rows = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
+            raise KeyError(f"no row {row!r}; there are {known_rows}")
+        return matches[0]
 
     def in_units(self, units: Units, unit: Unit) -> Self:
-        """The same in other units; unit: their values in SI, by dimension."""
+        """Return the same results in other units.
+
+        unit: their values in SI, by dimension.
+        """
         return in_units(replace(self, units=units), unit)

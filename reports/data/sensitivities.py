@@ -1,4 +1,4 @@
-"""How a pin's largest stress and its factor of safety change with all that they depend on."""
+"""Sensitivities of a pin's maximum stress and factor of safety to the parameters of the study."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from pinbase.dimensions import Length, Stress, Time
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Derivatives with respect to one parameter. key: as the study has it, or "force B x" of a load
-    in the axes of the pin; kind: its dimension ("length", "force", .., "1"), value: as it is.
+    """The derivatives with respect to one parameter.
 
-    stress: of the maximum; factor: of the factor of safety, None without a strength. step: a little
-    more of it, and factor_with_step what the derivative makes of the factor then.
+    key: as in the study, or "force B x" for a load in the axes of the pin.
+    kind: dimension of the parameter ("length", "force", .., "1"). value: of the parameter.
+    stress: derivative of the maximum. factor: of the factor of safety, None without a strength.
+    step: a small increase of the parameter. factor_with_step: the factor then, by the derivative.
     """
 
     key: str
@@ -38,11 +39,14 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class PinSensitivities:
-    """Of one pin in one case, whose maximum and factor are as reported. rows: by effect on the
-    factor, the largest first. tied_places (r, z), tied_times: others whose stress is within the
-    error of the maximum, so that they may govern with a little more of anything. without: keys of
-    dimensions that have no derivative, and why. changing: how many cells of contact are
-    about to open or to close, which makes them one-sided too. note: why there is none at all.
+    """The sensitivities of one pin in one case, whose maximum and factor are as reported.
+
+    rows: the largest effect on the factor first.
+    tied_places, tied_times: places (r, z) and times whose stress is within the error of the
+    maximum, so that they may govern after a small increase of a parameter.
+    without: keys of dimensions that have no derivative, and the reason.
+    changing: number of cells of contact about to open or close, which makes derivatives one-sided.
+    note: the reason why there are no derivatives.
     """
 
     pin: str

@@ -16,11 +16,12 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class HalfSection:
-    """Von Mises stress on the plane through the axis and a pin's maximum, (2, Z, R): of the half at
-    `angle` (rad) from x, and of the one opposite to it, at Z stations z from the bore's radius
-    `inner` (0 without one) to `outer`, where `part` (R,) goes from 0 to 1.
+    """The von Mises stress on the plane through the axis and the maximum of a pin.
 
-    A shoulder is two stations close to each other.
+    angle: of the first half from x, rad; the second half is opposite.
+    z: Z stations; a shoulder is two stations close to each other.
+    inner, outer: (Z,), radius of the bore (0 without one) and outer radius.
+    part: (R,), from 0 at `inner` to 1 at `outer`. von_mises: (2, Z, R).
     """
 
     angle: float
@@ -33,8 +34,9 @@ class HalfSection:
 
 @dataclass(frozen=True)
 class LoadCourse:
-    """A connection's band of a pin, its middle at z, with the force (T, 3) there at every instant,
-    in the pin's axes; none where the band is `held`.
+    """The force on a pin at the band of a connection, in the pin's axes.
+
+    z: middle of the band. forces: (T, 3), none where the band is `held`.
     """
 
     connection: str
@@ -46,17 +48,21 @@ class LoadCourse:
 
 @dataclass(frozen=True)
 class SurfaceCase:
-    """One case on a surface of P points with K unit loads, T instants.
+    """One case on a surface of P points with K unit loads and T instants.
 
-    amounts: (T, K, 2) of the unit loads, by phase. maxima: (T,) largest von Mises stress outside of
-    what is excluded, as the analysis found it; `instant` governs. times: None without a motion.
-    excluded: (P,) whether no stress is read there. largest: (P,) von Mises stress at the governing
-    instant, of a meridian the maximum over the circumference of what is read. location: (x, y, z)
-    of the largest at that instant. unread: (T, P, SURFACE_SECTORS) where lugs press on the surface
-    or beside that, from the angle of this location on; None without lugs. pressure: (R, M) of
-    contact with lugs at that instant, on M sectors of R rings, the first at `first`, rad, from x;
-    rings: (P,) on which of them a point is, -1 on none; None without contact. zones: (Z, 3) of
-    circles that are excluded: r, z, distance. section: at that instant, of a body of revolution.
+    times: None without a motion. instant: index of the governing instant.
+    amounts: (T, K, 2), factors of the unit loads, by phase.
+    maxima: (T,), largest von Mises stress outside the excluded zones, by the analysis.
+    excluded: (P,), whether stress is excluded there.
+    largest: (P,), von Mises stress at the governing instant; of a meridian the maximum over the
+    circumference outside excluded parts. location: (x, y, z) of the maximum at that instant.
+    unread: (T, P, SURFACE_SECTORS), where lugs press on the surface or next to it, from the angle
+    of `location` on; None without lugs.
+    pressure: (R, M), contact pressure at the governing instant on M sectors of R rings; None
+    without.
+    first: angle of the first sector from x, rad. rings: (P,), ring of each point, -1 on none.
+    zones: (Z, 3), excluded circles: r, z, distance.
+    section: at the governing instant, for a body of revolution.
     """
 
     case: str
@@ -78,9 +84,9 @@ class SurfaceCase:
 
 @dataclass(frozen=True)
 class Surface:
-    """The surface of a pin and its fields, of which any instant of its `cases` is a superposition.
+    """The surface of a pin and its fields; any instant of its `cases` is a superposition of them.
 
-    Arrays are those of `UnitSurface`. yield_strength: None where there is none.
+    The arrays are those of `UnitSurface`. yield_strength: None where there is none.
     """
 
     pin: str

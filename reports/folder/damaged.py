@@ -1,4 +1,4 @@
-"""JSON and compressed texts of files that may be damaged: errors say what is wrong, and where."""
+"""JSON and compressed texts of files that may be damaged; errors say what is wrong, and where."""
 
 from __future__ import annotations
 
@@ -32,19 +32,22 @@ ERROR_WORDS = {  # of pydantic's errors, which speak of Python
 
 
 class JsonPart(BaseModel):
-    """What is read of an object of JSON; other keys may stand beside it."""
+    """The part of a JSON object that is used; it may have other keys."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="ignore")
 
 
 def strict_json(content: bytes, name: str) -> Any:
-    """The values of a JSON text. Raises: Damaged."""
+    """Return the values of a JSON text.
+
+    Raises: Damaged.
+    """
     try:
         text = content.decode("utf-8")
-        found = json.loads(text, parse_constant=_no_number)
-        _require_shallow(found)
+        values = json.loads(text, parse_constant=_no_number)
+        _require_shallow(values)
         if SURROGATE_ESCAPE_PATTERN.search(text):  # may be lone, which no file can be written with
-            json.dumps(found, ensure_ascii=False).encode()
+            json.dumps(values, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         raise Damaged(f"{name} is damaged: no UTF-8 from byte {error.start:,} on") from None
     except UnicodeEncodeError:
@@ -58,12 +61,15 @@ def strict_json(content: bytes, name: str) -> Any:
         raise Damaged(f"{name} is damaged: it has {error}, which is no number") from None
     except ValueError:  # of int()
         raise Damaged(f"{name} is damaged: it has a number of thousands of digits") from None
-    return found
+    return values
 
 
-def _require_shallow(found: Any) -> None:
-    """Raises: RecursionError, as what walks or copies it later would."""
-    level = [found]
+def _require_shallow(value: Any) -> None:
+    """Check that values are not nested too deeply for what walks or copies them later.
+
+    Raises: RecursionError.
+    """
+    level = [value]
     for _ in range(MAX_JSON_DEPTH):
         holders = [x.values() if isinstance(x, dict) else x for x in level if x and _holds(x)]
         level = [below for holder in holders for below in holder if _holds(below)]
@@ -85,7 +91,10 @@ def _no_number(text: str) -> NoReturn:
 
 
 def validated(kind: type[Model], content: Any, name: str) -> Model:
-    """The parts of a JSON text that are used. Raises: Damaged, saying which is wrong."""
+    """Return the parts of a JSON text that are used.
+
+    Raises: Damaged, naming the wrong part.
+    """
     try:
         return kind.model_validate(content)
     except ValidationError as error:
@@ -100,8 +109,9 @@ def validated(kind: type[Model], content: Any, name: str) -> Model:
 
 
 def inflated(packed: bytes | str, most: int, name: str) -> bytes:
-    """What base64 and zlib have packed. Raises: Damaged, also where it is more than `most` bytes,
-    which are never made.
+    """Return the bytes packed by base64 and zlib.
+
+    Raises: Damaged, also for more than `most` bytes, which are never unpacked.
     """
     unpack = zlib.decompressobj()
     try:

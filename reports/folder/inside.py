@@ -1,8 +1,7 @@
-"""Files of a folder read and written without leaving it: no link inside it is followed, wherever
-it leads, and nothing but regular files is opened. The path to the folder is the user's own.
+"""Reading and writing files inside a folder without leaving it.
 
-Where the system can open a file relative to an open folder, nobody can exchange a part of the way
-between the look and the opening.
+No link inside the folder is followed, wherever it leads, and only regular files are opened. The
+path to the folder itself is trusted, since the user gives it.
 """
 
 from __future__ import annotations
@@ -39,9 +38,7 @@ class NotPlain(OSError):
 
 @dataclass(frozen=True)
 class _Place:
-    """A folder that was reached: by its open descriptor, or where there is no such thing by its
-    path.
-    """
+    """An open folder: its descriptor, or its path on systems without descriptors of folders."""
 
     path: Path
     descriptor: int | None
@@ -51,17 +48,17 @@ class _Place:
 
 
 def read_inside(folder: Path, name: str, most: int) -> bytes:
-    """The content of a file, by its path in the folder, with slashes.
+    """Return the content of a file, given its path in the folder with slashes.
 
-    Raises: NotPlain, FileNotFoundError, OSError; also for one of more than `most` bytes.
+    Raises: NotPlain, FileNotFoundError, OSError; also for a file of more than `most` bytes.
     """
     with _place(folder, name) as (place, last):
         _require_file(place, last, name, most)
         descriptor = os.open(place.of(last), READ_FLAGS, dir_fd=place.descriptor)
         with open(descriptor, "rb") as file:
-            found = os.fstat(descriptor)
-            if not stat.S_ISREG(found.st_mode):
-                raise _not_plain(name, found.st_mode)
+            status = os.fstat(descriptor)
+            if not stat.S_ISREG(status.st_mode):
+                raise _not_plain(name, status.st_mode)
             content = file.read(most + 1)
     if len(content) > most:  # it is growing
         raise _too_large(name, most)
@@ -69,13 +66,15 @@ def read_inside(folder: Path, name: str, most: int) -> bytes:
 
 
 def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
-    """Write a file so that it is complete or as it was, by way of NAME.partial; its own folder is
-    made. One of that name that is no regular file is left alone. Raises: NotPlain, OSError.
+    """Write a file by way of NAME.partial, so that it is either complete or unchanged.
+
+    Its own folder is made. A file of that name that is not regular is left alone.
+    Raises: NotPlain, OSError.
     """
     with _place(folder, name, make=True) as (place, last):
-        for there in (last, last + PARTIAL_SUFFIX):
+        for entry in (last, last + PARTIAL_SUFFIX):
             with suppress(FileNotFoundError):
-                _require_file(place, there, name + there[len(last) :])
+                _require_file(place, entry, name + entry[len(last) :])
         at, partial = place.descriptor, place.of(last + PARTIAL_SUFFIX)
         with suppress(FileNotFoundError):  # of a process that was killed
             os.unlink(partial, dir_fd=at)
@@ -90,18 +89,24 @@ def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
 
 
 def is_inside(folder: Path, name: str) -> bool:
-    """Whether a folder has such a file or folder. Raises: NotPlain where it is something else."""
+    """Return whether a folder has such a file or folder.
+
+    Raises: NotPlain where it is something else.
+    """
     with suppress(FileNotFoundError), _place(folder, name) as (place, last):
-        found = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
-        if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
-            raise _not_plain(name, found.st_mode)
+        status = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
+        if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
+            raise _not_plain(name, status.st_mode)
         return True
     return False
 
 
 @contextmanager
 def _place(folder: Path, name: str, make: bool = False) -> Iterator[tuple[_Place, str]]:
-    """The folder that a file is in, and the file's own name. make: folders that are missing."""
+    """Yield the folder that contains a file, and the file's own name.
+
+    make: whether missing folders are made.
+    """
     *between, last = name.split("/")
     if any(not part or part in (".", "..") or "\0" in part for part in (*between, last)):
         raise NotPlain(errno.EINVAL, f"{name!r} is no name of a file in a folder")
@@ -136,16 +141,16 @@ def _by_path(folder: Path, between: list[str], make: bool) -> _Place:
 
 
 def _require_folder(place: _Place, name: str, shown: str) -> None:
-    found = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
-    if not stat.S_ISDIR(found.st_mode):
-        raise _not_plain(shown, found.st_mode)
+    status = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
+    if not stat.S_ISDIR(status.st_mode):
+        raise _not_plain(shown, status.st_mode)
 
 
 def _require_file(place: _Place, name: str, shown: str, most: int | None = None) -> None:
-    found = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
-    if not stat.S_ISREG(found.st_mode):
-        raise _not_plain(shown, found.st_mode)
-    if most is not None and found.st_size > most:
+    status = os.stat(place.of(name), dir_fd=place.descriptor, follow_symlinks=False)
+    if not stat.S_ISREG(status.st_mode):
+        raise _not_plain(shown, status.st_mode)
+    if most is not None and status.st_size > most:
         raise _too_large(shown, most)
 
 

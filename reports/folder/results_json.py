@@ -110,14 +110,14 @@ class _Results(JsonPart):
 
 
 def read_results(directory: Path) -> dict[str, Any]:
-    """What results.json says, all of it, without characters that steer a terminal.
+    """Return the content of results.json without characters that control a terminal.
 
     Raises: Damaged, FileNotFoundError, NotADirectoryError, OSError.
     """
     content = strict_json(read_inside(directory, RESULTS_JSON, MAX_RESULTS_SIZE), RESULTS_JSON)
     _require_schema(content)
-    found = validated(_Results, content, RESULTS_JSON)
-    rows = Counter((row.pin, row.case) for row in found.pins)
+    parts = validated(_Results, content, RESULTS_JSON)
+    rows = Counter((row.pin, row.case) for row in parts.pins)
     if twice := next((row for row, count in rows.items() if count > 1), None):
         raise Damaged(
             f"{RESULTS_JSON} is damaged: pin {twice[0]} in {twice[1]} is there more than once"
@@ -130,12 +130,12 @@ def _require_schema(content: Any) -> None:
     schema = content.get("schema") if isinstance(content, dict) else None
     if schema == RESULTS_SCHEMA:
         return
-    found = re.fullmatch(rf"{SCHEMA_NAME}/(\d{{1,9}})", str(schema))
-    if found is None:
+    match = re.fullmatch(rf"{SCHEMA_NAME}/(\d{{1,9}})", str(schema))
+    if match is None:
         raise Damaged(
             f"{RESULTS_JSON} was not written by pinstress (it has no schema {RESULTS_SCHEMA})"
         )
-    newer = int(found[1]) > int(SCHEMA_VERSION)
+    newer = int(match[1]) > int(SCHEMA_VERSION)
     remedy = "use that version, or run the study again" if newer else "run the study again"
     raise Damaged(
         f"{RESULTS_JSON} was written by {'a newer' if newer else 'an older'} version of "
@@ -145,7 +145,7 @@ def _require_schema(content: Any) -> None:
 
 
 def _printable(node: Any) -> Any:
-    """Without characters that steer a terminal, which another program may have written."""
+    """Return the values without control characters, which another program may have written."""
     if isinstance(node, dict):
         return {_printable(key): _printable(value) for key, value in node.items()}
     if isinstance(node, list):

@@ -10,17 +10,17 @@ SVG_SUFFIX, PNG_SUFFIX = ".svg", ".png"
 
 
 def plot_name(kind: str, *names: str) -> str:
-    """A name without extension, such as "reactions.retract.B"; different names stay different."""
+    """Return a name without extension, such as "reactions.retract.B"; names stay distinct."""
     return ".".join((kind, *(_safe(name) for name in names)))
 
 
 def drive_names(drive: DriveTable) -> list[str]:
-    """The names in a drive's plot_name: its case and, where it has one, its own."""
+    """Return the names of a drive for plot_name: its case and, where it has one, its own name."""
     return [drive.case, drive.name] if drive.name else [drive.case]
 
 
 def animation_name(case: str) -> str:
-    """The file name of a case's animation."""
+    """Return the file name of the animation of a case."""
     return f"animation_{_safe(case)}.html"
 
 

@@ -1,4 +1,4 @@
-"""Numbers that change while one looks: the same decimals for all, so that they stand still."""
+"""Number formats for changing values: the same decimals for all, so that digits do not move."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ class Fixed:
 
     @staticmethod
     def of(values: Floats, unit: str) -> Fixed:
-        """Four digits of the largest; very large and very small numbers in powers of ten."""
+        """Return the format with four digits of the largest value.
+
+        Very large and very small numbers are written with powers of ten.
+        """
         largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
         if largest == 0.0:
             return Fixed(unit, 1.0, 0)

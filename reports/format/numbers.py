@@ -12,9 +12,9 @@ COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is roun
 
 
 def engineering(value: float | None, digits: int = 4) -> str:
-    """A number with `digits` significant digits; a dash for none or not finite.
+    """Return a number with `digits` significant digits; a dash for None or a non-finite one.
 
-    Up to a million with thousands set off by commas, beyond and under a thousandth with 10³ⁿ.
+    Up to a million it has commas at thousands; beyond that and below a thousandth it has 10³ⁿ.
     """
     if value is None or not math.isfinite(value):
         return DASH
@@ -29,7 +29,7 @@ def engineering(value: float | None, digits: int = 4) -> str:
 
 
 def ten_to(power: int) -> str:
-    """Ten to a power, as text."""
+    """Return a power of ten as text."""
     return "10" + str(power).translate(SUPERSCRIPT_DIGITS)
 
 
@@ -39,7 +39,7 @@ def _plain(value: float, digits: int, size: int) -> str:
 
 
 def short(value: float) -> str:
-    """A dimension or an instant as it was given: no padding zeros, at most six digits."""
+    """Return a dimension or an instant as it was given: no padding zeros, at most six digits."""
     text = engineering(value, 6)
     head, times, power = text.partition("×")
     if "." in head:
@@ -48,7 +48,7 @@ def short(value: float) -> str:
 
 
 def like(value: float, given: float) -> str:
-    """A number rounded to as many decimals as one that was given."""
+    """Return a number rounded to as many decimals as a given one has."""
     _, _, decimals = repr(float(given)).partition(".")
     if "e" in decimals or decimals == "0":
         decimals = ""
@@ -56,29 +56,29 @@ def like(value: float, given: float) -> str:
 
 
 def finite(value: float | None) -> float | None:
-    """The number, or None where it is none."""
+    """Return the number, or None where it is not finite."""
     return None if value is None or not math.isfinite(value) else float(value)
 
 
 def ratio(ours: float | None, published: float | None) -> float | None:
-    """Ours over published, None where either is missing or published is zero."""
+    """Return computed over published, None where either is missing or published is zero."""
     if ours is None or published is None or published == 0.0:
         return None
     return finite(ours / published)
 
 
 def components(values: Sequence[float], largest: float) -> list[str]:
-    """Numbers of a vector as text; what is round-off compared with the largest is zero."""
+    """Return the numbers of a vector as text; round-off relative to the largest becomes zero."""
     return [engineering(v if abs(v) > COMPONENT_ROUND_OFF * largest else 0.0) for v in values]
 
 
 def percent(value: float) -> str:
-    """A relative error as text."""
+    """Return a relative error as text."""
     return f"{short(float(f'{100.0 * value:.2g}'))} %"
 
 
 def seconds(value: float | None) -> str:
-    """A time in s or ms."""
+    """Return a time in s or ms."""
     if value is None:
         return engineering(None)
     return f"{engineering(value, 2)} s" if value >= 0.1 else f"{engineering(1e3 * value, 2)} ms"

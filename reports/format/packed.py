@@ -12,15 +12,16 @@ COMPRESSION_LEVEL = 7  # a third of the time of 9, which is 1 % smaller
 
 
 def deflated(content: bytes) -> str:
-    """Compressed by zlib, in base64; `inflated` of packed.js reads it."""
+    """Return the content compressed by zlib, in base64; `inflated` of packed.js reads it."""
     return b64encode(zlib.compress(content, COMPRESSION_LEVEL)).decode("ascii")
 
 
 def packed(values: np.ndarray[Any, Any], kind: str) -> dict[str, str]:
-    """Numbers of a type of numpy, little-endian; `unpacked` of packed.js reads them.
+    """Return numbers of a NumPy type, compressed and little-endian.
 
-    Of integers the differences of successive ones are stored, of all the first bytes, then the
-    second ones, and so on: more of them are the same.
+    The function `unpacked` of packed.js reads them. Integers are stored as the differences of
+    successive ones, first the first bytes of all, then the second bytes, and so on, since more of
+    these are equal.
     """
     flat = np.ascontiguousarray(values, dtype=kind).ravel()
     if flat.dtype.kind in "iu" and len(flat):

@@ -1,4 +1,4 @@
-"""Values as JSON has them."""
+"""Conversion of values to plain JSON values."""
 
 from __future__ import annotations
 
@@ -12,15 +12,16 @@ from reports.format.numbers import finite
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON: what is not finite is null, a record an object of its fields, numbers of
-    NumPy are ordinary ones.
+    """Return a value as JSON has it.
+
+    Non-finite numbers become null, records objects of their fields, NumPy numbers ordinary ones.
     """
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     if isinstance(value, Mapping):
-        return {str(key): plain(each) for key, each in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | np.ndarray):
-        return [plain(each) for each in value]
+        return [plain(item) for item in value]
     if isinstance(value, bool | np.bool_):
         return bool(value)
     if isinstance(value, np.integer):

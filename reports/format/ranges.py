@@ -1,4 +1,4 @@
-"""A maximum's error and safety factor as text; intervals for a singular row."""
+"""Error and safety factor of a maximum as text, with intervals for a singular row."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ ERROR_PART_WORDS = {  # of an error, in words
 
 
 def error_range(pin: PinResult, to: str = " to ") -> str:
-    """The error of a maximum, or its interval over half and twice the excluded distance, which is a
-    convention.
+    """Return the error of a maximum, or for a singular row its interval.
+
+    That interval is over half and twice the excluded distance, which is a convention.
     """
     interval = pin.max_von_mises_interval
     if interval is None:
@@ -32,7 +33,7 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
 
 
 def factor_range(pin: PinResult, to: str = " to ") -> str:
-    """The safety factor, or its interval: three digits, as many as loads and strengths deserve."""
+    """Return the safety factor or its interval with three digits, which is what loads deserve."""
     interval = pin.safety_factor_interval
     if interval is None:
         return factor_text(pin.safety_factor, pin.required or 1.0)
@@ -43,7 +44,7 @@ def factor_range(pin: PinResult, to: str = " to ") -> str:
 
 
 def factor_text(factor: float | None, required: float) -> str:
-    """Three digits; more where these would show it on the other side of what is required."""
+    """Return a factor with three digits, or more where rounding would carry it past `required`."""
     if factor is None or not math.isfinite(factor):
         return DASH
     for digits in range(END_DIGITS, MAX_DIGITS):
@@ -54,31 +55,31 @@ def factor_text(factor: float | None, required: float) -> str:
 
 
 def utilisation_range(pin: PinResult, required: float, to: str = " to ") -> str:
-    """Required over actual factor in per cent, or its interval."""
+    """Return required over actual factor in per cent, or its interval."""
     used = utilisation(pin, required)
     return DASH if used is None else f"{_interval((100.0 * end for end in used), to)} %"
 
 
 def _interval(ends: Iterable[float], to: str) -> str:
-    """Numbers as a range; one where they are equal."""
+    """Return two numbers as a range; one number where they are equal."""
     return to.join(dict.fromkeys(engineering(end, END_DIGITS) for end in ends))
 
 
 def joint_range(pin: PinResult, to: str = " to ") -> str:
-    """The maximum over what is not known of the joint; a dash where that was not found."""
+    """Return the maximum over the unknowns of the joint; a dash where that was not computed."""
     over = pin.joint.range if pin.joint else None
     return to.join(engineering(end, END_DIGITS) for end in over.max_von_mises) if over else DASH
 
 
 def part_words(pin: PinResult) -> str:
-    """What the error of a maximum comes from, without what adds nothing."""
+    """Return the contributions to the error of a maximum, without those that are zero."""
     return ", ".join(
         ERROR_PART_WORDS[part] for part, value in pin.error_parts.items() if value > 0.0
     )
 
 
 def error_words(pin: PinResult) -> str:
-    """The error or interval for use in a sentence."""
+    """Return the error or interval for use in a sentence."""
     if pin.max_von_mises_interval is None:
         return f"± {error_range(pin)}"
     return f"{error_range(pin)} over half and twice the excluded distance"

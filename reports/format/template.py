@@ -1,4 +1,4 @@
-"""The templates of pages, with everything escaped that does not come from here."""
+"""Templates of pages; everything that does not come from here is escaped."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ VENDOR_FOLDER = TEMPLATE_FOLDER / "vendor"  # scripts of others
 
 @cache
 def environment() -> Environment:
-    """The environment of all templates, each of which is compiled once; without jinja's import at
-    start-up.
+    """Return the environment of all templates, each of which is compiled once.
+
+    It is made on demand, so that jinja is not imported at start-up.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 

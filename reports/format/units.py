@@ -6,7 +6,7 @@ from reports.data.results import Units
 
 
 def unit_name(dimension: str, units: Units) -> str:
-    """Name of the unit of a dimension; empty where there is none."""
+    """Return the name of the unit of a dimension; empty where there is none."""
     names = {
         "time": units.time,
         "force": units.force,

@@ -76,12 +76,12 @@ VERDICT_MEANINGS = {
 
 
 def verdict_words(verdict: str, yields: bool | None) -> str:
-    """A verdict, and whether the stress is beyond yield."""
+    """Return a verdict, and whether the stress is beyond yield."""
     return f"{verdict}, {BEYOND_YIELD}" if yields else verdict
 
 
 def undecided_because(pin: PinResult) -> str:
-    """Why a row is not decided."""
+    """Return the reason why a row is not decided."""
     if pin.max_von_mises == 0.0:
         return "no stress"
     if pin.verdict == "converged" and pin.safety_factor is not None:
@@ -97,29 +97,31 @@ def undecided_because(pin: PinResult) -> str:
 
 
 def result_words(pin: PinResult) -> str:
-    """The outcome of a row, and what else is to be known of its factor: "not decided: singular",
-    "depends: joint", "fails (yields)".
+    """Return the outcome of a row with the qualifications of its factor.
+
+    Examples: "not decided: singular", "depends: joint", "fails (yields)".
     """
-    found = outcome(pin)
-    if found == NOT_DECIDED:
-        return f"{found}: {undecided_because(pin)}"
-    if found == DEPENDS:
-        return f"{found}: {over_words(pin.depends_on)}"
+    state = outcome(pin)
+    if state == NOT_DECIDED:
+        return f"{state}: {undecided_because(pin)}"
+    if state == DEPENDS:
+        return f"{state}: {over_words(pin.depends_on)}"
     more = [undecided_because(pin)] * (pin.verdict != "converged")
-    more += [YIELDS] * bool(pin.yields and found != YIELDS)
-    return f"{found} ({', '.join(more)})" if more else found
+    more += [YIELDS] * bool(pin.yields and state != YIELDS)
+    return f"{state} ({', '.join(more)})" if more else state
 
 
 def over_words(depends_on: Sequence[Dependence]) -> str:
-    """What an outcome depends on, briefly: "joint, beneath contact"."""
+    """Return the dependences of an outcome in brief: "joint, beneath contact"."""
     short_names = (f"{d.over} contact" if d.over == BENEATH_CONTACT else d.over for d in depends_on)
     return ", ".join(dict.fromkeys(short_names))
 
 
 def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
-    """What an outcome depends on, with the values at which it changes: "the range of the joint
-    (clearance above 0.0031 in, tilt guided)", "stress beneath contact (FoS 1.08, too low to a depth
-    of 0.31 in)".
+    """Return the dependences of an outcome, with the values at which it changes.
+
+    Examples: "the range of the joint (clearance above 0.0031 in, tilt guided)", "stress beneath
+    contact (FoS 1.08, too low to a depth of 0.31 in)".
     """
     below = [_beneath(d, units) for d in depends_on if d.over == BENEATH_CONTACT]
     ranges = _ranges(depends_on, units)
@@ -127,8 +129,10 @@ def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
 
 
 def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fails") -> str:
-    """The same as a clause on a pin: "but not beneath contact (..), and fails within the range of
-    the joint (..)". fails: the verb.
+    """Return the dependences as a clause on a pin.
+
+    Example: "but not beneath contact (..), and fails within the range of the joint (..)".
+    fails: the verb.
     """
     below = [
         f"not beneath contact ({_beneath(d, units)})"
@@ -140,21 +144,23 @@ def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fail
 
 
 def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
-    """All ranges in words, as one; none where there are none."""
+    """Return all ranges in words as a list of one text; empty without ranges."""
     parts = []
     for over in dict.fromkeys(d.over for d in depends_on if d.over != BENEATH_CONTACT):
-        each = list(dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over))
-        if len(each) > MAX_NAMED_PROPERTIES:
-            each = [
-                *each[: MAX_NAMED_PROPERTIES - 1],
-                f"and {len(each) - MAX_NAMED_PROPERTIES + 1} others",
+        properties = list(
+            dict.fromkeys(_dependence(d, units) for d in depends_on if d.over == over)
+        )
+        if len(properties) > MAX_NAMED_PROPERTIES:
+            properties = [
+                *properties[: MAX_NAMED_PROPERTIES - 1],
+                f"and {len(properties) - MAX_NAMED_PROPERTIES + 1} others",
             ]
-        parts.append(f"the {over} ({', '.join(each)})")
+        parts.append(f"the {over} ({', '.join(properties)})")
     return [f"the range of {' and of '.join(parts)}"] if parts else []
 
 
 def _beneath(d: Dependence, units: Units) -> str:
-    """With the factor there, and the depth where stress itself is too large."""
+    """Return the words for stress beneath contact: its factor, and the depth of excess stress."""
     factor = f"FoS {engineering(d.factor, 3)}"
     if d.value:
         return f"{factor} {d.value}"
@@ -174,8 +180,10 @@ def _dependence(d: Dependence, units: Units) -> str:
 
 
 def headline(results: Results) -> str:
-    """The worst of all checks in one sentence: whether its pin is safe, its factor, what is
-    required, and in which case; of safe pins, that all of them are. Empty when nothing was solved.
+    """Return the worst of all checks in one sentence; empty when nothing was solved.
+
+    It says whether the pin is safe, its factor, the required one and the case; or that all pins
+    are.
     """
     worst = worst_checks(results)
     if not worst:
@@ -200,14 +208,17 @@ def headline(results: Results) -> str:
 
 
 def _factor_words(row: PinResult, results: Results) -> tuple[str, str]:
-    """The safety factor and what is required of it."""
+    """Return the safety factor and the required one as text."""
     required = results.required_safety_factor
     needed = "1 at yield" if required is None else f"{short(required)} required"
     return f"FoS {factor_range(row)}", needed
 
 
 def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
-    """least: of all checks, which may be another than that of the model's stress against yield."""
+    """Return the sentence that all pins are safe.
+
+    least: the worst of all checks, which may be another than the model's stress against yield.
+    """
     row = worst_first(results)[0]
     factor, needed = _factor_words(row, results)
     safe = outcome(row) == SAFE
@@ -222,7 +233,7 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
 
 
 def _of_margin(check: JudgedCheck) -> str:
-    """Of a check other than that of the model's stress against yield."""
+    """Return the sentence on a check other than that of the model's stress against yield."""
     if check.outcome == FAILS:
         return f"Pin {check.pin} fails: {_margin_words(check)}."
     why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)

@@ -14,14 +14,14 @@ from reports.text.comparison import headline, sections
 
 @dataclass(frozen=True)
 class PicturePair:
-    """Of a pin in a case, what both runs show of it: PNG files, None where there is none."""
+    """The pictures of a pin in a case from two runs: PNG files, None where a run has none."""
 
     title: str
     files: tuple[Path | None, Path | None]
 
     @property
     def shown(self) -> list[str]:
-        """Both as data of the page, empty for none."""
+        """Return both pictures as data of the page, empty for none."""
         return [
             "" if path is None else b64encode(path.read_bytes()).decode("ascii")
             for path in self.files
@@ -29,18 +29,21 @@ class PicturePair:
 
 
 def write_comparison(
-    found: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
+    comparison: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
 ) -> None:
-    """Write the page. drawn: its plot as SVG, empty where it has none."""
-    plot = comparison_plot(found)
+    """Write the page.
+
+    drawn: the plot as SVG, empty without one.
+    """
+    plot = comparison_plot(comparison)
     text = (
         environment()
         .get_template("comparison.html.j2")
         .render(
-            found=found,
-            headline=headline(found),
+            found=comparison,
+            headline=headline(comparison),
             sections=[
-                (name, t.grid(), note) for name, t, note in sections(found) if t.rows or note
+                (name, t.grid(), note) for name, t, note in sections(comparison) if t.rows or note
             ],
             plot=drawn,
             caption=plot.caption if plot and drawn else "",

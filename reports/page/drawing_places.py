@@ -1,4 +1,4 @@
-"""Where the stress of a pin's rows is, for its drawing."""
+"""Places of the stress of a pin's rows, for its drawing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ MAX_NAMED_CASES = 2  # cases of a place
 
 @dataclass(frozen=True)
 class PlaceMark:
-    """Where the stress of some cases is: at a distance r from the axis, or None in a section."""
+    """The place of the stress of some cases.
+
+    r: distance from the axis, None for a section.
+    """
 
     z: float
     r: float | None
@@ -28,19 +31,19 @@ class PlaceMark:
 
 
 def place_marks(results: Results, pin: str, length: float) -> list[PlaceMark]:
-    """Those of a pin, the worst cases first."""
-    found: list[PlaceMark] = []
+    """Return the marks of a pin, the worst cases first."""
+    marks: list[PlaceMark] = []
     for row in worst_first(results):
         if row.pin != pin or row.location is None:
             continue
         x, y, z = row.location
         by_section = row.places is not None and row.places.governs == "section"
         r = None if by_section else hypot(x, y)
-        for k, mark in enumerate(found):
+        for k, mark in enumerate(marks):
             near = abs(mark.z - z) <= PLACE_TOLERANCE * length and (mark.r is None) == (r is None)
             if near and abs((mark.r or 0.0) - (r or 0.0)) <= PLACE_TOLERANCE * length:
-                found[k] = PlaceMark(mark.z, mark.r, (*mark.cases, row.case))
+                marks[k] = PlaceMark(mark.z, mark.r, (*mark.cases, row.case))
                 break
         else:
-            found.append(PlaceMark(z, r, (row.case,)))
-    return found[:MAX_DRAWN_PLACES]
+            marks.append(PlaceMark(z, r, (row.case,)))
+    return marks[:MAX_DRAWN_PLACES]

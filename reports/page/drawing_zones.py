@@ -1,6 +1,7 @@
-"""Marks on the drawing of a pin: numbered rings at stress singularities, with their kind, and
-stripes where stress is excluded about them; dots where rows have their stress on the surface, and
-lines across the section that has it.
+"""Marks on the drawing of a pin for stress singularities and places of stress.
+
+Numbered rings mark stress singularities, with their kind; stripes mark excluded stress about them.
+Dots mark rows with their stress on the surface, and lines across the section that has it.
 """
 
 from __future__ import annotations
@@ -28,8 +29,10 @@ STRIPE_PATTERN = (
 
 @dataclass(frozen=True)
 class _Mark:
-    """A zone on the drawing: position x, distance r from the axis, what is excluded, label; or a
-    place of stress, r of a section that of the pin.
+    """A zone or a place of stress on the drawing.
+
+    x: position. r: distance from the axis; for a section the radius of the pin.
+    excluded: distance that is excluded. words: the label.
     """
 
     x: float
@@ -41,8 +44,9 @@ class _Mark:
 
 
 class ZoneMarks:
-    """Marks of the zones (one per circle) and of places on a pin drawn at `scale` from `left`, with
-    labels kept inside a picture of `width`; radius: the pin's, drawn.
+    """The marks of the zones (one per circle) and of places on a pin drawn at `scale` from `left`.
+
+    Labels are kept inside a picture of `width`; radius: of the drawn pin.
     """
 
     def __init__(
@@ -78,12 +82,13 @@ class ZoneMarks:
 
     @property
     def height(self) -> float:
-        """Height of the labels below the section."""
+        """The height of the labels below the section."""
         return FIRST_ROW_GAP + LABEL_ROW_HEIGHT * (max(self.rows) + 1) if self.marks else 0.0
 
     def stripes(self, axis: float, wall: tuple[float, float, float, float]) -> list[str]:
-        """What is excluded of a wall of the section: x, y, width, height of its rectangle, outside
-        of which an inner <svg> draws nothing.
+        """Return the excluded parts of a wall of the section.
+
+        wall: x, y, width, height of its rectangle, outside which an inner <svg> draws nothing.
         """
         x, y, width, height = wall
         discs = [
@@ -99,7 +104,10 @@ class ZoneMarks:
         return [frame, *discs, "</svg>"]
 
     def draw(self, axis: float, foot: float) -> list[str]:
-        """Rings above and below the axis, leaders, labels; foot: the section's lower edge."""
+        """Return rings above and below the axis, leaders and labels.
+
+        foot: the section's lower edge.
+        """
         parts = []
         for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
             y = foot + FIRST_ROW_GAP + LABEL_ROW_HEIGHT * (row + 1) - 3.0
@@ -141,20 +149,20 @@ def _words(zone: ShownZone) -> str:
 
 
 def _touches(x: float, y: float, radius: float, wall: tuple[float, float, float, float]) -> bool:
-    """Whether a disc reaches into a rectangle."""
+    """Return whether a disc reaches into a rectangle."""
     left, top, width, height = wall
     off = x - min(max(x, left), left + width), y - min(max(y, top), top + height)
     return hypot(*off) < radius
 
 
 def _within(mark: _Mark, width: float) -> float:
-    """The middle of a label, as close to its ring as the picture allows."""
+    """Return the middle of a label, as close to its ring as the picture allows."""
     half = min(0.5 * wide(mark.words), 0.5 * width)
     return min(max(mark.x, half), width - half)
 
 
 def _ring(x: float, y: float, governs: bool) -> str:
-    """A ring; filled where the zone governs."""
+    """Return a ring, filled where the zone governs."""
     fill = ZONE_COLOUR if governs else "none"
     return (
         f'<circle class="zone" cx="{x:.2f}" cy="{y:.2f}" r="{RING_RADIUS:.1f}" fill="{fill}" '

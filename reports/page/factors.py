@@ -25,14 +25,14 @@ FULL_BAR_UTILISATION = 2.0  # utilisation at the end of a bar
 
 @dataclass(frozen=True)
 class Bar:
-    """How far a bar goes, in per cent of its length: certainly, and possibly."""
+    """The certain and the possible length of a bar, in per cent of its full length."""
 
     low: float
     high: float
 
 
 def factor_part(results: Results) -> dict[str, Any]:
-    """The table of safety factors, with what each cell is sorted by, and how to read it."""
+    """Return the table of safety factors, with the sort key of each cell, and its explanation."""
     # The result says what matters of the verdict, each pin's section the rest.
     table = shown_factors(results, without=("verdict", "model"))
     return {
@@ -52,7 +52,7 @@ def factor_part(results: Results) -> dict[str, Any]:
 
 
 def change_part(results: Results) -> dict[str, Any] | None:
-    """What to change; None where nothing has to be."""
+    """Return the changes that are needed; None without any."""
     if not results.changes:
         return None
     return {
@@ -64,7 +64,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
 
 
 def sensitivity_part(results: Results) -> dict[str, Any] | None:
-    """What a little more of each dimension does; None where no pin has a derivative."""
+    """Return the effects of a small increase of each dimension; None if no pin has a derivative."""
     grid = grid_of(shown_sensitivities(results), results.units)
     if grid is None:
         return None
@@ -72,7 +72,7 @@ def sensitivity_part(results: Results) -> dict[str, Any] | None:
 
 
 def limit_part(results: Results) -> dict[str, Any] | None:
-    """Past yield; None where no limit load was computed."""
+    """Return the part on loads past yield; None where no limit load was computed."""
     grid = grid_of(limits_table(results), results.units)
     if grid is None:
         return None
@@ -85,7 +85,7 @@ def limit_part(results: Results) -> dict[str, Any] | None:
 
 
 def _sorted_by(value: Cell) -> str:
-    """All digits; empty for no value."""
+    """Return a sort key with all digits; empty for no value."""
     value = plain(value)
     return "" if value is None else str(value)
 

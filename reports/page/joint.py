@@ -21,8 +21,10 @@ FOUNDATION_NOTE = (
 
 @dataclass(frozen=True)
 class JointPart:
-    """A sentence on the error and range of the maximum, the bands if lugs support the pin, and the
-    maximum with the joint changed, if it was; assumed: in lugs that were not given.
+    """The page's part on the joint of a pin.
+
+    sentence: on the error and range of the maximum. bands: if lugs support the pin.
+    range: the maximum with the joint changed, if computed. assumed: whether the lugs were assumed.
     """
 
     title: str
@@ -33,7 +35,7 @@ class JointPart:
 
 
 def joint_part(pin: PinResult, units: Units) -> JointPart | None:
-    """None where nothing is known of the joint."""
+    """Return the part on a pin's joint; None where nothing is known of it."""
     joint = pin.joint
     if joint is None:
         return None
@@ -81,14 +83,14 @@ def _range(joint: JointResult, units: Units) -> Grid | None:
 
 
 def _beside(variation: Variation) -> str:
-    """The range of a maximum, where it has one, otherwise what lies beneath contact."""
+    """Return the range of a maximum if it has one, otherwise the stress beneath contact."""
     if variation.interval is None:
         return engineering(variation.beneath)
     return " to ".join(engineering(end, END_DIGITS) for end in variation.interval)
 
 
 def value_words(variation: Variation, units: Units) -> str:
-    """What was changed to: a length with how it came about, or words."""
+    """Return the varied value: a length with its origin, or words."""
     if not variation.length:
         return variation.value or DASH
     return f"{short(variation.length)} {units.length} ({variation.value})"

@@ -26,7 +26,7 @@ from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
 
 @dataclass(frozen=True)
 class DropPart:
-    """A drop: the clause that requires it, sentences, tables of its largest values."""
+    """A drop: the clause that requires it, sentences, and tables of its largest values."""
 
     case: str
     clause: str
@@ -35,7 +35,7 @@ class DropPart:
 
 
 def load_part(results: Results) -> dict[str, Any]:
-    """Reactions, drops and landings of all cases."""
+    """Return the reactions, drops and landings of all cases."""
     return {
         "published": published_reactions(results),
         "timed": any(v.time is not None for v in results.published),
@@ -57,7 +57,7 @@ def load_part(results: Results) -> dict[str, Any]:
 
 
 def _reactions(table: ReactionTable, units: Units) -> Grid:
-    """Each connection's largest force with its components and time, and its largest moment."""
+    """Return each connection's largest force with components and time, and its largest moment."""
 
     def name(row: tuple[int, PeakReaction]) -> str:
         connection = table.connections[row[0]]
@@ -81,7 +81,10 @@ def _reactions(table: ReactionTable, units: Units) -> Grid:
 
 
 def loads_at(pin: PinResult, units: Units) -> Grid | None:
-    """Force of every body on a pin at the governing instant, world axes; None without loads."""
+    """Return the force of every body on a pin at the governing instant, in world axes.
+
+    None without loads.
+    """
     if not pin.loads:
         return None
 
@@ -110,7 +113,7 @@ TIMING_COLUMNS: list[Column[PinResult]] = [
 
 
 def timings(results: Results) -> Grid | None:
-    """Meshes, unknowns and seconds of every row, and all seconds; None without rows."""
+    """Return meshes, unknowns and seconds of every row, and the total time; None without rows."""
     grid = grid_of(Table("timings", TIMING_COLUMNS, results.pins), results.units)
     total = engineering(sum(p.seconds for p in results.pins), 2)
     return grid and replace(grid, body=[*grid.body, ["all", "", "", "", "", total]])

@@ -1,4 +1,4 @@
-"""Each motion on the page: plots of linkages and legs, and the animation."""
+"""Motions on the page: plots of linkages and legs, and the animation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LEG_PLOT_KINDS = ("leg-motion", "leg-momenta", "leg-hinge")
 
 @dataclass(frozen=True)
 class MotionPart:
-    """A motion: its animation as an HTML page, compressed (or empty), and its plots."""
+    """A motion: its animation as a compressed HTML page (or empty), and its plots."""
 
     case: str
     animation: str
@@ -26,9 +26,9 @@ class MotionPart:
 
 
 def motion_parts(results: Results, find: Find, directory: Path) -> list[MotionPart]:
-    """The cases with plots or an animation, which is read from the folder of the page.
+    """Return the cases with plots or an animation, which is read from the folder of the page.
 
-    find: a plot by its kind and names, None if there is none.
+    find: returns a plot by its kind and names, None if there is none.
     """
     kinds = {m.case: list(_linkage(m.case, find)) for m in results.motion}
     kinds |= {leg.case: list(LEG_PLOT_KINDS) for leg in results.legs}

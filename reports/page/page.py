@@ -44,7 +44,10 @@ def write_page(results: Results, directory: Path) -> Path:
 
 
 def render(results: Results, directory: Path) -> str:
-    """The page as text; directory: where it will be, with the animations."""
+    """Return the page as text.
+
+    directory: its folder, which has the animations.
+    """
     from markupsafe import Markup
 
     shown = detailed_rows(results)
@@ -78,7 +81,7 @@ def render(results: Results, directory: Path) -> str:
 
 
 def _template() -> Template:
-    """That of the page, with what all its parts use."""
+    """Return the template of the page, with the functions that all its parts use."""
     templates = environment()
     templates.filters.update(
         eng=engineering,

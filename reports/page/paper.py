@@ -1,7 +1,4 @@
-"""What the PDF says: texts, tables and drawings of the page, in its order, as plain data.
-
-The page carries it, so that an earlier run can be printed.
-"""
+"""Content of the PDF: texts, tables and drawings of the page, in its order, as plain data."""
 
 from __future__ import annotations
 
@@ -36,7 +33,10 @@ MAX_DIMENSIONS = 5  # of a pin's sensitivities
 
 
 def document(results: Results, drawings: dict[str, str]) -> Content:
-    """The content of report.typ. drawings: of the pins, as SVG."""
+    """Return the content of report.typ.
+
+    drawings: of the pins, as SVG.
+    """
     everything, results = results, detailed_rows(results)
     maxima = grid_of(published_maxima(results), results.units)
     return {
@@ -76,16 +76,16 @@ def _factors(results: Results) -> Content | None:
 
 
 def _envelope(results: Results) -> Content | None:
-    """The utilisations of pins in cases, so many pins side by side as the paper is wide for."""
-    found = matrix(results)
-    if found is None:
+    """Return the utilisations of pins in cases, in blocks as wide as the paper."""
+    utilisations = matrix(results)
+    if utilisations is None:
         return None
     blocks = []
-    for first in range(0, len(found.pins), PINS_PER_MATRIX):
+    for first in range(0, len(utilisations.pins), PINS_PER_MATRIX):
         part = slice(first, first + PINS_PER_MATRIX)
-        rows = [[case, *map(_used, cells[part])] for case, cells in found.rows]
-        blocks.append({"head": ["case", *found.pins[part]], "body": rows})
-    return {"reading": ENVELOPE_NOTE, "note": found.note, "blocks": blocks}
+        rows = [[case, *map(_used, cells[part])] for case, cells in utilisations.rows]
+        blocks.append({"head": ["case", *utilisations.pins[part]], "body": rows})
+    return {"reading": ENVELOPE_NOTE, "note": utilisations.note, "blocks": blocks}
 
 
 def _used(cell: EnvelopeCell | None) -> Content | None:
@@ -117,7 +117,7 @@ def _changes(results: Results) -> Content | None:
 
 
 def _sensitivities(results: Results) -> Content | None:
-    """Of each pin in its worst case, by the dimensions that matter most."""
+    """Return the sensitivities of each pin in its worst case to the dimensions that matter most."""
     worst: dict[str, str] = {}
     for pin in worst_first(results):
         worst.setdefault(pin.pin, pin.case)

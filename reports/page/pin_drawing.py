@@ -35,7 +35,7 @@ class _Piece:
 
     @property
     def radius(self) -> float:
-        """The larger."""
+        """The larger of the two radii."""
         return max(self.radii)
 
     @property
@@ -50,10 +50,10 @@ def draw_pin(
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
 ) -> str:
-    """The drawing as an <svg> element; zones: one per circle; places: of the rows' stress. All its
-    text is escaped.
+    """Return the drawing as an <svg> element, in which all text is escaped.
 
-    width: of the drawing, in pixels, of which letters have the size 11.
+    zones: one per circle. places: of the stress of rows.
+    width: of the drawing, in pixels; letters have the size 11.
     """
     pieces = _pieces(shape, width)
     if not pieces:
@@ -124,12 +124,12 @@ def _pieces(shape: PinShape, across: float) -> list[_Piece]:
 
 
 def _from_to(ends: tuple[float, float]) -> str:
-    """One size, or those at both ends of a cone."""
+    """Return one size, or the sizes at both ends of a cone."""
     return "–".join(dict.fromkeys(short(size) for size in ends))
 
 
 def _section(piece: _Piece, axis: float) -> str:
-    """The section: the walls above and below the axis."""
+    """Return the section: the walls above and below the axis."""
     fill = FILL_COLOURS.get(piece.kind, FILL_COLOURS["plain"])
     paint = f'fill="{fill}" stroke="{INK_COLOUR}" stroke-width="1"/>'
     if piece.radii[0] != piece.radii[1] or piece.bores[0] != piece.bores[1]:
@@ -142,7 +142,7 @@ def _section(piece: _Piece, axis: float) -> str:
 
 
 def _cone(piece: _Piece, axis: float, side: float) -> str:
-    """The corners of a wall above (side -1) or below the axis."""
+    """Return the corners of a wall above (side -1) or below the axis."""
     far = piece.x + piece.width
     (r0, r1), (b0, b1) = piece.radii, piece.bores
     corners = (piece.x, r0), (far, r1), (far, b1), (piece.x, b0)
@@ -150,14 +150,14 @@ def _cone(piece: _Piece, axis: float, side: float) -> str:
 
 
 def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]]:
-    """x, y, width, height of the walls, of cones of the rectangles around them."""
+    """Return x, y, width and height of the walls; for cones of the rectangles around them."""
     bore = min(piece.bores)
     wall = piece.radius - bore
     return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + bore)]
 
 
 def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:
-    """The boundary of a local solid."""
+    """Return the boundary of a local solid."""
     radius = (
         max(p.radius for p in pieces if p.x < right and left < p.x + p.width) + LOCAL_SOLID_OFFSET
     )
@@ -181,7 +181,7 @@ def _label(piece: _Piece, row: int) -> str:
 
 
 def _dimension(left: float, right: float, y: float, from_y: float) -> str:
-    """A dimension line with ticks and extension lines."""
+    """Return a dimension line with ticks and extension lines."""
     ends = (left, right)
     ticks = [line(x - 3, y - TEXT_LINE_HEIGHT + 5, x + 3, y - TEXT_LINE_HEIGHT - 1) for x in ends]
     leads = [line(x, from_y + 2, x, y - TEXT_LINE_HEIGHT + 5, 'opacity="0.4"') for x in ends]

@@ -21,9 +21,10 @@ from reports.text.pin_sentence import drawing_caption, pin_sentence
 
 @dataclass(frozen=True)
 class PinCase:
-    """A pin in one case: result, outcome, what it is in a sentence, singular zones, hand checks,
-    margins of safety, loads, where stress is read, contact with lugs, CalculiX's opinion, our
-    maximum over the published.
+    """A pin in one case on the page.
+
+    checks: hand checks. margins: of safety. places: where stress is read. joint: contact with lugs.
+    opinion: of CalculiX. ratio: computed maximum over the published one.
     """
 
     result: PinResult
@@ -41,7 +42,10 @@ class PinCase:
 
 @dataclass(frozen=True)
 class PinPart:
-    """One pin: anchor on the page, drawing with its caption, cases, moving cases, 3D views."""
+    """One pin on the page.
+
+    anchor: on the page. drawing, caption: of the pin. moving: cases with a motion. views: in 3D.
+    """
 
     pin: str
     anchor: str
@@ -53,7 +57,7 @@ class PinPart:
 
 
 def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
-    """The pins in the order of the results, then those that were not solved."""
+    """Return the pins in the order of the results, then those that were not solved."""
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
     zones = {name: pin_zones(results, name) for name in names}

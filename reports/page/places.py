@@ -29,8 +29,9 @@ CONTACT_EDGES_NOTE = (
 
 @dataclass(frozen=True)
 class PlacesPart:
-    """The three places, what acts at the section, how far stress reaches from contact, and the
-    edges of lugs, if there are any.
+    """The places where stress is read, the loads at the section, and the reach of contact stress.
+
+    edges: stress at the edges of lugs, if there are any.
     """
 
     grid: Grid
@@ -41,7 +42,7 @@ class PlacesPart:
 
 
 def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
-    """None where stress is read at no more than the surface."""
+    """Return the part on a pin's places; None where stress is read at the surface only."""
     places = pin.places
     if places is None or (places.section is None and places.contact is None):
         return None
@@ -80,14 +81,14 @@ def _remark(row: PlaceRow) -> str:
 
 
 def _at(row: PlaceRow) -> list[str]:
-    """The coordinates that a place has."""
+    """Return the coordinates that a place has."""
     known = [x for x in row.at if x is not None]
     texts = components(known, max(map(abs, known))) if known[1:] else map(engineering, known)
     return [*[""] * (len(row.at) - len(known)), *texts]
 
 
 def _acting(section: SectionPlace | None, units: Units) -> str:
-    """What acts at the section, without what does not."""
+    """Return the forces and moments at the section that are not zero, as text."""
     if section is None:
         return ""
     moment = f"{units.force}·{units.length}"
@@ -104,7 +105,7 @@ def _acting(section: SectionPlace | None, units: Units) -> str:
 
 
 def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
-    """How far from pressed cells stress exceeds yield, and what the required factor permits."""
+    """Return how far from pressed cells stress exceeds yield, and the permitted stress."""
     if contact is None or contact.reach is None:
         return ""
     reaches = [("yield", contact.reach)]
@@ -124,7 +125,10 @@ def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
 
 
 def _edges(edges: tuple[ContactEdge, ...], units: Units, least: float) -> Grid:
-    """least: a smaller distance is none."""
+    """Return the table of distances from the edges of lugs.
+
+    least: distances below this are zero.
+    """
     peak: list[Column[ContactEdge]] = [
         read_only("peak pressure", lambda edge: engineering(edge.max_pressure, 3), "stress"),
         read_only("±", lambda edge: engineering(edge.error_estimate, 2)),

@@ -20,25 +20,26 @@ LAW_COLUMNS: list[Column[tuple[str, str]]] = [
 ]
 
 
-def write_reliability_page(found: Reliability, path: Path) -> None:
-    """Write the page."""
+def write_reliability_page(reliability: Reliability, path: Path) -> None:
+    """Write reliability.html."""
     plots = (
-        distribution_plot(found, risk) for risk in _worst_first(found)[:MAX_DISTRIBUTION_PLOTS]
+        distribution_plot(reliability, risk)
+        for risk in _worst_first(reliability)[:MAX_DISTRIBUTION_PLOTS]
     )
-    laws = Table("laws", LAW_COLUMNS, found.parameters)
+    laws = Table("laws", LAW_COLUMNS, reliability.parameters)
     text = (
         environment()
         .get_template("reliability.html.j2")
         .render(
-            found=found,
-            sentence=sentence(found, found.risks[0]) if found.risks else "",
+            found=reliability,
+            sentence=sentence(reliability, reliability.risks[0]) if reliability.risks else "",
             sections=[
-                ("Pins and cases", risks_table(found).grid()),
-                (ways_title(found), ways_table(found).grid()),
-                ("What drives it", drivers_table(found).grid()),
+                ("Pins and cases", risks_table(reliability).grid()),
+                (ways_title(reliability), ways_table(reliability).grid()),
+                ("What drives it", drivers_table(reliability).grid()),
                 ("Random numbers", laws.grid()),
             ],
-            remarks=[*remarks(found), solved(found)],
+            remarks=[*remarks(reliability), solved(reliability)],
             plots=[
                 (svg({**plot.spec, "config": on_paper()}), plot.caption) for plot in plots if plot
             ],
@@ -47,5 +48,5 @@ def write_reliability_page(found: Reliability, path: Path) -> None:
     path.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _worst_first(found: Reliability) -> list[Risk]:
-    return sorted(found.risks, key=lambda risk: -risk.most)
+def _worst_first(reliability: Reliability) -> list[Risk]:
+    return sorted(reliability.risks, key=lambda risk: -risk.most)

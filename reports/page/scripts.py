@@ -1,4 +1,4 @@
-"""What the page's scripts read: libraries, plots, the content of the PDF, colours."""
+"""Data for the page's scripts: libraries, plots, the content of the PDF, colours."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ PACKED_SCRIPT_PATTERN = r'<script type="text/plain" id="{}">([\w+/=]+)</script>'
 
 
 def script_part(plots: Mapping[str, Plot], document: Mapping[str, Any]) -> dict[str, str]:
-    """Compressed texts, and the configuration of the plots as JSON. document: of the PDF."""
+    """Return compressed texts, and the configuration of the plots as JSON.
+
+    document: the content of the PDF.
+    """
     return {
         "libraries": deflated(
             b"\n".join((VENDOR_FOLDER / name).read_bytes() for name in SCRIPT_FILES)
@@ -43,8 +46,9 @@ def script_part(plots: Mapping[str, Plot], document: Mapping[str, Any]) -> dict[
 
 
 def plots_of(page: str) -> list[Plot]:
-    """The plots of a page. Raises: Damaged, also for one that would be written elsewhere, or that
-    has an address in it.
+    """Return the plots of a page.
+
+    Raises: Damaged, also for a plot with an address, or a name that leads out of the folder.
     """
     content = _read(page, "plots")
     if content is None:
@@ -59,7 +63,10 @@ def plots_of(page: str) -> list[Plot]:
 
 
 def document_of(page: str) -> dict[str, Any] | None:
-    """The content of a page's PDF; None in a page that has none. Raises: Damaged."""
+    """Return the content of a page's PDF; None in a page that has none.
+
+    Raises: Damaged.
+    """
     content: dict[str, Any] | None = _read(page, "paper")
     if content is None:
         return None
@@ -73,11 +80,11 @@ def _packed(content: Mapping[str, Any]) -> str:
 
 
 def _read(page: str, name: str) -> Any:
-    found = re.search(PACKED_SCRIPT_PATTERN.format(name), page)
-    if found is None:
+    match = re.search(PACKED_SCRIPT_PATTERN.format(name), page)
+    if match is None:
         return None
     where = f"{REPORT_PAGE}, {name}"
-    return strict_json(inflated(found[1], MAX_UNPACKED_SIZE, where), where)
+    return strict_json(inflated(match[1], MAX_UNPACKED_SIZE, where), where)
 
 
 def _day(text: str) -> str:
@@ -93,7 +100,7 @@ def _caption_and_spec(pair: list[Any]) -> list[Any]:
 
 
 class _Plots(RootModel[dict[str, Annotated[list[Any], AfterValidator(_caption_and_spec)]]]):
-    """By name, a caption and a specification."""
+    """The plots of a page: by name a caption and a specification."""
 
 
 class _Block(JsonPart):
@@ -111,7 +118,7 @@ class _Pin(JsonPart):
 
 
 class _Paper(JsonPart):
-    """What is read of the PDF's content before typst reads all of it."""
+    """The part of the PDF's content that is checked before typst reads all of it."""
 
     block: _Block
     pins: list[_Pin]

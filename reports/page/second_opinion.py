@@ -23,7 +23,7 @@ BandPart = tuple[BandOpinion, tuple[str, float, float]]  # a band and one of LEN
 
 @dataclass(frozen=True)
 class OpinionPart:
-    """Whether it agrees, sentences, and the loads per length at the lugs' ends and middle."""
+    """The agreement with CalculiX, sentences, and loads per length at the lugs' ends and middle."""
 
     outcome: str
     sentences: list[str]
@@ -31,7 +31,7 @@ class OpinionPart:
 
 
 def opinion_part(opinion: Opinion | None, units: Units) -> OpinionPart | None:
-    """None where CalculiX was not asked."""
+    """Return the part on a second opinion; None without one."""
     if opinion is None:
         return None
     grid = _loads(opinion.contact.bands, units) if opinion.contact else None
@@ -39,7 +39,7 @@ def opinion_part(opinion: Opinion | None, units: Units) -> OpinionPart | None:
 
 
 def _loads(bands: tuple[BandOpinion, ...], units: Units) -> Grid:
-    """Means over the ends and the middle of each band."""
+    """Return the mean loads per length over the ends and the middle of each band."""
 
     def mean(load: str) -> Callable[[BandPart], float]:
         return lambda row: _mean(row[0].ends, getattr(row[0], load), *row[1][1:])
@@ -56,7 +56,7 @@ def _loads(bands: tuple[BandOpinion, ...], units: Units) -> Grid:
 
 
 def _mean(ends: Sequence[float], load: Sequence[float], low: float, high: float) -> float:
-    """Between two parts of the whole length, of a load that is even between ends."""
+    """Return the mean, between two fractions of the length, of a load constant between `ends`."""
     whole = ends[-1] - ends[0]
     z0, z1 = ends[0] + low * whole, ends[0] + high * whole
     shared = (max(0.0, min(b, z1) - max(a, z0)) for a, b in pairwise(ends))

@@ -1,4 +1,4 @@
-"""Margins of safety, cases and pins, and fatigue on the page."""
+"""Margins of safety, cases by pins, and fatigue on the page."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from reports.tables.strength.margins import (
 
 
 def margin_part(results: Results) -> dict[str, Any] | None:
-    """None where no check was made."""
+    """Return the part on margins; None where no check was made."""
     grid = grid_of(governing_table(results), results.units)
     if grid is None:
         return None
@@ -32,17 +32,17 @@ def margin_part(results: Results) -> dict[str, Any] | None:
 
 
 def envelope_part(results: Results) -> dict[str, Any] | None:
-    """None of a single case."""
-    found = matrix(results)
+    """Return the matrix of cases and pins; None for a single case."""
+    utilisations = matrix(results)
     return (
         None
-        if found is None
-        else {"matrix": found, "reading": ENVELOPE_NOTE, "heat": heat, "text": cell_text}
+        if utilisations is None
+        else {"matrix": utilisations, "reading": ENVELOPE_NOTE, "heat": heat, "text": cell_text}
     )
 
 
 def fatigue_part(results: Results) -> dict[str, Any] | None:
-    """None where fatigue was not assessed."""
+    """Return the part on fatigue; None where it was not assessed."""
     if results.fatigue is None:
         return None
     return {

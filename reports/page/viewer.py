@@ -37,8 +37,11 @@ Segment = tuple[str, float, float]  # its name, and between which z
 
 @dataclass(frozen=True)
 class PinView:
-    """A 3D view: its cases, which of them it opens on, whether any has a motion, whether there is a
-    yield strength, whether any case has contact pressure or a section; the maxima along the pin.
+    """A 3D view of a pin.
+
+    opens: index of the case shown first. moving: whether any case has a motion.
+    factors: whether there is a yield strength. pressed, sections: whether any case has contact
+    pressure, or a section. along: the maxima along the pin.
     """
 
     pin: str
@@ -53,18 +56,18 @@ class PinView:
 
 
 def pin_views(results: Results, pin: str) -> list[PinView]:
-    """The 3D view of a pin in all its cases; none where no model has fields."""
+    """Return the 3D view of a pin in all its cases; empty where no model has fields."""
     surfaces = [s for s in results.surfaces if s.pin == pin]
     if not surfaces:
         return []
-    found = {p.case: p for p in results.pins if p.pin == pin}
-    order = {case: k for k, case in enumerate(found)}
+    results_by_case = {p.case: p for p in results.pins if p.pin == pin}
+    order = {case: k for k, case in enumerate(results_by_case)}
     shown = sorted(
         ((c, k, s) for k, s in enumerate(surfaces) for c in s.cases), key=lambda x: order[x[0].case]
     )
     cases = [c for c, _, _ in shown]
     shape = next((s for s in results.shapes if s.pin == pin), None)
-    opens = _governing([found[c.case] for c in cases])
+    opens = _governing([results_by_case[c.case] for c in cases])
     box = _box(surfaces[0])
     data = {
         "units": vars(results.units),
@@ -72,7 +75,8 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
         "required": results.required_safety_factor,
         "surfaces": [_surface(s) for s in surfaces],
         "cases": [
-            _case(c, found[c.case], k, s) | _row(found[c.case], results) for c, k, s in shown
+            _case(c, results_by_case[c.case], k, s) | _row(results_by_case[c.case], results)
+            for c, k, s in shown
         ],
         "opens": opens,
         "box": box.tolist(),
@@ -95,7 +99,7 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
 
 
 def _governing(pins: list[PinResult]) -> int:
-    """The case with the lowest safety factor, or else with the largest stress."""
+    """Return the index of the case with the lowest safety factor, or else the largest stress."""
     factors = [inf if p.safety_factor is None else p.safety_factor for p in pins]
     return min(range(len(pins)), key=lambda k: (factors[k], -(pins[k].max_von_mises or 0.0)))
 
@@ -104,7 +108,7 @@ def _surface(surface: Surface) -> dict[str, Any]:
     largest = _largest(surface)
     # In units of stress: a point's error is a part of the point's own stress, not of the pin's.
     stress, moved = surface.stress * largest, surface.displacement * largest
-    each = np.abs(stress).max(axis=(1, 2), initial=0.0)
+    peaks = np.abs(stress).max(axis=(1, 2), initial=0.0)
     longest = np.abs(moved).max(axis=(0, 1), initial=0.0)
     return {
         "sectors": SURFACE_SECTORS if surface.revolved else 1,
@@ -112,15 +116,17 @@ def _surface(surface: Surface) -> dict[str, Any]:
         "triangles": None if surface.revolved else packed(surface.triangles, "<u4"),
         "n": surface.n.tolist(),
         "even": [int(e) for e in surface.even],
-        "stress": packed(np.rint(_parts(stress, each[:, None, None], MAX_STRESS_INTEGER)).T, "<i2"),
-        "stress_scale": packed(each / MAX_STRESS_INTEGER, "<f4"),
+        "stress": packed(
+            np.rint(_parts(stress, peaks[:, None, None], MAX_STRESS_INTEGER)).T, "<i2"
+        ),
+        "stress_scale": packed(peaks / MAX_STRESS_INTEGER, "<f4"),
         "moved": packed(np.rint(_parts(moved, longest, MAX_DISPLACEMENT_INTEGER)).T, "<i1"),
         "moved_scale": packed(longest / MAX_DISPLACEMENT_INTEGER, "<f4"),
     }
 
 
 def _largest(surface: Surface) -> Floats:
-    """Of the amounts of each unit load (K,) in all cases; 1 of what never acts."""
+    """Return the largest amount of each unit load (K,) in all cases; 1 for one that never acts."""
     every = np.concatenate([c.amounts for c in surface.cases])
     largest = np.abs(every).max(axis=(0, 2), initial=0.0)
     return np.where(largest > 0.0, largest, 1.0)
@@ -158,8 +164,9 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
 
 
 def _row(pin: PinResult, results: Results) -> dict[str, str]:
-    """Error and factor of the surface's largest stress at the row's instant, and in a sentence the
-    section where that is larger.
+    """Return the error and factor of the surface's largest stress at the row's instant.
+
+    Where the stress in the section is larger, a sentence says so.
     """
     places = pin.places
     if places is None or places.section is None or places.governs == "surface":
@@ -175,10 +182,10 @@ def _row(pin: PinResult, results: Results) -> dict[str, str]:
 
 
 def _short(maxima: Floats, instant: int) -> list[float]:
-    """Seven digits, but all of the governing one."""
-    found = [float(f"{value:.7g}") for value in maxima]
-    found[instant] = float(maxima[instant])
-    return found
+    """Return maxima with seven digits, but the governing one with all."""
+    rounded = [float(f"{value:.7g}") for value in maxima]
+    rounded[instant] = float(maxima[instant])
+    return rounded
 
 
 def _load(load: LoadCourse) -> dict[str, Any]:
@@ -221,15 +228,16 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
 
 
 def _top(pressure: Floats) -> float:
-    """At which the colours end, Pa: beyond it are cells at the edges of lugs, whose pressure says
-    how small they are.
+    """Return the pressure at which the colours end, Pa.
+
+    Beyond it are cells at the edges of lugs, whose pressure depends on their size.
     """
     some = pressure[pressure > 0.0]
     return float(np.percentile(some, PRESSURE_PERCENTILE)) if len(some) else 0.0
 
 
 def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:
-    """Rows right, up and towards the viewer; the maximum faces the viewer."""
+    """Return the rows right, up and towards the viewer, whom the maximum faces."""
     view = View.of(box, np.asarray(location))
     towards = view.eye - view.centre
     towards /= np.linalg.norm(towards)
@@ -238,7 +246,7 @@ def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:
 
 
 def _box(surface: Surface) -> Floats:
-    """Corners (8, 3) around the surface."""
+    """Return the corners (8, 3) of the box around the surface."""
     low, high = surface.points.min(axis=0), surface.points.max(axis=0)
     if surface.revolved:
         r = high[0]
@@ -250,8 +258,9 @@ def _box(surface: Surface) -> Floats:
 def _along(
     results: Results, shape: PinShape, shown: list[tuple[SurfaceCase, int, Surface]]
 ) -> Grid:
-    """The largest stress on each segment's surface outside of what is excluded, and where, for
-    every case at its governing instant.
+    """Return the largest stress on each segment's surface outside excluded zones, and its place.
+
+    It has every case at its governing instant.
     """
     columns: list[Column[Segment]] = [
         read_only("segment", lambda row: row[0] or DASH, numeric=False),
@@ -277,7 +286,7 @@ def _along(
 def _most(
     case: SurfaceCase, z: Floats, low: float, high: float
 ) -> tuple[float | None, float | None]:
-    """The largest stress between two z, and its z."""
+    """Return the largest stress between two z, and its z."""
     little = 1e-6 * float(np.ptp(z))
     here = np.flatnonzero((z >= low - little) & (z <= high + little) & ~case.excluded)
     if not len(here):
@@ -287,5 +296,5 @@ def _most(
 
 
 def _parts(values: Floats, largest: Floats, whole: int) -> Floats:
-    """Values scaled to `whole` at `largest`, not rounded."""
+    """Return the values scaled to `whole` at `largest`, not rounded."""
     return np.asarray(whole * values / np.where(largest > 0.0, largest, 1.0))

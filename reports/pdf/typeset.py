@@ -33,8 +33,9 @@ FONT_FAMILY_PATTERN = re.compile(r'font-family="[^"]*"')
 
 
 def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
-    """The PDF, tagged for accessibility (PDF/UA-1). plots: by their names.
+    """Return the PDF, tagged for accessibility (PDF/UA-1).
 
+    plots: by their names.
     Raises: Damaged for content that is not all that the report needs.
     """
     import typst
@@ -53,34 +54,37 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
     data = {**content, "pins": pins, "captions": captions}
     files["data.json"] = json.dumps(data, ensure_ascii=False).encode()
     day = content["block"]["date"]
-    made = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else FIXED_DATE
+    timestamp = datetime.fromisoformat(day).replace(tzinfo=UTC) if day else FIXED_DATE
     try:
-        return _compiled(files, made)
+        return _compiled(files, timestamp)
     except typst.TypstError:
         missing = _without_glyph("".join(text.decode() for text in files.values()))
     numbers = {ord(c): f"U+{ord(c):04X}" for c in missing}
     shown = {name: text.decode().translate(numbers).encode() for name, text in files.items()}
     try:
-        return _compiled(shown, made)
+        return _compiled(shown, timestamp)
     except typst.TypstError as error:
         said = str(error).splitlines()[0]
         raise Damaged(f"report.html has content that cannot be typeset: {said}") from None
 
 
-def _compiled(files: dict[str, bytes], made: datetime) -> bytes:
-    """Raises: TypstError, for instance of a character that no font has, which UA-1 forbids."""
+def _compiled(files: dict[str, bytes], timestamp: datetime) -> bytes:
+    """Return the compiled PDF.
+
+    Raises: TypstError, for instance for a character that no font has, which UA-1 forbids.
+    """
     import typst
 
     fonts = typst.Fonts(include_system_fonts=False)  # those of a machine would change the bytes
     with TemporaryDirectory(prefix="pinstress-") as nothing:  # else it reads the current folder
         compiler = typst.Compiler(files, root=nothing, font_paths=fonts)  # type: ignore[type-var]
-        found = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=made)
-    assert isinstance(found, bytes)
-    return found
+        pdf = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=timestamp)
+    assert isinstance(pdf, bytes)
+    return pdf
 
 
 def _without_glyph(text: str) -> list[str]:
-    """The characters of a text that cannot be typeset; each is tried by itself."""
+    """Return the characters of a text that cannot be typeset; each is tried separately."""
     return [c for c in sorted(set(text)) if not c.isascii() and not _has_glyph(c)]
 
 
@@ -97,13 +101,13 @@ def _has_glyph(character: str) -> bool:
 
 
 def shown_plots(content: Content) -> list[str]:
-    """Names of the plots that the PDF shows, if there are such."""
+    """Return the names of the plots that the PDF shows, if any."""
     cases = [case["plot"] for pin in content["pins"] for case in pin["cases"]]
     return [*(pin["refinement"] for pin in content["pins"]), *cases]
 
 
 def _drawn(spec: Spec) -> str:
-    """A plot for half the width of a page; its caption is the title."""
+    """Return a plot for half the width of a page; its caption is the title."""
     config = on_paper(FONT_NAME)
     config["view"] |= {"continuousWidth": PLOT_WIDTH}
     small = _flatter({key: value for key, value in spec.items() if key != "title"})

@@ -1,1 +1,1 @@
-"""One plot per file."""
+"""Plots, one per file."""

@@ -24,7 +24,7 @@ from reports.tables.strength.fatigue import worst_points
 
 
 def all_plots(results: Results) -> dict[str, Plot]:
-    """The plots by their names (reports.format.file_names)."""
+    """Return the plots by their names (reports.format.file_names)."""
     return {plot.name: plot for part in (_mechanics, _pins) for plot in part(results)}
 
 
@@ -74,16 +74,16 @@ def _pins(results: Results) -> Iterator[Plot]:
         if pin.joint is not None and pin.joint.bands:
             yield joint_plot(pin.pin, pin.case, pin.joint, units)
     yield from _fatigue(results)
-    found = {(p.pin, p.case): p for p in results.pins}
+    pin_rows = {(p.pin, p.case): p for p in results.pins}
     shapes = {s.pin: s for s in results.shapes}
     for surface in results.surfaces:
         for shown in surface.cases if surface.revolved else ():
-            row, shape = found[surface.pin, shown.case], shapes.get(surface.pin)
+            row, shape = pin_rows[surface.pin, shown.case], shapes.get(surface.pin)
             yield surface_plot(surface, shown, row, shape, units)
 
 
 def _fatigue(results: Results) -> Iterator[Plot]:
-    """Of each pin's worst point."""
+    """Yield the plots of each pin's worst point."""
     if results.fatigue is None:
         return
     histories = {(h.pin, h.point): h for h in results.histories}
@@ -93,13 +93,16 @@ def _fatigue(results: Results) -> Iterator[Plot]:
 
 
 def governing(results: Results, table: ReactionTable) -> dict[str, float]:
-    """Where on a motion's axis (plots.loads.reactions.along) each pin's maximum stress is."""
+    """Return the place of each pin's maximum stress on the abscissa of a motion.
+
+    The abscissa is that of plots.loads.reactions.along.
+    """
     rows = (p for p in results.pins if p.case == table.case)
     at = {p.pin: p.time if table.position is None else p.position for p in rows}
     return {pin: x for pin, x in at.items() if x is not None}
 
 
 def _refined(pin: PinResult) -> bool:
-    """Whether there are meshes to compare; a logarithmic axis cannot show zero."""
+    """Return whether there are meshes to compare; a logarithmic axis cannot show zero."""
     steps = pin.history
     return len(steps) > 1 and all(s.max_von_mises > 0.0 and s.dofs > 0 for s in steps)

@@ -19,7 +19,7 @@ X_AXIS_HEADINGS = {
 
 
 def chart_plot(chart: Chart) -> Plot:
-    """Two logarithmic panels with a common axis of errors."""
+    """Return two logarithmic panels with a common axis of errors."""
     floor = max(chart.reference.error, 1e-9)  # of the reference, positive
     data = [
         _row(curve_name(model, element), point, floor)
@@ -93,7 +93,7 @@ def _decades(low: float, high: float) -> list[float]:
 
 
 def _foot(chart: Chart) -> list[str]:
-    """Lines under the title: reference, shaded range, failures."""
+    """Return the lines under the title: reference, shaded range, failures."""
     of = f"median of {chart.runs} runs" if chart.runs > 1 else "one run"
     lines = [
         reference_line(chart),

@@ -10,10 +10,10 @@ COMPARISON_PLOT_NAME = "comparison"
 MAX_PLOT_ROWS = 40  # rows
 
 
-def comparison_plot(found: RunComparison) -> Plot | None:
-    """Points with ranges on a logarithmic axis; None without two numbers to compare."""
+def comparison_plot(comparison: RunComparison) -> Plot | None:
+    """Return points with ranges on a logarithmic axis; None without two numbers to compare."""
     data: list[Spec] = []
-    for pair in changed_rows(found)[:MAX_PLOT_ROWS]:
+    for pair in changed_rows(comparison)[:MAX_PLOT_ROWS]:
         for run, side in zip("AB", (pair.first, pair.second), strict=True):
             if side is None or not side.maximum:
                 continue
@@ -23,7 +23,7 @@ def comparison_plot(found: RunComparison) -> Plot | None:
             data.append({"row": row, "run": run, "x": side.maximum, "low": low, "high": ends[1]})
     if not data:
         return None
-    title = f"maximum von Mises stress [{found.stress}]"
+    title = f"maximum von Mises stress [{comparison.stress}]"
     x = {"field": "low", "type": "quantitative", "title": title,
          "scale": {"type": "log", "nice": False, "padding": 15}}  # fmt: skip
     y = {"field": "row", "type": "nominal", "title": None, "sort": None}

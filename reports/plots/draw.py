@@ -1,4 +1,4 @@
-"""Plots into files, without a browser."""
+"""Drawing of plots into files, without a browser."""
 
 from __future__ import annotations
 
@@ -19,13 +19,16 @@ PIXELS_PER_UNIT = 2.0  # pixels of a PNG per unit
 
 
 def draw(plots: Iterable[Plot], directory: Path) -> list[Path]:
-    """Write every plot as SVG and as PNG into `directory`; returns the files."""
+    """Write every plot as SVG and as PNG into `directory`; return the files."""
     directory.mkdir(parents=True, exist_ok=True)
     return [path for plot in plots for path in draw_plot(plot, directory)]
 
 
 def draw_plot(plot: Plot, directory: Path) -> list[Path]:
-    """One of them. Raises: ValueError where Vega-Lite cannot, Damaged for an address in it."""
+    """Write one plot as SVG and as PNG; return the files.
+
+    Raises: ValueError where Vega-Lite fails, Damaged for an address in it.
+    """
     import vl_convert
 
     drawn = svg({**plot.spec, "config": on_paper()})
@@ -36,24 +39,23 @@ def draw_plot(plot: Plot, directory: Path) -> list[Path]:
 
 
 def svg(spec: Spec) -> str:
-    """A specification with its configuration, drawn; no address is opened.
+    """Return the drawing of a specification with its configuration; no address is opened.
 
     Vega cuts long texts within characters that are two UTF-16 units, such as emoji, and fails:
     these are then written as U+1F600.
-
-    Raises: ValueError where Vega-Lite cannot, Damaged for an address in it.
+    Raises: ValueError where Vega-Lite fails, Damaged for an address in it.
     """
     require_no_address(spec, "the plot")
     text = json.dumps(still(spec), ensure_ascii=False)
-    named = TWO_UNIT_CHARACTER_PATTERN.sub(lambda found: f"U+{ord(found[0]):X}", text)
+    named = TWO_UNIT_CHARACTER_PATTERN.sub(lambda match: f"U+{ord(match[0]):X}", text)
     try:
-        made = _drawn(text)
+        drawing = _drawn(text)
     except ValueError:
         if named == text:
             raise
-        made = _drawn(named)
-    require_self_contained(made, "the plot")
-    return _numbered(made)
+        drawing = _drawn(named)
+    require_self_contained(drawing, "the plot")
+    return _numbered(drawing)
 
 
 def _drawn(text: str) -> str:
@@ -63,8 +65,8 @@ def _drawn(text: str) -> str:
 
 
 def _numbered(svg: str) -> str:
-    """Clips numbered from one: Vega counts on from plot to plot."""
+    """Return the SVG with clips numbered from one, since Vega counts on from plot to plot."""
     number = {
         name: str(k) for k, name in enumerate(dict.fromkeys(CLIP_ID_PATTERN.findall(svg)), start=1)
     }
-    return CLIP_ID_PATTERN.sub(lambda found: number[found[0]], svg)
+    return CLIP_ID_PATTERN.sub(lambda match: number[match[0]], svg)

@@ -26,8 +26,11 @@ PROBABILITY_TICKS = (
 SAMPLING_NAMES = "plain sampling", "importance sampling"
 
 
-def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
-    """The probability that the factor is lower, straight for a normal law; None without samples."""
+def distribution_plot(reliability: Reliability, risk: Risk) -> Plot | None:
+    """Return the probability that the factor is lower, on an axis where a normal law is straight.
+
+    None without samples.
+    """
     deviate = NormalDist().inv_cdf
     data: list[Spec] = [
         {"x": factor, "y": deviate(p), "p": p, "way": SAMPLING_NAMES[way]}
@@ -36,7 +39,7 @@ def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
     if not data:
         return None
     low, high = (end(row["y"] for row in data) for end in (min, max))
-    low = min(low, deviate(found.probability))
+    low = min(low, deviate(reliability.probability))
     ticks = [p for p in PROBABILITY_TICKS if low - 0.5 <= deviate(p) <= high + 0.5]
     named = " : ".join(f"abs(datum.value - ({deviate(p):.6f})) < 1e-4 ? '{p:g}'" for p in ticks)
     x: Spec = {"field": "x", "type": "quantitative", "title": "factor of safety",
@@ -49,9 +52,9 @@ def distribution_plot(found: Reliability, risk: Risk) -> Plot | None:
                     "scale": {"domain": list(SAMPLING_NAMES)}}  # fmt: skip
     layers: list[Spec] = [
         {"mark": {"type": "line"}, "encoding": {"color": colour, "strokeDash": colour}},
-        {"data": rows([{"x": found.limit}]), "mark": {"type": "rule", "style": "governs"},
+        {"data": rows([{"x": reliability.limit}]), "mark": {"type": "rule", "style": "governs"},
          "encoding": {"y": None}},
-        {"data": rows([{"y": deviate(found.probability)}]),
+        {"data": rows([{"y": deviate(reliability.probability)}]),
          "mark": {"type": "rule", "style": "level"}, "encoding": {"x": None}},
     ]  # fmt: skip
     title = f"pin {clipped(risk.pin)}, {clipped(risk.case)}"

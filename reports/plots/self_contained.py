@@ -1,8 +1,4 @@
-"""Plots and drawings that bring all they show: no address in them is opened, and no file.
-
-Of a report.html that another may have written. Vega-Lite is besides not allowed any address
-(reports.plots.draw); what draws SVG as PNG has no such switch and opens links of pictures.
-"""
+"""Checks that plots and drawings are self-contained, so that they open no address and no file."""
 
 from __future__ import annotations
 
@@ -21,13 +17,18 @@ FORBIDDEN_ELEMENTS = {"image", "feimage", "script", "foreignobject", "iframe", "
 
 
 def require_no_address(spec: Any, name: str) -> None:
-    """Raises: Damaged for a specification of Vega-Lite with an address or a picture."""
+    """Check that a specification of Vega-Lite has no address and no picture.
+
+    Raises: Damaged.
+    """
     waiting = [spec]
     while waiting:
         node = waiting.pop()
         if isinstance(node, dict):
-            if found := sorted(ADDRESS_KEYS & {str(key).lower() for key in node}):
-                raise Damaged(f"{name} has an address ({found[0]}), which no plot of pinstress has")
+            if address_keys := sorted(ADDRESS_KEYS & {str(key).lower() for key in node}):
+                raise Damaged(
+                    f"{name} has an address ({address_keys[0]}), which no plot of pinstress has"
+                )
             mark = node.get("mark")
             if IMAGE_MARK in (mark, mark.get("type") if isinstance(mark, dict) else None):
                 raise Damaged(f"{name} has a picture in it, which no plot of pinstress has")
@@ -37,7 +38,10 @@ def require_no_address(spec: Any, name: str) -> None:
 
 
 def require_self_contained(svg: str, name: str) -> None:
-    """Raises: Damaged for an SVG that is none, or refers to anything but its own parts."""
+    """Check that a text is an SVG that refers only to its own parts.
+
+    Raises: Damaged.
+    """
     inside: list[str] = []
 
     def start(element: str, attributes: dict[str, str]) -> None:
@@ -52,8 +56,8 @@ def require_self_contained(svg: str, name: str) -> None:
             ):
                 raise Damaged(f"{name} refers to {value[:60]!r}, outside of itself")
 
-    def text(found: str) -> None:
-        if inside[-1] == "style" and EXTERNAL_REFERENCE_PATTERN.search(found):
+    def text(content: str) -> None:
+        if inside[-1] == "style" and EXTERNAL_REFERENCE_PATTERN.search(content):
             raise Damaged(f"{name} refers to something outside of itself")
 
     def doctype(*_: object) -> None:

@@ -31,7 +31,7 @@ POINTER_PARAMETER: Spec = {
 
 @dataclass(frozen=True)
 class Plot:
-    """A plot: its file's name without extension, what it shows in a sentence, and how."""
+    """A plot: the name of its file without extension, its caption, and its specification."""
 
     name: str
     caption: str
@@ -40,7 +40,7 @@ class Plot:
 
 @dataclass(frozen=True)
 class Abscissa:
-    """What the curves of a plot are drawn against, (N,), with its heading; logarithmic or not."""
+    """The values (N,) against which curves are drawn, with their heading."""
 
     heading: str
     values: Floats
@@ -49,8 +49,10 @@ class Abscissa:
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves (N,) by name above a common abscissa, NaN where there is none. under, over: layers
-    behind and before them. scale: of the ordinate. zero: whether a line is drawn there.
+    """Curves (N,) by name above a common abscissa, NaN where values are missing.
+
+    under, over: layers behind and in front of them. scale: of the ordinate.
+    zero: whether a line is drawn at zero.
     """
 
     heading: str
@@ -63,7 +65,7 @@ class Panel:
 
 
 def curves(title: str, x: Abscissa, panels: Sequence[Panel], common: bool = False) -> Spec:
-    """Panels with curves over one abscissa, which zoom together; the values under the pointer.
+    """Return panels with curves over one abscissa, which zoom together, with values at the pointer.
 
     common: whether the panels' curves have the same names, and one key.
     """
@@ -87,12 +89,12 @@ def curves(title: str, x: Abscissa, panels: Sequence[Panel], common: bool = Fals
 
 
 def headed(title: str, *notes: str) -> Spec:
-    """The title of a plot that stands alone, with lines under it."""
+    """Return the title of a plot that stands alone, with lines under it."""
     return {"text": title, "subtitle": list(notes), "fontSize": 13, "fontWeight": 600, "offset": 12}
 
 
 def table(columns: dict[str, Floats]) -> Spec:
-    """Data (N,) by column, as CSV, which is the shortest form that Vega-Lite reads."""
+    """Return data (N,) by column as CSV, which is the shortest form that Vega-Lite reads."""
     rows = zip(*(_written(values) for values in columns.values()), strict=True)
     text = "\n".join([",".join(columns), *map(",".join, rows)])
     return {"values": text, "format": {"type": "csv", "parse": dict.fromkeys(columns, "number")}}
@@ -103,7 +105,10 @@ def _written(values: Floats) -> list[str]:
 
 
 def _view(panel: Panel, names: dict[str, str], x: Abscissa, last: bool) -> Spec:
-    """names: of the curves by column."""
+    """Return the view of a panel.
+
+    names: of the curves by column.
+    """
     scale = {"nice": False, "zero": False}
     across: Spec = {"field": "x", "type": "quantitative", "title": x.heading if last else None,
               "scale": {"type": "log", **scale} if x.logarithmic else scale}  # fmt: skip
@@ -121,7 +126,7 @@ def _view(panel: Panel, names: dict[str, str], x: Abscissa, last: bool) -> Spec:
 
 
 def _line(column: str, names: dict[str, str], scale: Spec) -> Spec:
-    """One curve; those with names have a key."""
+    """Return one curve; those with names have a key."""
     domain = {"domain": list(names.values())}
     colour: Spec = {"datum": names[column], "scale": domain}
     more: Spec = {"strokeDash": {**colour, "scale": {**domain, "range": dashes(len(names))}}}
@@ -138,7 +143,7 @@ def _line(column: str, names: dict[str, str], scale: Spec) -> Spec:
 
 
 def _pointed(panel: Panel, names: dict[str, str]) -> Spec:
-    """A rule at each instant, seen under the pointer only, with the values there."""
+    """Return a rule at each instant, visible only under the pointer, with the values there."""
     values = [
         {"field": column, "title": name or panel.heading, "format": NUMBER_FORMAT}
         for column, name in names.items()
@@ -157,8 +162,9 @@ def _pointed(panel: Panel, names: dict[str, str]) -> Spec:
 
 
 def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
-    """Curves that coincide in all panels under one name; those without any value are left out, as
-    long as others have some.
+    """Return the panels' curves, with those that coincide in all panels under one name.
+
+    Curves without any value are left out as long as others have some.
     """
     groups: list[list[str]] = []
     for name in panels[0]:
@@ -180,27 +186,27 @@ def _coincide(panel: dict[str, Floats], one: str, other: str) -> bool:
 
 
 def clipped(name: str, most: int = 24) -> str:
-    """A name short enough for a label."""
+    """Return a name short enough for a label."""
     return name if len(name) <= most else name[: most - 1] + "…"
 
 
 def still(spec: Spec) -> Spec:
-    """The specification without what only a pointer needs."""
+    """Return the specification without the parts that only a pointer needs."""
     if "params" in spec:
         spec = {key: value for key, value in spec.items() if key != "params"}
-    kept: Spec = {
+    parts: Spec = {
         key: [still(part) for part in spec[key] if POINTER_PARAMETER not in part.get("params", [])]
         for key in ("layer", "vconcat")
         if key in spec
     }
-    return {**spec, **kept}
+    return {**spec, **parts}
 
 
 # Layers with data of their own.
 
 
 def rows(values: Sequence[Spec]) -> Spec:
-    """Data given row by row."""
+    """Return data given row by row."""
     return {"values": [{k: _rounded(v) for k, v in row.items()} for row in values]}
 
 
@@ -209,7 +215,7 @@ def _rounded(value: object) -> object:
 
 
 def level(y: float, text: str = "", style: str = "level") -> Spec:
-    """A horizontal line, with a text at its left end."""
+    """Return a horizontal line, with a text at its left end."""
     rule: Spec = {"mark": {"type": "rule", "style": style}, "encoding": {"x": None}}
     noted: Spec = {
         "mark": {"type": "text", "style": "quiet-note", "align": "left", "dx": 3, "dy": -6,
@@ -224,7 +230,7 @@ def level(y: float, text: str = "", style: str = "level") -> Spec:
 
 
 def instant(x: float, text: str = "", left: bool = False) -> Spec:
-    """A vertical line, with a text at its head, perhaps to the left."""
+    """Return a vertical line, with a text at its top, optionally to the left."""
     rule: Spec = {"mark": {"type": "rule", "style": "governs", "clip": True}}
     noted: Spec = {
         "mark": {"type": "text", "style": "note", "align": "right" if left else "left",
@@ -238,7 +244,7 @@ def instant(x: float, text: str = "", left: bool = False) -> Spec:
 
 
 def bands(extents: Sequence[tuple[float, float]], style: str = "shade") -> Spec:
-    """Shaded extents of the abscissa."""
+    """Return shaded extents of the abscissa."""
     return {
         "data": rows([{"x": low, "x2": high} for low, high in extents]),
         "mark": {"type": "rect", "style": style, "clip": True},
@@ -247,7 +253,7 @@ def bands(extents: Sequence[tuple[float, float]], style: str = "shade") -> Spec:
 
 
 def points(values: Sequence[Spec], style: str = "hot", shape: str = "circle") -> Spec:
-    """Marks at rows with x, y and perhaps a text, which is shown under the pointer."""
+    """Return marks at rows with x, y and optionally a text, which is shown under the pointer."""
     mark = {"type": "point", "style": style, "shape": shape, "size": 36, "filled": True,
             "opacity": 1, "clip": True}  # fmt: skip
     if style == "published":

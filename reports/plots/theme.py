@@ -1,4 +1,4 @@
-"""How plots look: colours, dashes, and the configuration of Vega-Lite that all share."""
+"""Theme of the plots: colours, dashes, and the configuration of Vega-Lite that all share."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ SERIES_DASHES = ([1, 0], [7, 3], [2, 2], [7, 3, 2, 3], [4, 2], [7, 2, 2, 2, 2, 2
 
 
 def dashes(number: int) -> list[list[int]]:
-    """Of so many curves; no two of the first 49 have the same colour and dashes."""
+    """Return the dashes of a number of curves; the first 49 differ in colour or dashes."""
     return [
         SERIES_DASHES[(k + k // len(SERIES_COLOURS)) % len(SERIES_DASHES)] for k in range(number)
     ]
 
 
 def style_sheet() -> str:
-    """The colours as properties of a style sheet."""
+    """Return the colours as properties of a style sheet."""
     shades = (
         f"--{name}: light-dark({light}, {dark});" for name, (light, dark) in THEME_COLOURS.items()
     )
@@ -42,13 +42,13 @@ def style_sheet() -> str:
 
 
 def on_paper(font: str = "DejaVu Sans, sans-serif") -> dict[str, Any]:
-    """The configuration of plots that stand alone."""
+    """Return the configuration of plots that stand alone."""
     colours = {name: light for name, (light, _) in THEME_COLOURS.items()}
     return {**_config(colours, font), "background": colours["paper"]}
 
 
 def on_page() -> dict[str, Any]:
-    """The configuration in the report, whose style sheet gives the colours."""
+    """Return the configuration in the report, whose style sheet gives the colours."""
     colours = {name: f"var(--{name})" for name in THEME_COLOURS}
     return {**_config(colours, "system-ui, sans-serif"), "background": None}
 

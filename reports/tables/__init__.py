@@ -1,1 +1,1 @@
-"""One table per file."""
+"""Tables, one per file."""

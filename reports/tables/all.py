@@ -49,12 +49,12 @@ MAX_SHEET_ROWS = (
 
 
 def sheets(tables: Sequence[Table[Any]]) -> list[Table[Any]]:
-    """Those that the workbook has."""
+    """Return the tables that the workbook contains."""
     return [t for t in tables if t.name not in CSV_ONLY_TABLES and len(t) <= MAX_SHEET_ROWS]
 
 
 def stress_tables(results: Results) -> list[Table[Any]]:
-    """Tables that need stresses, without empty ones; safety factors first."""
+    """Return the tables that need stresses, without empty ones; safety factors come first."""
     check = results.beam_check
     rest: list[Table[Any]] = [
         envelope_table(results),
@@ -72,7 +72,7 @@ def stress_tables(results: Results) -> list[Table[Any]]:
 
 
 def load_tables(results: Results) -> list[Table[Any]]:
-    """Tables of the loads, without empty ones."""
+    """Return the tables of the loads, without empty ones."""
     tables: list[Table[Any]] = [published_reactions_table(results), published_values_table(results)]
     tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
     if results.motion_check is not None:

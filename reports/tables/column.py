@@ -1,5 +1,6 @@
-"""Columns and tables, each described once for every writer: CSV, Parquet, workbook, JSON, Markdown,
-terminal, page, PDF.
+"""Columns and tables, each described once for every writer.
+
+The writers are CSV, Parquet, workbook, JSON, Markdown, terminal, page and PDF.
 """
 
 from __future__ import annotations
@@ -54,17 +55,17 @@ class Column(Generic[R]):
     in_json: bool = False
 
     def unit(self, units: Units) -> str:
-        """The unit of its numbers; empty for texts, ratios, and what differs from row to row."""
+        """Return the unit of the numbers; empty for texts, ratios, and units that vary by row."""
         return "" if callable(self.dimension) else unit_name(self.dimension, units)
 
     def headed(self, units: Units | None) -> str:
-        """The heading for people, with the unit where that is known."""
+        """Return the heading for people, with the unit where that is known."""
         unit = self.unit(units).replace(" ", "·") if units else ""
         heading = f"{self.heading} [{unit}]" if unit else self.heading
         return heading.replace("\n ", "\n").strip()
 
     def shown(self, row: R) -> str:
-        """The text for people: four digits, a time as it was given, a dash for no value."""
+        """Return the text for people: four digits, a time as it was given, a dash for no value."""
         if self.text is not None:
             return self.text(row)
         value = self.cell(row)
@@ -78,8 +79,10 @@ class Column(Generic[R]):
 
 
 def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
-    """Columns of files that are attributes of the row: `names` are "attribute" or "key=attribute",
-    the attribute perhaps dotted (its last part is the key), all of one dimension.
+    """Return columns of files, all of one dimension, that are attributes of the row.
+
+    names: "attribute" or "key=attribute", separated by blanks; the attribute may be dotted, and its
+    last part is the key.
     """
     pairs = (name.rpartition("=") for name in names.split())
     return [
@@ -89,32 +92,38 @@ def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
 
 
 def texts(names: str, **same: Any) -> list[Column[Any]]:
-    """The same of texts that people read under the key."""
+    """Return columns of attributes that are texts, which people read under the key."""
     columns = fields(names, numeric=False, **same)
     return [replace(column, heading=column.key) for column in columns]
 
 
 def unit_columns(names: str) -> list[Column[Any]]:
-    """Columns of files that name the units, as in "stress time", of rows that have `units`."""
+    """Return columns of files for the units, named as in "stress time", of rows with `units`."""
     return [Column(f"{name}_unit", attrgetter(f"units.{name}")) for name in names.split()]
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A table as text cells; numeric: which columns are flush right."""
+    """A table as text cells.
+
+    numeric: which columns are flush right.
+    """
 
     head: list[str]
     body: list[list[str]]
     numeric: list[bool]
 
     def markdown(self) -> str:
-        """The same in Markdown, its cells escaped."""
+        """Return the table in Markdown, its cells escaped."""
         return markdown.table(self.head, self.body, self.numeric)
 
 
 @dataclass(frozen=True)
 class Table(Generic[R]):
-    """Rows with what is written of them. name: of its CSV file, without the ending."""
+    """Rows with the columns that are written of them.
+
+    name: of its CSV file, without the ending.
+    """
 
     name: str
     columns: Sequence[Column[R]]
@@ -134,40 +143,45 @@ class Table(Generic[R]):
         return [column.key for column in self.filed]
 
     def values(self, column: Column[R]) -> Sequence[Cell]:
-        """A column's cells."""
+        """Return the cells of a column."""
         return [column.cell(row) for row in self.rows]
 
     def cells(self) -> Iterator[Sequence[Cell]]:
-        """The cells row by row."""
+        """Yield the cells row by row."""
         cells = [column.cell for column in self.filed]
         return ([cell(row) for cell in cells] for row in self.rows)
 
     def write(self, directory: Path) -> Path:
-        """Write it into a folder: as CSV, or as Parquet where spreadsheets could not open it."""
+        """Write the table as CSV, or as Parquet if too long for spreadsheets; return the path."""
         large = len(self) > MAX_CSV_ROWS
         path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
         (write_parquet if large else write_csv)(path, self.keys, self.cells())
         return path
 
     def records(self) -> list[dict[str, Any]]:
-        """The rows as plain values by the keys of the columns; what is not finite is None."""
+        """Return the rows as plain values by the columns' keys; non-finite numbers are None."""
         return [dict(zip(self.keys, map(plain, row), strict=True)) for row in self.cells()]
 
     def for_people(self) -> list[tuple[Column[R], list[str]]]:
-        """The columns that people see, with their texts."""
+        """Return the columns that people see, with their texts."""
         shown = [(c, [c.shown(row) for row in self.rows]) for c in self.columns if c.heading]
         return [(c, texts) for c, texts in shown if not c.drop_if_empty or {*texts} - {DASH}]
 
     def grid(self, units: Units | None = None) -> Grid:
-        """The table as people read it; units: None where the headings have them."""
+        """Return the table as people read it.
+
+        units: None where the headings have them.
+        """
         shown = self.for_people()
         body = [list(row) for row in zip(*(texts for _, texts in shown), strict=True)]
         return Grid([c.headed(units) for c, _ in shown], body, [c.numeric for c, _ in shown])
 
 
 class ArrayTable(Table[R]):
-    """A table of millions of lines: each of its rows is many lines, of which a cell is an array, a
-    list, or one value for all. The first column with an array says how many.
+    """A table of millions of lines, in which each row stands for many lines.
+
+    A cell of a row is an array, a list, or one value for all its lines. The first column with an
+    array gives their number.
     """
 
     def __len__(self) -> int:
@@ -181,8 +195,8 @@ class ArrayTable(Table[R]):
         )
 
     def values(self, column: Column[R]) -> Sequence[Cell]:
-        each = ((column.cell(row), self._lines(row)) for row in self.rows)
-        return list(chain(*(_listed(cells, 0, count) for cells, count in each)))
+        cells_and_counts = ((column.cell(row), self._lines(row)) for row in self.rows)
+        return list(chain(*(_listed(cells, 0, count) for cells, count in cells_and_counts)))
 
     def cells(self) -> Iterator[Sequence[Cell]]:
         for row in self.rows:
@@ -193,7 +207,7 @@ class ArrayTable(Table[R]):
 
 
 def _listed(cells: Floats | list[Cell] | Cell, first: int, last: int) -> list[Cell]:
-    """Some of the cells, of one value for all as often as needed."""
+    """Return some of the cells; one value for all is repeated as often as needed."""
     if isinstance(cells, np.ndarray):
         some: list[Cell] = cells[first:last].tolist()
         return some
@@ -201,13 +215,13 @@ def _listed(cells: Floats | list[Cell] | Cell, first: int, last: int) -> list[Ce
 
 
 def json_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
-    """A row as JSON, with the keys of the columns."""
+    """Return a row as JSON, with the keys of the columns."""
     return {column.key: plain(column.cell(row)) for column in columns}
 
 
 @dataclass(frozen=True)
 class PinRow(Generic[T]):
-    """A row about something of a pin in a case, with the units of the results."""
+    """A row on a part of the result of a pin in a case, with the units of the results."""
 
     pin: PinResult
     units: Units
@@ -220,15 +234,15 @@ PIN_AND_CASE = fields("pin=pin.pin case=pin.case")  # of a PinRow
 def read_only(
     heading: str, cell: Callable[[R], Any], dimension: str = "", **more: Any
 ) -> Column[R]:
-    """A column that people read and no file has."""
+    """Return a column that people read and no file has."""
     return Column("", cell, dimension, heading, **more)
 
 
 def grid_of(table: Table[Any] | None, units: Units) -> Grid | None:
-    """A table as people read it; None without rows."""
+    """Return a table as people read it; None without rows."""
     return table.grid(units) if table is not None and table.rows else None
 
 
 def in_order(columns: Iterable[Column[R]], keys: Sequence[str]) -> list[Column[R]]:
-    """Columns in the order of their keys; those whose key is not named come last."""
+    """Return the columns in the order of their keys; those whose key is not named come last."""
     return sorted(columns, key=lambda c: keys.index(c.key) if c.key in keys else len(keys))

@@ -12,22 +12,22 @@ MAX_SHOWN_FORCES = 30  # forces shown
 CHANGE_DIGITS = 3  # digits
 
 
-def rows_table(found: RunComparison) -> Table[RowPair]:
-    """Pins and cases, the important changes first; those without any are left out."""
+def rows_table(comparison: RunComparison) -> Table[RowPair]:
+    """Return the pins and cases that changed, the important changes first."""
 
     def both(text: Callable[[Side], str]) -> Callable[[RowPair], str]:
         return lambda row: _from_to(*(DASH if s is None else text(s) for s in _sides(row)))
 
     columns: list[Column[RowPair]] = [
         *texts("pin case"),
-        read_only(f"max von Mises A [{found.stress}]", lambda row: _range(row.first), rank=4),
-        read_only(f"max von Mises B [{found.stress}]", lambda row: _range(row.second), rank=3),
+        read_only(f"max von Mises A [{comparison.stress}]", lambda row: _range(row.first), rank=4),
+        read_only(f"max von Mises B [{comparison.stress}]", lambda row: _range(row.second), rank=3),
         read_only("change", lambda row: per_cent(row.change)),
         read_only("factor A → B", both(lambda side: engineering(side.factor)), rank=1),
         read_only("result A → B", both(lambda side: side.outcome), rank=2, numeric=False),
         read_only("change is", lambda row: row.kind, numeric=False),
     ]
-    return Table("rows", columns, changed_rows(found))
+    return Table("rows", columns, changed_rows(comparison))
 
 
 def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
@@ -35,17 +35,17 @@ def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
 
 
 def _from_to(first: str, second: str) -> str:
-    """What was and what is; once where they are the same."""
+    """Return the former and the present value as text; one where they are equal."""
     return first if first == second else f"{first} → {second}"
 
 
-def changed_rows(found: RunComparison) -> list[RowPair]:
-    """Rows with a change."""
-    return [row for row in found.rows if row.kind != UNCHANGED]
+def changed_rows(comparison: RunComparison) -> list[RowPair]:
+    """Return the rows with a change."""
+    return [row for row in comparison.rows if row.kind != UNCHANGED]
 
 
 def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
-    """Values that differ, by `name`."""
+    """Return a table of the values that differ, by `name`."""
     columns: list[Column[ValuePair]] = [
         read_only(name, lambda pair: pair.names[0], numeric=False),
         read_only("A", lambda pair: _text(pair.first), numeric=False),
@@ -54,30 +54,30 @@ def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
     return Table("pairs", columns, pairs)
 
 
-def inputs_table(found: RunComparison) -> Table[ValuePair]:
-    """Values that differ, by key."""
-    return _pairs("input", found.inputs or ())
+def inputs_table(comparison: RunComparison) -> Table[ValuePair]:
+    """Return the input values that differ, by key."""
+    return _pairs("input", comparison.inputs or ())
 
 
-def versions_table(found: RunComparison) -> Table[ValuePair]:
-    """Programs whose versions differ."""
-    return _pairs("program", found.versions)
+def versions_table(comparison: RunComparison) -> Table[ValuePair]:
+    """Return the programs whose versions differ."""
+    return _pairs("program", comparison.versions)
 
 
-def forces_table(found: RunComparison) -> Table[ValuePair]:
-    """Largest forces that differ, the largest changes first."""
+def forces_table(comparison: RunComparison) -> Table[ValuePair]:
+    """Return the largest forces that differ, the largest changes first."""
     columns: list[Column[ValuePair]] = [
         read_only("case", lambda pair: pair.names[0], numeric=False),
         read_only("connection", lambda pair: pair.names[1], numeric=False),
-        read_only(f"largest force A [{found.force}]", lambda pair: pair.first),
-        read_only(f"B [{found.force}]", lambda pair: pair.second),
+        read_only(f"largest force A [{comparison.force}]", lambda pair: pair.first),
+        read_only(f"B [{comparison.force}]", lambda pair: pair.second),
         read_only("change", lambda pair: per_cent(pair.change)),
     ]
-    return Table("forces", columns, found.forces[:MAX_SHOWN_FORCES])
+    return Table("forces", columns, comparison.forces[:MAX_SHOWN_FORCES])
 
 
-def margins_table(found: RunComparison) -> Table[ValuePair]:
-    """Least margins of safety that differ."""
+def margins_table(comparison: RunComparison) -> Table[ValuePair]:
+    """Return the least margins of safety that differ."""
     columns: list[Column[ValuePair]] = [
         read_only("pin", lambda pair: pair.names[0], numeric=False),
         read_only("least margin A", lambda pair: _signed((pair.first or (None,))[0])),
@@ -85,12 +85,12 @@ def margins_table(found: RunComparison) -> Table[ValuePair]:
         read_only("least margin B", lambda pair: _signed((pair.second or (None,))[0])),
         read_only("check B", lambda pair: (pair.second or (DASH,))[-1], numeric=False),
     ]
-    return Table("margins", columns, found.margins)
+    return Table("margins", columns, comparison.margins)
 
 
-def left_out(found: RunComparison) -> str:
-    """How many forces have no room."""
-    more = len(found.forces) - MAX_SHOWN_FORCES
+def left_out(comparison: RunComparison) -> str:
+    """Return a note on the number of forces that the table leaves out."""
+    more = len(comparison.forces) - MAX_SHOWN_FORCES
     return f"{more} more forces differ by less." if more > 0 else ""
 
 
@@ -110,7 +110,7 @@ def _range(side: Side | None) -> str:
 
 
 def per_cent(change: float | None) -> str:
-    """A change with its sign."""
+    """Return a change with its sign."""
     return DASH if change is None else f"{100.0 * change:+.3g} %".replace("-", "−")
 
 

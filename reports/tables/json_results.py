@@ -33,7 +33,7 @@ RESULTS_SCHEMA = "pinstress-results/2"
 
 
 def _strength(key: str, name: str) -> Column[SingularZone]:
-    """A number of how strong a singular field is, where that was measured."""
+    """Return a column for the strength of a singular field, where it was measured."""
     return Column(key, lambda zone: getattr(zone.strength, name, None))
 
 
@@ -68,7 +68,7 @@ DROP = fields(
 
 
 def to_json(results: Results) -> dict[str, Any]:
-    """The results as plain JSON values; missing numbers are null."""
+    """Return the results as plain JSON values; missing numbers are null."""
     factors = safety_factors_table(results)
     return {
         "schema": RESULTS_SCHEMA,
@@ -99,7 +99,7 @@ def write_json(results: Results, path: Path) -> None:
 
 
 def _loads(results: Results, table: ReactionTable) -> dict[str, Any]:
-    """One case's loads: maximum forces, drives and checks."""
+    """Return the loads of one case: maximum forces, drives and checks."""
     moved = next((m for m in results.motion if m.case == table.case), None)
     return {
         "case": table.case,
@@ -119,7 +119,7 @@ def _drop(d: DropRecord) -> dict[str, Any]:
 
 
 def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
-    """A pin in a case: the columns of the safety factors that say so, and what no table has."""
+    """Return a pin in a case: JSON columns of the safety factors, and values without a table."""
     pin, depends = of.pin, "depends_on" if outcome(of.pin) == DEPENDS else "safe_within"
     return {
         **json_of([column for column in table.columns if column.in_json], of),
@@ -127,7 +127,7 @@ def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
         **places_json(pin),
         "depends_on": [],
         "safe_within": [],
-        depends: [json_of(DEPENDENCE, each) for each in pin.depends_on],
+        depends: [json_of(DEPENDENCE, dependence) for dependence in pin.depends_on],
         "singular_at": [json_of(ZONE, zone) for zone in pin.singular_at],
         "hand_checks": [json_of(CHECK, check) for check in pin.hand_checks],
         "joint": joint_json(pin.joint),
@@ -137,7 +137,7 @@ def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
 
 
 def _headline(results: Results) -> dict[str, Any] | None:
-    found = headline_json(results, headline(results))
-    if found is not None:
-        found["worst"]["factor"] = finite(found["worst"]["factor"])
-    return found
+    decision = headline_json(results, headline(results))
+    if decision is not None:
+        decision["worst"]["factor"] = finite(decision["worst"]["factor"])
+    return decision

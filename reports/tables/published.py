@@ -14,7 +14,7 @@ from reports.tables.column import Column, Table, fields, read_only, texts
 
 @dataclass(frozen=True)
 class PublishedReaction:
-    """A connection's largest force of a case, ours and published, in the study's force unit."""
+    """The largest force of a connection in a case, computed and published, in the study's unit."""
 
     case: str
     connection: str
@@ -24,7 +24,7 @@ class PublishedReaction:
 
 
 def published_reactions(results: Results) -> list[PublishedReaction]:
-    """Every reaction for which a value was published; ours is the largest over all instants."""
+    """Return every reaction with a published value; `ours` is the largest over all instants."""
     return [row for table in results.reactions for row in _rows(table)]
 
 
@@ -41,7 +41,7 @@ def _rows(table: ReactionTable) -> list[PublishedReaction]:
 
 
 def published_reactions_table(results: Results) -> Table[PublishedReaction]:
-    """The same as a table."""
+    """Return the published reactions as a table."""
     force = f" [{results.units.force}]"  # for people only
     columns: list[Column[PublishedReaction]] = [
         *texts("case connection"),
@@ -79,7 +79,7 @@ VALUE_COLUMNS: list[Column[PublishedValue]] = [
 
 
 def published_values_table(results: Results) -> Table[PublishedValue]:
-    """Every published value with ours."""
+    """Return every published value with the computed one."""
     return Table("published", VALUE_COLUMNS, results.published)
 
 
@@ -108,6 +108,6 @@ MAXIMUM_COLUMNS: list[Column[PinResult]] = [
 
 
 def published_maxima(results: Results) -> Table[PinResult]:
-    """Published maxima and safety factors compared with ours, in the order of the study."""
+    """Return published maxima and safety factors with the computed ones, in the study's order."""
     rows = [pin for pin in results.pins if pin.published_max_von_mises is not None]
     return Table("published_maxima", MAXIMUM_COLUMNS, rows)

@@ -23,27 +23,27 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class RiskRow:
-    """A pin in a case, with all that was found."""
+    """The probability of failure of a pin in a case, with all results of the study."""
 
     risk: Risk
     found: Reliability
 
     @property
     def by(self) -> str:
-        """How its probability was found."""
+        """The method by which the probability was computed."""
         return "importance sampling" if self.risk.by_weights else "plain sampling"
 
 
 @dataclass(frozen=True)
 class DriverRow:
-    """What a parameter contributes to the failure of a pin in a case."""
+    """The contribution of a parameter to the failure of a pin in a case."""
 
     risk: Risk
     driver: Driver
 
 
 def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
-    """A value with the ends of its interval."""
+    """Return the columns of a value and of the ends of its interval."""
 
     def end(name: str) -> Callable[[R], float | None]:
         return lambda row: finite(getattr(spread(row), name, None))
@@ -53,12 +53,12 @@ def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
 
 
 def _form(key: str, name: str) -> Column[RiskRow]:
-    """A number of FORM, where that has an answer."""
+    """Return a column of a number of FORM, empty where FORM has no result."""
     return Column(key, lambda row: getattr(row.risk.form, name, None))
 
 
 def _by(errors: str) -> list[Column[RiskRow]]:
-    """What an error of the stress makes of a probability."""
+    """Return the columns of the probabilities under an error of the stress."""
 
     def value(row: RiskRow, end: str) -> float | None:
         return getattr(getattr(getattr(row.risk, errors), end, None), "value", None)
@@ -102,21 +102,22 @@ DRIVER_COLUMNS: list[Column[DriverRow]] = [
 ]  # fmt: skip
 
 
-def write_reliability(found: Reliability, directory: Path) -> None:
+def write_reliability(reliability: Reliability, directory: Path) -> None:
     """Write reliability.csv, drivers.csv and reliability.json with all digits."""
-    Table("reliability", COLUMNS, [RiskRow(risk, found) for risk in found.risks]).write(directory)
-    drivers = [DriverRow(risk, driver) for risk in found.risks for driver in risk.drivers]
+    rows = [RiskRow(risk, reliability) for risk in reliability.risks]
+    Table("reliability", COLUMNS, rows).write(directory)
+    drivers = [DriverRow(risk, driver) for risk in reliability.risks for driver in risk.drivers]
     Table("drivers", DRIVER_COLUMNS, drivers).write(directory)
-    content = {"schema": RELIABILITY_SCHEMA, **plain(found)}
-    for risk, made in zip(found.risks, content["risks"], strict=True):
-        made |= {"result": risk.result(found.probability), "by_weights": risk.by_weights}
+    content = {"schema": RELIABILITY_SCHEMA, **plain(reliability)}
+    for risk, record in zip(reliability.risks, content["risks"], strict=True):
+        record |= {"result": risk.result(reliability.probability), "by_weights": risk.by_weights}
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     path = directory / "reliability.json"
     path.write_text(text + "\n", encoding="utf-8", newline="\n")
 
 
 def remark(risk: Risk) -> str:
-    """What is to be known of a row, in a sentence or none."""
+    """Return a sentence on the limits of a row, or an empty text."""
     said = []
     if risk.disagrees:
         said.append(
@@ -133,12 +134,12 @@ def remark(risk: Risk) -> str:
 
 
 def chance(value: float | None) -> str:
-    """A probability as text."""
+    """Return a probability as text."""
     return DASH if value is None or not math.isfinite(value) else f"{value:.{PROBABILITY_DIGITS}g}"
 
 
 def chance_range(value: Spread | None) -> str:
-    """A probability with its interval; only the upper end where nothing failed."""
+    """Return a probability with its interval; only the upper end where nothing failed."""
     if value is None:
         return DASH
     if value.value <= 0.0:
@@ -147,7 +148,7 @@ def chance_range(value: Spread | None) -> str:
 
 
 def factor_interval(value: Spread | None) -> str:
-    """A factor with its interval."""
+    """Return a factor with its interval."""
     if value is None or math.isnan(value.value):
         return DASH
     ends = (
@@ -157,32 +158,35 @@ def factor_interval(value: Spread | None) -> str:
     return f"{engineering(value.value, PROBABILITY_DIGITS)} ({' to '.join(ends)})"
 
 
-def risks_table(found: Reliability) -> Table[Risk]:
-    """A row per pin and case, for people; what lies beneath contact only where it is ever more."""
-    per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
-    limit = engineering(found.limit, PROBABILITY_DIGITS)
+def risks_table(reliability: Reliability) -> Table[Risk]:
+    """Return a row per pin and case, for people.
+
+    The stress beneath contact has columns only where it ever raises a probability.
+    """
+    per_cent, p = f"{100.0 * reliability.confidence:g} %", chance(reliability.probability)
+    limit = engineering(reliability.limit, PROBABILITY_DIGITS)
     beneath: list[Column[Risk]] = [
         read_only(OR_BENEATH_CONTACT, lambda risk: chance_range(risk.beneath or risk.probability))
     ]
     columns: list[Column[Risk]] = [
         *texts("pin case"),
-        read_only("result", lambda risk: risk.result(found.probability), numeric=False),
+        read_only("result", lambda risk: risk.result(reliability.probability), numeric=False),
         read_only("FoS", lambda risk: risk.factor, rank=1),
         read_only(
             f"FoS at probability {p} ({per_cent})",
             lambda risk: factor_interval(risk.quantile), rank=2
         ),
         read_only(f"P(FoS < {limit}) ({per_cent})", lambda risk: chance_range(risk.probability)),
-        *beneath * found.deep,
+        *beneath * reliability.deep,
         read_only("by mesh error", lambda risk: _by_errors(risk.mesh), rank=3),
         read_only("over joint", lambda risk: _by_errors(risk.joint), rank=4),
     ]  # fmt: skip
-    return Table("risks", columns, found.risks)
+    return Table("risks", columns, reliability.risks)
 
 
-def ways_table(found: Reliability) -> Table[Risk]:
-    """The same by each way of finding it."""
-    per_cent, p = f"{100.0 * found.confidence:g} %", chance(found.probability)
+def ways_table(reliability: Reliability) -> Table[Risk]:
+    """Return the probability of failure by method, for people."""
+    per_cent, p = f"{100.0 * reliability.confidence:g} %", chance(reliability.probability)
 
     def form(name: str, text: Callable[[float | None], str]) -> Callable[[Risk], str]:
         return lambda risk: text(getattr(risk.form, name)) if risk.form else DASH
@@ -190,7 +194,7 @@ def ways_table(found: Reliability) -> Table[Risk]:
     columns: list[Column[Risk]] = [
         *texts("pin case"),
         read_only(f"plain sampling ({per_cent})", lambda risk: chance_range(risk.sampled)),
-        read_only("failures", lambda risk: f"{risk.failures:,} of {found.samples:,}"),
+        read_only("failures", lambda risk: f"{risk.failures:,} of {reliability.samples:,}"),
         read_only(f"importance sampling ({per_cent})", lambda risk: chance_range(risk.weighted)),
         read_only("FORM", form("probability", chance)),
         read_only("reliability index", form("index", engineering), rank=1),
@@ -202,31 +206,31 @@ def ways_table(found: Reliability) -> Table[Risk]:
             "FoS, FORM", form("quantile", lambda x: engineering(x, PROBABILITY_DIGITS)), rank=2
         ),
     ]
-    return Table("ways", columns, found.risks)
+    return Table("ways", columns, reliability.risks)
 
 
-def _by_errors(found: ByErrors | None) -> str:
-    if found is None:
+def _by_errors(probabilities: ByErrors | None) -> str:
+    if probabilities is None:
         return DASH
-    ends = f"{chance(found.lower.value)} to {chance(found.higher.value)}"
-    return f"{ends} (stress {change(found)})"
+    ends = f"{chance(probabilities.lower.value)} to {chance(probabilities.higher.value)}"
+    return f"{ends} (stress {change(probabilities)})"
 
 
-def change(found: ByErrors) -> str:
-    """By how much stresses are changed, as text."""
-    least, most = 100.0 * found.least, 100.0 * found.most
+def change(probabilities: ByErrors) -> str:
+    """Return the relative change of the stresses as text."""
+    least, most = 100.0 * probabilities.least, 100.0 * probabilities.most
     if least == -most:
         return f"±{most:.2g} %"
     return f"{least:+.2g} to {most:+.2g} %".replace("-", "−")
 
 
-def drivers_table(found: Reliability) -> Table[DriverRow]:
-    """What drives each row, the most important first, for people."""
+def drivers_table(reliability: Reliability) -> Table[DriverRow]:
+    """Return the parameters that matter to each row, the most important first, for people."""
     rows = [
-        DriverRow(risk, each)
-        for risk in found.risks
-        for each in sorted(risk.drivers, key=lambda d: -(d.importance or 0.0))
-        if each.importance is not None or each.first is not None
+        DriverRow(risk, driver)
+        for risk in reliability.risks
+        for driver in sorted(risk.drivers, key=lambda d: -(d.importance or 0.0))
+        if driver.importance is not None or driver.first is not None
     ]
     return Table("drivers", DRIVER_COLUMNS, rows)
 

@@ -1,4 +1,4 @@
-"""tables.xlsx: a sheet per table, for those who go on in a spreadsheet."""
+"""Workbook tables.xlsx: a sheet per table, for work in a spreadsheet."""
 
 from __future__ import annotations
 
@@ -42,8 +42,9 @@ FORMATS_BY_POWER = {
 def write_workbook(
     results: Results, tables: Sequence[Table[Any]], path: Path, left_out: Sequence[str] = ()
 ) -> None:
-    """Write tables, numbers as numbers, and a first sheet that says what they are. left_out: names
-    of tables that are CSV files only.
+    """Write the tables, numbers as numbers, after a first sheet that describes them.
+
+    left_out: names of tables that are CSV files only.
     """
     import xlsxwriter
 
@@ -128,12 +129,12 @@ def _write(sheet: Any, row: int, column: int, value: Cell, shape: Any, quoted: A
 
 def _numbers(column: Sequence[Cell]) -> list[float]:
     kinds = (float, int, np.integer)
-    found = [float(v) for v in column if isinstance(v, kinds) and not isinstance(v, bool)]
-    return [v for v in found if math.isfinite(v)]
+    numbers = [float(v) for v in column if isinstance(v, kinds) and not isinstance(v, bool)]
+    return [v for v in numbers if math.isfinite(v)]
 
 
 def _format(column: Sequence[Cell]) -> str:
-    """How a spreadsheet shows a column: the cells hold every digit, whatever it says."""
+    """Return the number format of a column; the cells hold every digit."""
     numbers = _numbers(column)
     if all(v == int(v) for v in numbers):
         return "#,##0" if max(map(abs, numbers), default=0.0) < MAX_PLAIN_NUMBER else "0.000E+00"

@@ -31,8 +31,9 @@ Curve = Sequence[ChartPoint]
 
 @dataclass(frozen=True)
 class Cost:
-    """seconds and memory (MB) of a curve at an error. at_most: the coarsest mesh, whose error is
-    smaller.
+    """The cost of a curve at an error.
+
+    memory: MB. at_most: the coarsest mesh, whose error is smaller than the wanted one.
     """
 
     seconds: float
@@ -41,16 +42,18 @@ class Cost:
 
 
 def staying(curve: Curve, wanted: float) -> Curve:
-    """The last points of a curve that are all within the error; an isolated point within it, by
-    chance, does not count.
+    """Return the last points of a curve that are all within the error.
+
+    An isolated point that is within it by chance does not count.
     """
     last = max((i for i, p in enumerate(curve) if error(p) > wanted), default=-1)
     return curve[last + 1 :]
 
 
 def cost(curve: Curve, wanted: float) -> Cost | None:
-    """The cost of an error, interpolated linearly on the log-log chart; None if the curve does not
-    stay within it.
+    """Return the cost of an error, interpolated linearly on the log-log chart.
+
+    None if the curve does not stay within the error.
     """
     within = staying(curve, wanted)
     if not within:
@@ -70,8 +73,10 @@ def cost(curve: Curve, wanted: float) -> Cost | None:
 
 
 def summary(chart: Chart) -> str:
-    """The sentences under the table: cheapest model within the tolerance, cost of equal errors, and
-    the error of the beam on foundations.
+    """Return the sentences under the table.
+
+    They give the cheapest model within the tolerance, the cost of equal errors, and the error of
+    the beam on foundations.
     """
     said = (_cheapest(chart), _ratio(chart), _foundation_error(chart))
     return " ".join(text for text in said if text)
@@ -79,12 +84,12 @@ def summary(chart: Chart) -> str:
 
 def _cheapest(chart: Chart) -> str:
     tolerance = percent(chart.tolerance)
-    found = [
+    tails = [
         staying(curve, chart.tolerance)
         for (model, _), curve in chart.curves.items()
         if model != FOUNDATION_MODEL
     ]
-    first = [within[0] for within in found if within]
+    first = [within[0] for within in tails if within]
     if not first:
         return f"No model stays within {tolerance}."
     best = min(first, key=lambda p: p.seconds or 0.0)
@@ -93,14 +98,14 @@ def _cheapest(chart: Chart) -> str:
         f"{engineering(best.memory, 2)} MB, error {percent(error(best))}."
     )
     if best.model == "beam" and not best.chosen:
-        own = chart.beam_error
-        why = "unknown" if own is None else percent(own)
+        beam_error = chart.beam_error
+        why = "unknown" if beam_error is None else percent(beam_error)
         text += f" (auto does not use it: the estimated error of the beam is {why}.)"
     return text
 
 
 def _foundation_error(chart: Chart) -> str:
-    """The error of the beam on foundations, which finer meshes do not reduce."""
+    """Return the error of the beam on foundations, which finer meshes do not reduce."""
     _, beams = _curves(chart, {FOUNDATION_MODEL: ""})
     return "".join(
         f"Error of the beam on foundations: {percent(error(beam[-1]))}." for beam in beams.values()
@@ -108,21 +113,21 @@ def _foundation_error(chart: Chart) -> str:
 
 
 def _curves(chart: Chart, models: dict[str, str]) -> tuple[str, dict[str, Curve]]:
-    """Those of the first of some models that is charted, by element, and its name."""
+    """Return the name and the curves by element of the first of some models that is charted."""
     for model, name in models.items():
-        found = {element: c for (m, element), c in chart.curves.items() if m == model}
-        if found:
-            return name, dict(found)
+        by_element = {element: c for (m, element), c in chart.curves.items() if m == model}
+        if by_element:
+            return name, dict(by_element)
     return "", {}
 
 
 def _fastest(curves: dict[str, Curve], wanted: float) -> tuple[str, Cost] | None:
-    costs = [(name, found) for name, c in curves.items() if (found := cost(c, wanted))]
+    costs = [(name, curve_cost) for name, c in curves.items() if (curve_cost := cost(c, wanted))]
     return min(costs, key=lambda c: c[1].seconds, default=None)
 
 
 def _ratio(chart: Chart) -> str:
-    """Our model compared with the fastest solid element at equal error."""
+    """Return the comparison of our model with the fastest solid element at equal error."""
     (ours, planes), (theirs, solids) = (
         _curves(chart, HARMONIC_MODEL_NAMES),
         _curves(chart, SOLID_MODEL_NAMES),
@@ -141,13 +146,13 @@ def _ratio(chart: Chart) -> str:
     plane = _fastest(planes, wanted)
     if solid is None or plane is None:
         return text + f"{_start(ours)} does not stay within {percent(wanted)}."
-    (_, own), (name, body) = plane, solid
-    least = "at least " if own.at_most else ""
+    (_, plane_cost), (name, body) = plane, solid
+    least = "at least " if plane_cost.at_most else ""
     if body.at_most:
-        least = "about " if own.at_most else "at most "
-    times = [body.seconds / own.seconds, body.memory / own.memory]
+        least = "about " if plane_cost.at_most else "at most "
+    times = [body.seconds / plane_cost.seconds, body.memory / plane_cost.memory]
     slow, large = (f"{least}{engineering(x, 2)}" for x in times)
-    ends = [who for who, c in ((ours, own), (theirs, body)) if c.at_most]
+    ends = [who for who, c in ((ours, plane_cost), (theirs, body)) if c.at_most]
     verb = "are" if len(ends) > 1 else "is"
     also = f"; {' and '.join(ends)} {verb} within it on the coarsest mesh" if ends else ""
     return (
@@ -158,17 +163,17 @@ def _ratio(chart: Chart) -> str:
 
 
 def _start(text: str) -> str:
-    """With a capital letter."""
+    """Return the text with a capital letter."""
     return text[0].upper() + text[1:]
 
 
 def curve_name(model: str, element: str) -> str:
-    """Short, for labels."""
+    """Return a short name for labels."""
     return SHORT_MODEL_NAMES.get(model) or SHORT_MODEL_NAMES.get(element) or f"{model}, {element}"
 
 
 def label(point: ChartPoint) -> str:
-    """A point as text."""
+    """Return a point as text."""
     if point.model in ("beam", FOUNDATION_MODEL):
         return point.model
     dofs = f", {point.dofs:,} unknowns" if point.dofs else ""
@@ -176,7 +181,7 @@ def label(point: ChartPoint) -> str:
 
 
 def reference_line(chart: Chart) -> str:
-    """The reference solution."""
+    """Return the line on the reference solution."""
     r = chart.reference
     charted = [p.dofs for p in chart.points if p.model == r.model and p.dofs]
     more = f", {r.dofs / max(charted):.0f} times the finest charted" if charted else ""
@@ -188,15 +193,15 @@ def reference_line(chart: Chart) -> str:
 
 
 def failures(chart: Chart) -> list[str]:
-    """Failed meshes with the reason, equal ones together."""
+    """Return the failed meshes with the reason, equal ones together."""
     meshes: dict[tuple[str, str], int] = {}
-    found: dict[tuple[str, str, str], list[int]] = {}
+    mesh_numbers: dict[tuple[str, str, str], list[int]] = {}
     for p in chart.points:
         meshes[p.model, p.element] = number = meshes.get((p.model, p.element), 0) + 1
         if p.failed:
-            found.setdefault((p.model, p.element, p.failed), []).append(number)
+            mesh_numbers.setdefault((p.model, p.element, p.failed), []).append(number)
     out = []
-    for (model, element, why), numbers in found.items():
+    for (model, element, why), numbers in mesh_numbers.items():
         if meshes[model, element] == len(numbers):
             which = "" if len(numbers) == 1 else ", all meshes"
         else:

@@ -32,14 +32,14 @@ NO_INPUTS_NOTE = "One of the runs is of an earlier version, which did not keep t
 SAME_INPUTS_NOTE = "The inputs are the same."
 
 
-def headline(found: RunComparison) -> str:
-    """How many rows changed, and how; the one that changed most."""
-    if not found.rows:
+def headline(comparison: RunComparison) -> str:
+    """Return the number of rows that changed, by kind, and the row that changed most."""
+    if not comparison.rows:
         return "Neither run has pins."
-    counts = [(found.count(kind), kind) for kind in CHANGE_KINDS]
+    counts = [(comparison.count(kind), kind) for kind in CHANGE_KINDS]
     said = ", ".join(f"{n} {kind}" for n, kind in counts if n)
-    count = "1 row" if len(found.rows) == 1 else f"{len(found.rows)} rows"
-    changed = [row for row in found.rows if row.change and row.kind != UNCHANGED]
+    count = "1 row" if len(comparison.rows) == 1 else f"{len(comparison.rows)} rows"
+    changed = [row for row in comparison.rows if row.change and row.kind != UNCHANGED]
     most = max(changed, key=lambda row: abs(row.change or 0.0), default=None)
     if most is None:
         return f"{count}: {said}."
@@ -47,38 +47,40 @@ def headline(found: RunComparison) -> str:
     return f"{count}: {said}. Largest change of a maximum: {where}."
 
 
-def sections(found: RunComparison) -> Iterator[tuple[str, Table[Any], str]]:
-    """Title, table and remark of all that differs."""
-    remark = NO_INPUTS_NOTE if found.inputs is None else "" if found.inputs else SAME_INPUTS_NOTE
-    yield "Inputs that differ", inputs_table(found), remark
-    yield "Safety factors", rows_table(found), COMPARISON_NOTE
-    yield "Margins of safety that differ", margins_table(found), ""
-    yield "Forces that differ", forces_table(found), left_out(found)
-    yield "Versions that differ", versions_table(found), ""
+def sections(comparison: RunComparison) -> Iterator[tuple[str, Table[Any], str]]:
+    """Yield the title, the table and the remark of each group of differences."""
+    remark = "" if comparison.inputs else SAME_INPUTS_NOTE
+    if comparison.inputs is None:
+        remark = NO_INPUTS_NOTE
+    yield "Inputs that differ", inputs_table(comparison), remark
+    yield "Safety factors", rows_table(comparison), COMPARISON_NOTE
+    yield "Margins of safety that differ", margins_table(comparison), ""
+    yield "Forces that differ", forces_table(comparison), left_out(comparison)
+    yield "Versions that differ", versions_table(comparison), ""
 
 
-def print_comparison(found: RunComparison, console: Console) -> None:
-    """What differs, the inputs first."""
+def print_comparison(comparison: RunComparison, console: Console) -> None:
+    """Print the differences, the inputs first."""
     from rich.text import Text
 
-    for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
+    for letter, folder, title in zip("AB", comparison.folders, comparison.titles, strict=True):
         console.print(Text(f"{letter}: {folder}, {title}"))
-    for title, table, remark in sections(found):
+    for title, table, remark in sections(comparison):
         if not table.rows and remark:
             console.print(Text(title, "bold"))
         print_table(console, title, table)
         if remark:
             console.print(Text(remark))
-    console.print(Text(headline(found), "bold"))
+    console.print(Text(headline(comparison), "bold"))
 
 
-def write_markdown(found: RunComparison, path: Path) -> None:
-    """The same as Markdown."""
+def write_markdown(comparison: RunComparison, path: Path) -> None:
+    """Write the differences as Markdown."""
     parts = ["# Two runs compared"]
-    for letter, folder, title in zip("AB", found.folders, found.titles, strict=True):
+    for letter, folder, title in zip("AB", comparison.folders, comparison.titles, strict=True):
         parts.append(f"{letter}: {markdown.escaped(folder)}, {markdown.escaped(title)}")
-    parts.append(headline(found))
-    for title, table, remark in sections(found):
+    parts.append(headline(comparison))
+    for title, table, remark in sections(comparison):
         if table.rows or remark:
             parts.append(f"## {title}")
         if table.rows:

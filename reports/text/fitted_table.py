@@ -1,4 +1,4 @@
-"""Tables that fit the terminal: columns that have no room are left out, never broken."""
+"""Tables that fit the terminal: columns that do not fit are left out, never broken."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ Shown = tuple[Column[R], str, list[str]]  # a column, its heading and its texts
 
 
 def fitting(shown: Sequence[Shown[R]], width: int, gap: int = COLUMN_GAP) -> list[Shown[R]]:
-    """The columns that have room side by side, in their order: those with the highest rank are
-    left out first, those of rank 0 never.
+    """Return the columns that fit side by side, in their order.
+
+    Those with the highest rank are left out first, those of rank 0 never.
     """
-    kept = list(shown)
-    while sum(_width(each) + gap for each in kept) - gap > width:
-        worst = max(kept, key=lambda each: each[0].rank)
+    columns = list(shown)
+    while sum(_width(column) + gap for column in columns) - gap > width:
+        worst = max(columns, key=lambda column: column[0].rank)
         if not worst[0].rank:
             break
-        kept.remove(worst)
-    return kept
+        columns.remove(worst)
+    return columns
 
 
 def _width(shown: Shown[R]) -> int:
-    """The longest line of a column, in characters."""
+    """Return the length of the longest line of a column, in characters."""
     _, heading, texts = shown
     return max(len(line) for text in (heading, *texts) for line in text.split("\n"))
 
@@ -44,33 +45,33 @@ def fitted_table(
     colours: Mapping[str, Sequence[str]] | None = None,
     gap: int = COLUMN_GAP,
 ) -> RichTable:
-    """A table of the columns that have room; names too long for any terminal are folded.
+    """Return a table of the columns that fit; names too long for any terminal are folded.
 
     colours: of the rows of a column, by its heading. gap: blanks between columns.
     """
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    made = RichTable(box=None, pad_edge=False, padding=(0, gap, 0, 0), header_style="bold")
+    rich_table = RichTable(box=None, pad_edge=False, padding=(0, gap, 0, 0), header_style="bold")
     shown = [(c, c.headed(units), texts) for c, texts in table.for_people()]
-    kept = fitting(shown, width, gap)
-    for column, heading, _ in kept:
+    columns = fitting(shown, width, gap)
+    for column, heading, _ in columns:
         # As Text: a unit in square brackets is no markup.
-        made.add_column(
+        rich_table.add_column(
             Text(heading),
             justify="right" if column.numeric else "left",
             no_wrap=column.numeric,
             overflow="fold",
         )
-    tints = [(colours or {}).get(heading, [""] * len(table.rows)) for _, heading, _ in kept]
+    tints = [(colours or {}).get(heading, [""] * len(table.rows)) for _, heading, _ in columns]
     for k in range(len(table.rows)):
-        cells = zip(kept, tints, strict=True)
-        made.add_row(*(Text(texts[k], tint[k]) for (_, _, texts), tint in cells))
-    return made
+        cells = zip(columns, tints, strict=True)
+        rich_table.add_row(*(Text(texts[k], tint[k]) for (_, _, texts), tint in cells))
+    return rich_table
 
 
 def print_table(console: Console, title: str, table: Table[R], units: Units | None = None) -> bool:
-    """Print a table under its title, if it has rows; returns whether it has."""
+    """Print a table under its title, if it has rows; return whether it has."""
     from rich.text import Text
 
     if not table.rows:

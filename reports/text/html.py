@@ -15,7 +15,7 @@ BODY_CELL_HTML = '<td style="text-align:{0}">{1}</td>'
 
 
 def safety_factors_html(results: Results) -> str:
-    """Title, the worst row in a sentence, safety factor table with verdicts, and summary."""
+    """Return title, sentence on the worst row, safety factors with verdicts, and summary."""
     grid = shown_factors(detailed_rows(results)).grid(results.units)
     sides = ["right" if numeric else "left" for numeric in grid.numeric]
 

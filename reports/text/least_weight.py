@@ -18,7 +18,7 @@ RESIDUAL_ROUND_OFF = 1e-6  # a residual that is round-off
 
 @dataclass(frozen=True)
 class ChangedDimension:
-    """By its key in the pin's table, before and after."""
+    """A changed dimension: its key in the pin's table, its value before and after."""
 
     key: str
     before: float
@@ -27,11 +27,16 @@ class ChangedDimension:
 
 @dataclass(frozen=True)
 class LightRow:
-    """A pin: its factor in the run of the new study as text and before, the case that governs;
-    weights as it was, if only scaled and now, None where they are not known; residual of the
-    conditions of an optimum, dimensions that changed, what binds with its multiplier, the factor at
-    a probability, if requested, bands that changed, designs solved, why the factor is not
-    verifiably reached, if it is not, and how the search went, if it was none or did not end.
+    """The result of a pin of least weight.
+
+    factor, factor_before: in the run of the new study as text, and before.
+    governs: the governing case.
+    weights: before, if only scaled, and now; None where they are not known.
+    residual: of the optimality conditions. dimensions: those that changed.
+    binding: active constraints with their multipliers. at: the factor at a probability, if
+    requested.
+    bands: those that changed. solved: number of designs. why: reason why the factor is not shown to
+    be reached. way: a note on a search that was not run or did not end.
     """
 
     pin: str
@@ -50,7 +55,7 @@ class LightRow:
 
     @property
     def saved(self) -> float | None:
-        """Of the weight of the pin that is only scaled."""
+        """The saved fraction of the weight of the pin that is only scaled."""
         _, scaled, now = self.weights
         return None if scaled is None or now is None else 1.0 - now / scaled
 
@@ -58,8 +63,9 @@ class LightRow:
 def print_light(
     rows: Sequence[LightRow], required: float, units: tuple[str, str, bool], console: Console
 ) -> None:
-    """Print a row per pin, the whole, and what changed. units: of length and of weight, or of
-    volume where that is what is compared.
+    """Print a row per pin, the whole, and the changes.
+
+    units: of length and of weight, or of volume where volumes are compared.
     """
     from rich.text import Text
 
@@ -73,7 +79,10 @@ def print_light(
 
 
 def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
-    """A row per pin. weight: its heading, with the unit."""
+    """Return a row per pin.
+
+    weight: the heading of the weight, with the unit.
+    """
     columns: list[Column[LightRow]] = [
         *texts("Pin=pin"),
         read_only("Result", lambda row: "not decided" if row.why else "safe", numeric=False),
@@ -128,11 +137,11 @@ def _total(rows: Sequence[LightRow], required: float, what: str, unit: str) -> I
 def _details(rows: Sequence[LightRow], length: str) -> Iterator[str]:
     for row in rows:
         if row.dimensions:
-            each = (f"{d.key} {short(d.before)} → {short(d.after)}" for d in row.dimensions)
-            yield f"Pin {row.pin} [{length}]: {', '.join(each)}."
+            entries = (f"{d.key} {short(d.before)} → {short(d.after)}" for d in row.dimensions)
+            yield f"Pin {row.pin} [{length}]: {', '.join(entries)}."
         if row.binding:
-            each = (f"{text} ({multiplier:.2g})" for text, multiplier in row.binding)
-            yield f"  binding, with multipliers: {'; '.join(each)}."
+            entries = (f"{text} ({multiplier:.2g})" for text, multiplier in row.binding)
+            yield f"  binding, with multipliers: {'; '.join(entries)}."
         if row.bands:
             yield f"  the bores of its links must follow: {', '.join(row.bands)}."
         if row.way:

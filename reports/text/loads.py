@@ -36,7 +36,7 @@ def print_loads(results: Results, console: Console) -> None:
 
 
 def unresolved(table: ReactionTable, unit: str) -> str:
-    """The time intervals in which maxima are not certain."""
+    """Return the time intervals in which maxima are not certain."""
     low, high = (short(float(f"{t:.6g}")) for t in table.unresolved[0])
     where = f"between {low} and {high}" if low != high else f"near {low}"
     more = f" and {len(table.unresolved) - 1} more" if len(table.unresolved) > 1 else ""
@@ -48,7 +48,7 @@ def unresolved(table: ReactionTable, unit: str) -> str:
 
 
 def remarks(results: Results) -> list[str]:
-    """Drives with mean and RMS, power balance, condition number, transmission angles, as text."""
+    """Return drives with mean and RMS, power balance, condition number and transmission angles."""
     lines = []
     for d in results.drive:
         unit = results.units.force

@@ -1,4 +1,4 @@
-"""loads.md: the loads of a mechanism on its pins, on one page."""
+"""Summary loads.md: the loads of a mechanism on its pins, on one page."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class LoadsPart:
 
 
 def load_parts(results: Results) -> list[LoadsPart]:
-    """Maximum forces, drives and checks of every case."""
+    """Return the maximum forces, drives and checks of every case."""
     return [_part(table, results) for table in results.reactions]
 
 

@@ -1,4 +1,4 @@
-"""How results are found, for the page and the PDF."""
+"""Description of the methods, for the page and the PDF."""
 
 METHOD_NOTE = (
     "Linkage forces are those of rigid bodies, from the principle of virtual work, at every "

@@ -10,7 +10,7 @@ from reports.format.words import but_words, verdict_words
 
 
 def pin_sentence(pin: PinResult, units: Units) -> str:
-    """Maximum, error, when, where, factor of safety, what its outcome depends on, and verdict."""
+    """Return the result of a pin as text: maximum, error, place, factor, dependences, verdict."""
     verdict = pin.verdict.capitalize() + (f": {pin.note}" if pin.note else "") + "."
     if pin.max_von_mises is None:
         return verdict
@@ -39,7 +39,10 @@ def _depends(pin: PinResult, units: Units) -> str:
 
 
 def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
-    """What the drawing of a pin shows. zoned: with excluded zones."""
+    """Return the caption of the drawing of a pin.
+
+    zoned: whether it shows excluded zones.
+    """
     zones = (
         " Numbered red rings: stress singularities, filled where one governs; red stripes: the "
         "excluded zones about them."

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-def sentence(found: Reliability, risk: Risk) -> str:
-    """A row's probability of failure with its interval and what is known of the model's error."""
-    per_cent = f"{100.0 * found.confidence:g} %"
+def sentence(reliability: Reliability, risk: Risk) -> str:
+    """Return a row's probability of failure with its interval and the model's error."""
+    per_cent = f"{100.0 * reliability.confidence:g} %"
     value, ends = risk.probability, risk.probability
     if value.value <= 0.0:
         text = f"below {chance(ends.high)} ({per_cent} confidence; no sample fails"
@@ -34,7 +34,7 @@ def sentence(found: Reliability, risk: Risk) -> str:
         if errors is not None:
             low, high = chance(errors.lower.value), chance(errors.higher.value)
             text += f"; {what}, {change(errors)} of stress: {low} to {high}"
-    limit = engineering(found.limit, 3)
+    limit = engineering(reliability.limit, 3)
     text += "; model form not included)"
     if risk.beneath is not None:
         text += f", and {chance_range(risk.beneath)} with what lies beneath contact"
@@ -42,41 +42,42 @@ def sentence(found: Reliability, risk: Risk) -> str:
 
 
 def name(risk: Risk) -> str:
-    """A row in words."""
+    """Return the name of a row in words."""
     return (
         "Any pin in any case" if risk.pin == risk.case == "all" else f"Pin {risk.pin}, {risk.case}"
     )
 
 
-def remarks(found: Reliability) -> Iterator[str]:
-    """What is to be known of rows, failed designs, and what probabilities do not include."""
-    for risk in found.risks:
+def remarks(reliability: Reliability) -> Iterator[str]:
+    """Yield notes on rows, failed designs, and what probabilities do not include."""
+    for risk in reliability.risks:
         if text := remark(risk):
             yield f"{name(risk)}: {text}."
-    for reason, count in sorted(found.reasons.items(), key=lambda item: (-item[1], item[0]))[:5]:
+    reasons = sorted(reliability.reasons.items(), key=lambda item: (-item[1], item[0]))
+    for reason, count in reasons[:5]:
         yield f"{count:,} designs have no result: {reason}."
-    yield from found.notes
+    yield from reliability.notes
 
 
-def solved(found: Reliability) -> str:
-    """How many designs were solved, and what for."""
-    parts = ", ".join(f"{count:,} for {what}" for what, count in found.solved.items())
-    return f"Designs: {parts}. Seed {found.seed}."
+def solved(reliability: Reliability) -> str:
+    """Return the number of designs solved, by purpose."""
+    parts = ", ".join(f"{count:,} for {what}" for what, count in reliability.solved.items())
+    return f"Designs: {parts}. Seed {reliability.seed}."
 
 
-def print_reliability(found: Reliability, console: Console) -> None:
-    """The first row in words, the tables, and what is to be known."""
+def print_reliability(reliability: Reliability, console: Console) -> None:
+    """Print the first row in words, the tables, and the notes."""
     from rich.text import Text
 
-    for risk in found.risks[:1]:
-        console.print(Text(sentence(found, risk), "bold"))
-    print_table(console, "", risks_table(found))
-    print_table(console, ways_title(found), ways_table(found))
-    print_table(console, "What drives it", drivers_table(found))
-    for line in (*remarks(found), solved(found)):
+    for risk in reliability.risks[:1]:
+        console.print(Text(sentence(reliability, risk), "bold"))
+    print_table(console, "", risks_table(reliability))
+    print_table(console, ways_title(reliability), ways_table(reliability))
+    print_table(console, "What drives it", drivers_table(reliability))
+    for line in (*remarks(reliability), solved(reliability)):
         console.print(Text(line))
 
 
-def ways_title(found: Reliability) -> str:
-    """Of the table of all ways: what lies beneath contact is no part of it."""
-    return "By method" + ", of surface and section" * found.deep
+def ways_title(reliability: Reliability) -> str:
+    """Return the title of the table of methods, which exclude the stress beneath contact."""
+    return "By method" + ", of surface and section" * reliability.deep

@@ -32,8 +32,9 @@ RANGE_DASH = "–"  # of a range
 
 
 def print_safety_factors(results: Results, console: Console, study: str = "") -> None:
-    """Print the worst row in a sentence, the safety factors as a table, then a summary and what to
-    change. study: its path, by default its name.
+    """Print the worst row in a sentence, the table of safety factors, a summary and the changes.
+
+    study: its path, by default its name.
     """
     from rich.text import Text
 
@@ -74,13 +75,13 @@ def _print_changes(results: Results, console: Console, study: str) -> None:
 
 
 def _of_changes(results: Results) -> Results:
-    """With the sensitivities of the pins alone that have to be changed."""
+    """Return the results with the sensitivities of only the pins that have to be changed."""
     pins = [change.pin for change in results.changes]
     return replace(results, sensitivities=tuple(x for x in results.sensitivities if x.pin in pins))
 
 
 def _brief(results: Results) -> Table[FactorRow]:
-    """The safety factors in few words, in an order of its own."""
+    """Return the safety factors in few words, in an order of its own."""
     needed = results.required_safety_factor
     brief: dict[str, dict[str, Any]] = {
         "pin": {"heading": "Pin"},
@@ -111,7 +112,7 @@ def _brief(results: Results) -> Table[FactorRow]:
 
 
 def _error(pin: PinResult) -> str:
-    """Relative; of a singular row, the range of the factor is larger."""
+    """Return the relative error; for a singular row, the range of the factor is larger."""
     if pin.verdict == "singular" or not pin.max_von_mises or pin.error_estimate is None:
         return DASH
     return f"{engineering(100.0 * pin.error_estimate / pin.max_von_mises, 2)} %"

@@ -28,14 +28,14 @@ OUTCOME_COLOURS = {AGREES: "green", DIFFERS: "red", NOT_COMPARED: "yellow"}
 
 
 def outcome_of(opinion: Opinion) -> str:
-    """In one word or two."""
+    """Return the outcome in one word or two."""
     if opinion.failure:
         return NOT_COMPARED
     return DIFFERS if opinion.complaint else AGREES
 
 
 def sentences(opinion: Opinion, units: Units) -> list[str]:
-    """What CalculiX found for a row, and how it compares."""
+    """Return CalculiX's result for a row, and its comparison with the computed one."""
     if opinion.failure:
         return [f"Not compared with CalculiX: {opinion.failure}."]
     said = _contact(opinion, units) if opinion.contact else [_same_mesh(opinion, units)]
@@ -82,7 +82,7 @@ def _contact(o: Opinion, units: Units) -> list[str]:
 
 
 def _meshes(o: Opinion, c: ContactOpinion) -> str:
-    """Whether CalculiX's mesh explains the difference in stress."""
+    """Return a sentence on whether CalculiX's mesh explains the difference in stress."""
     change, error, difference = abs(c.stress_change), o.own_error, abs(o.deviation or 0.0)
     text = (
         f"From its coarser mesh ({c.coarser:,} unknowns) to this one CalculiX's stress there "
@@ -156,7 +156,7 @@ CONTACT_COLUMNS: list[Column[Opinion]] = [
 
 
 def summary(others: Sequence[Opinion], pressed: Sequence[Opinion]) -> str:
-    """The number of rows in which CalculiX agrees, and the limits."""
+    """Return the number of rows in which CalculiX agrees, and the limits."""
     every = (*others, *pressed)
     if not every:
         return "Second opinion: no row was solved, so CalculiX was not run."

@@ -19,10 +19,14 @@ MIN_SLENDERNESS = 1.0  # length over diameter below which a pin is wider than lo
 
 @dataclass(frozen=True)
 class SizeRow:
-    """A pin's distinct diameters before and after (None: not sized), its lowest factor before and
-    in the run of the new study as text, and the case that governs it there; its weight before and
-    after (None without a density), its length over its largest diameter under a link, why the
-    required factor is not reached, if it is not, and a hand check with a smaller factor, if any.
+    """The result of sizing a pin.
+
+    before, after: its distinct diameters (None: not sized).
+    factor_before, factor: the lowest factor before, and in the run of the new study, as text.
+    governs: the governing case of that run. weights: before and after (None without a density).
+    slenderness: length over largest diameter under a link.
+    why: the reason why the required factor is not reached, if it is not.
+    stricter: a hand check with a smaller factor, if any.
     """
 
     pin: str
@@ -38,7 +42,7 @@ class SizeRow:
 
     @property
     def result(self) -> str:
-        """In words."""
+        """The outcome in words."""
         return "not decided" if self.why else "safe"
 
 
@@ -61,7 +65,7 @@ def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console:
 
 
 def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
-    """What an engineer would object to in the sizes."""
+    """Yield the objections that an engineer would have to the sizes."""
     if wide := [row.pin for row in rows if row.after and row.slenderness < MIN_SLENDERNESS]:
         yield (
             f"Wider than long: {', '.join(wide)}. No pin is made like this: use a stronger "
@@ -72,7 +76,7 @@ def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
 
 
 def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
-    """A row per pin."""
+    """Return a row per pin."""
     columns: list[Column[SizeRow]] = [
         *texts("Pin=pin Result=result"),
         read_only("FoS", lambda row: row.factor),

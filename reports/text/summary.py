@@ -1,4 +1,4 @@
-"""What the safety factors say, in a few short sentences."""
+"""Summary of the safety factors in a few short sentences."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MAX_LISTED_CASES = 4  # cases of a pin; of more, their number is given
 
 
 def summary(results: Results) -> str:
-    """How many pins are safe, which are not, and the rows without a maximum."""
+    """Return how many pins are safe, which are not, and the rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
     ways = (
@@ -25,7 +25,7 @@ def summary(results: Results) -> str:
 
 
 def _against_required(results: Results) -> str:
-    """Every pin by the worst of its checks."""
+    """Return the outcome of every pin by the worst of its checks."""
     required = results.required_safety_factor
     worst = list(worst_checks(results).values())
     good = SAFE if required is not None else BELOW_YIELD
@@ -42,7 +42,7 @@ def _against_required(results: Results) -> str:
 
 
 def _with_reasons(checks: list[JudgedCheck]) -> str:
-    """The pins with what their outcome is due to, equal reasons together."""
+    """Return the pins with the reasons for their outcome, equal reasons together."""
     together: dict[str, list[str]] = {}
     for check in checks:
         together.setdefault(_due_to(check), []).append(check.pin)
@@ -52,7 +52,7 @@ def _with_reasons(checks: list[JudgedCheck]) -> str:
 
 
 def _due_to(check: JudgedCheck) -> str:
-    """Nothing for the usual reason, a stress above what is permitted."""
+    """Return the reason; empty for the usual one, a stress above the permitted one."""
     if check.row is None:
         return check.check
     if check.outcome == NOT_DECIDED:
@@ -63,11 +63,11 @@ def _due_to(check: JudgedCheck) -> str:
 
 
 def _depending(results: Results) -> str:
-    """The rows of which a range that the study leaves open changes the outcome, both ways."""
+    """Return the rows whose outcome changes, in both directions, within a range of the study."""
     text = ""
     rows = [p for p in results.pins if outcome(p) == DEPENDS]
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
-        each = (
+        clauses = (
             f"{p.pin} ({p.case}), {but_words(p.depends_on, results.units, 'not')}"
             for p in rows[:MAX_LISTED_CASES]
         )
@@ -76,7 +76,7 @@ def _depending(results: Results) -> str:
             if len(rows) > MAX_LISTED_CASES
             else ""
         )
-        text = f"Safe as described: {'; '.join(each)}{more}."
+        text = f"Safe as described: {'; '.join(clauses)}{more}."
     for over in ("joint", "landing"):
         some = [
             (p.pin, p.case)
@@ -89,14 +89,14 @@ def _depending(results: Results) -> str:
 
 
 def _at_edges(results: Results) -> str:
-    """Where contact at the edges of lugs is found, which no factor counts."""
+    """Return the pins with contact at the edges of lugs, which no factor counts."""
     if not any(p.places and p.places.contact and p.places.contact.edges for p in results.pins):
         return ""
     return "Contact stress at lug edges is reported separately (contact_edges.csv)."
 
 
 def _without_range(results: Results) -> str:
-    """The pins that no range over the joint is known of, though what holds them is prescribed."""
+    """Return the pins without a range over the joint although their supports are prescribed."""
     pins = dict.fromkeys(
         p.pin
         for p in results.pins
@@ -122,11 +122,11 @@ def _negative(results: Results) -> str:
 
 
 def _listed(rows: Iterable[tuple[str, str]]) -> str:
-    """Pins with their cases in parentheses, of many their number; without any, the pin alone."""
+    """Return pins with their cases in parentheses (or their number); without any, the pin."""
     cases: dict[str, list[str]] = {}
     for pin, case in rows:
         cases.setdefault(pin, []).extend([case] if case else [])
-    return ", ".join(pin + _of_cases(found) for pin, found in cases.items())
+    return ", ".join(pin + _of_cases(names) for pin, names in cases.items())
 
 
 def _of_cases(cases: list[str]) -> str:

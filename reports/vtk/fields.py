@@ -40,10 +40,12 @@ Arrays = dict[str, NDArray[Any]]
 
 
 def point_data(field: Field, units: Units) -> Arrays:
-    """Arrays at the nodes under names with units: displacement (N, 3), stress (N, 6: XX, YY, ZZ,
-    XY, YZ, XZ, as ParaView names the components of a symmetric tensor), von Mises (N,), von Mises
-    envelope (N,; NaN inside), with a yield strength the factor of safety that follows from it, and
-    of a pin in lugs the mean pressure of each cell of contact and where it is pressed (0 or 1).
+    """Return arrays at the nodes under names with units.
+
+    They are displacement (N, 3), stress (N, 6: XX, YY, ZZ, XY, YZ, XZ, ParaView's components of a
+    symmetric tensor), von Mises (N,), von Mises envelope (N,; NaN inside), with a yield strength
+    the factor of safety, and for a pin in lugs the mean pressure of each cell of contact and
+    whether it is pressed (0 or 1).
     """
     stress = units.stress
     data: Arrays = {
@@ -70,15 +72,16 @@ def write_vtu(field: Field, path: Path, units: Units) -> None:
 
 
 def block(field: Field, units: Units) -> Block:
-    """What a VTU file has of a field."""
+    """Return the part of a field that a VTU file has."""
     # "TimeValue" is the name by which VTK knows a file's time.
     time: Data = {} if field.time is None else {"TimeValue": np.array([field.time])}
     return Block(field.points, field.cells, field.cell_type, point_data(field, units), whole=time)
 
 
 def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
-    """Write NAME.vtu, and NAME.vtm, which adds loads, bands, volume and local solids (NAME/*.vtu);
-    with stills NAME.pvd, the same along the motion.
+    """Write NAME.vtu, and NAME.vtm, which adds loads, bands, volume and local solids (NAME/*.vtu).
+
+    With stills, NAME.pvd has the same along the motion.
     """
     write_vtu(field, directory / f"{name}.vtu", units)
     if not field.loads:
@@ -107,7 +110,7 @@ def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
 
 
 def write_flow(flow: FlowField, path: Path, units: Units) -> None:
-    """Write how a pin flows at its limit load as a VTU file."""
+    """Write the plastic flow of a pin at its limit load as a VTU file."""
     data = {
         f"displacement [{units.length}]": flow.displacement,
         "equivalent plastic strain": flow.plastic_strain,
@@ -138,13 +141,13 @@ def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[flo
         pin, loads = f"pin_{i:03d}.vtu", f"loads_{i:03d}.vtu"
         write_block(Block(field.points, field.cells, field.cell_type, data), directory / pin)
         write_block(_loads(still.loads, units), directory / loads)
-        found = (("pin", pin), ("loads", loads), ("bands", "bands.vtu"))
-        parts += [(still.time, kind, file) for kind, file in found]
+        files = (("pin", pin), ("loads", loads), ("bands", "bands.vtu"))
+        parts += [(still.time, kind, file) for kind, file in files]
     return parts
 
 
 def _loads(loads: Sequence[BandLoad], units: Units) -> Block:
-    """A point at every band's middle with the force and moment that act there."""
+    """Return a point at every band's middle with the force and moment that act there."""
     return Block(
         np.array([load.middle for load in loads]),
         np.arange(len(loads))[:, None],
@@ -159,7 +162,7 @@ def _loads(loads: Sequence[BandLoad], units: Units) -> Block:
 
 
 def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
-    """A cylinder on every band, each cell with its name and load."""
+    """Return a cylinder on every band, each cell with its name and load."""
     angle = 2.0 * np.pi * np.arange(QUADS_AROUND_BAND) / QUADS_AROUND_BAND
     circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(QUADS_AROUND_BAND)], axis=1)
     points = [load.radius * circle + np.array([0.0, 0.0, z]) for load in loads for z in load.z]
@@ -167,21 +170,21 @@ def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
     k = (j + 1) % QUADS_AROUND_BAND
     ring = np.stack([j, k, k + QUADS_AROUND_BAND, j + QUADS_AROUND_BAND], axis=1)
     cells = [ring + 2 * QUADS_AROUND_BAND * i for i in range(len(loads))]
-    each = [load for load in loads for _ in range(QUADS_AROUND_BAND)]
+    cell_loads = [load for load in loads for _ in range(QUADS_AROUND_BAND)]
     return Block(
         np.concatenate(points),
         np.concatenate(cells),
         "quad",
         cell_data={
-            f"force [{units.force}]": np.array([load.force for load in each]),
-            "held": np.array([load.held for load in each], dtype=np.int8),
-            "connection": [load.connection for load in each],
+            f"force [{units.force}]": np.array([load.force for load in cell_loads]),
+            "held": np.array([load.held for load in cell_loads], dtype=np.int8),
+            "connection": [load.connection for load in cell_loads],
         },
     )
 
 
 def surface(field: Field) -> Field:
-    """The outside of a solid alone: the faces that only one tetrahedron has, and their nodes."""
+    """Return the outside of a solid: the faces that only one tetrahedron has, and their nodes."""
     if field.cell_type not in TETRAHEDRON_FACES:
         return field
     faces = np.concatenate(
@@ -195,7 +198,7 @@ def surface(field: Field) -> Field:
 
 
 def local_solids(field: Field) -> Field:
-    """The part of the surface that local solids about cuts have computed."""
+    """Return the part of the surface that local solids about cuts have computed."""
     z = field.points[field.cells, 2]
     near = 1e-9 * float(np.ptp(field.points[:, 2]))
     ends = [(z >= low - near).all(axis=1) & (z <= high + near).all(axis=1)
@@ -204,7 +207,7 @@ def local_solids(field: Field) -> Field:
 
 
 def _part(field: Field, cells: NDArray[np.int64], cell_type: str) -> Field:
-    """Some cells alone, and their nodes."""
+    """Return a field of some cells, and their nodes."""
     nodes, numbers = np.unique(cells, return_inverse=True)
 
     def own(values: Any) -> Any:

@@ -1,4 +1,4 @@
-"""A run's folder read back: what `view`, `compare` and `plots` show."""
+"""Reading a run's folder for `view`, `compare` and `plots`."""
 
 from __future__ import annotations
 
@@ -31,38 +31,43 @@ class Opened:
 
     @property
     def units(self) -> Units:
-        """Those of all its numbers."""
+        """The units of all its numbers."""
         names = ("length", "force", "stress", "time")
         return Units(*(self.content["units"][name] for name in names))
 
     def row(self, pin: str | None, case: str | None) -> dict[str, Any]:
-        """The row of that pin and case; of several the one with the most stress of its strength.
+        """Return the row of a pin and case; of several the one with the least safety factor.
 
-        Raises: ValueError saying which there are.
+        Raises: ValueError, naming the existing rows.
         """
         rows = self.content["pins"]
-        found = [r for r in rows if r["pin"] == (pin or r["pin"])]
-        found = [r for r in found if r["case"] == (case or r["case"])]
-        if not found:
-            there = ", ".join(f"{r['pin']} in {r['case']}" for r in rows) or "none"
+        matches = [r for r in rows if r["pin"] == (pin or r["pin"])]
+        matches = [r for r in matches if r["case"] == (case or r["case"])]
+        if not matches:
+            known_rows = ", ".join(f"{r['pin']} in {r['case']}" for r in rows) or "none"
             wanted = " in ".join(name for name in (pin, case) if name)
-            raise ValueError(f"no {wanted or 'pin'}; there are {there}")
+            raise ValueError(f"no {wanted or 'pin'}; there are {known_rows}")
         # Without a yield strength the most stressed.
-        return min(found, key=lambda r: (r["safety_factor"] or np.inf, -(r["max_von_mises"] or 0)))
+        return min(
+            matches, key=lambda r: (r["safety_factor"] or np.inf, -(r["max_von_mises"] or 0))
+        )
 
     def title(self, row: dict[str, Any]) -> str:
-        """Pin, case, and the factor with its verdict."""
+        """Return the pin, the case, and the factor with its verdict."""
         text = f"pin {row['pin']}, {row['case']}"
         if row["safety_factor"] is not None:
             text += f": factor of safety {engineering(row['safety_factor'])}"
         return f"{text} ({verdict_words(row['verdict'], row['yields'])})"
 
     def only(self, row: dict[str, Any]) -> Opened:
-        """The same with one row, for a process that draws it."""
+        """Return the folder with one row only, for a process that draws it."""
         return Opened(self.directory, {"units": self.content["units"], "pins": [row]})
 
     def field(self, row: dict[str, Any]) -> Field:
-        """The field of a row. Raises: FileNotFoundError when none was written, Damaged, OSError."""
+        """Return the field of a row.
+
+        Raises: FileNotFoundError when none was written, Damaged, OSError.
+        """
         name = f"vtk/{row['pin']}_{row['case']}.vtu"
         try:
             content = read_inside(self.directory, name, MAX_FIELD_SIZE)
@@ -91,7 +96,7 @@ class Opened:
 
 
 def _outside(row: dict[str, Any]) -> tuple[float, tuple[float, float, float]] | None:
-    """What Field.outside has of a row."""
+    """Return the value of Field.outside for a row."""
     read = row["surface"] if row.get("contact") else row
     largest, place = read["max_von_mises"], read["location"]
     if not (row["singular_at"] or row.get("contact")) or None in (largest, place):
@@ -100,16 +105,23 @@ def _outside(row: dict[str, Any]) -> tuple[float, tuple[float, float, float]] | 
 
 
 def _data(mesh: Vtu, key: str, width: int, name: str, gaps: bool = False) -> Floats:
-    """Numbers at the points. gaps: whether some may have none. Raises: Damaged."""
-    found = mesh.data.get(key)
-    if found is None or found.size != width * len(mesh.points):
+    """Return the numbers at the points.
+
+    gaps: whether some may be missing.
+    Raises: Damaged.
+    """
+    values = mesh.data.get(key)
+    if values is None or values.size != width * len(mesh.points):
         raise Damaged(f"{name} is damaged: it has no {width} numbers {key!r} at each point")
-    known = found[~np.isnan(found)] if gaps else found
+    known = values[~np.isnan(values)] if gaps else values
     if not np.isfinite(known).all():
         raise Damaged(f"{name} is damaged: {key!r} is no number at some point")
-    return found
+    return values
 
 
 def open_results(directory: Path) -> Opened:
-    """Read a folder that a run wrote. Raises: FileNotFoundError, Damaged, OSError."""
+    """Read a folder that a run wrote.
+
+    Raises: FileNotFoundError, Damaged, OSError.
+    """
     return Opened(directory, read_results(directory))

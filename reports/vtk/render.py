@@ -41,7 +41,7 @@ def render_pin(
 
 
 def show_pin(field: Field, units: Units, title: str) -> None:
-    """The same in a window, until it is closed; needs a display."""
+    """Show the picture of a pin in a window, until it is closed; needs a display."""
     import pyvista
 
     plotter: Any = pyvista.Plotter(window_size=list(WINDOW_SIZE), title=title)
@@ -82,7 +82,7 @@ def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | Non
 
 
 def _power(largest: float) -> int:
-    """The power of ten, in threes, that brings a large maximum under a million."""
+    """Return the power of ten, a multiple of three, that brings a large maximum below a million."""
     return 0 if not 1e6 <= largest < np.inf else 3 * (int(np.floor(np.log10(largest))) // 3)
 
 

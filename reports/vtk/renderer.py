@@ -1,4 +1,4 @@
-"""Whether VTK can draw off-screen here, tried in another process: where it cannot, it crashes."""
+"""Test of off-screen drawing by VTK, in another process, since VTK crashes where it cannot."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ print(plotter.render_window.GetClassName())
 
 
 def renderer_problem() -> str | None:
-    """Why no pictures can be drawn, or None where they can.
+    """Return the reason why no pictures can be drawn, or None where they can.
 
     Keeps the renderer that works in this process's environment, so call it before drawing.
     """
@@ -67,5 +67,5 @@ def _try(window: str) -> str | None:
     if done.returncode:
         return (done.stderr.strip().splitlines() or ["fails"])[-1]
     # VTK falls back, with warnings, from a window it cannot make.
-    found = done.stdout.split()[-1:]
-    return None if not window or found == [window] else "cannot be made"
+    last_words = done.stdout.split()[-1:]
+    return None if not window or last_words == [window] else "cannot be made"

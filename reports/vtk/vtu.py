@@ -1,5 +1,6 @@
-"""VTU files read back as reports.vtk.writer writes them, and no others: VTK's own reader trusts
-them, and crashes on what points beyond its end.
+"""Reader of VTU files as reports.vtk.writer writes them, and of no others.
+
+VTK's own reader trusts files, and crashes on what points beyond their end.
 """
 
 from __future__ import annotations
@@ -44,7 +45,10 @@ VTU_SECTIONS = "Points", "Cells", "PointData"
 
 @dataclass(frozen=True)
 class Vtu:
-    """points (N, 3), cells (M, k) of one type with nodes below N, data (N,) or (N, c) by name."""
+    """A mesh with cells of one type and data at its points.
+
+    points: (N, 3). cells: (M, k), indices of points. data: (N,) or (N, c) by name.
+    """
 
     points: Floats
     cells: NDArray[np.int64]
@@ -53,13 +57,16 @@ class Vtu:
 
 
 def read_vtu(content: bytes, name: str) -> Vtu:
-    """The mesh and the data at its points. Raises: Damaged."""
+    """Return the mesh and the data at its points.
+
+    Raises: Damaged.
+    """
     try:
-        found = _Reader().read(content)
-        points, cells = found.count("NumberOfPoints"), found.count("NumberOfCells")
-        placed = found.array("Points", None, points)
-        data = {key: found.array("PointData", key, points) for key in found.names("PointData")}
-        cell_type, nodes = _cells(found, cells, points)
+        reader = _Reader().read(content)
+        points, cells = reader.count("NumberOfPoints"), reader.count("NumberOfCells")
+        placed = reader.array("Points", None, points)
+        data = {key: reader.array("PointData", key, points) for key in reader.names("PointData")}
+        cell_type, nodes = _cells(reader, cells, points)
     except (expat.ExpatError, ValueError, zlib.error) as error:
         raise Damaged(f"{name} is damaged: {error}") from None
     if placed.shape != (points, 3) or not points:
@@ -67,16 +74,16 @@ def read_vtu(content: bytes, name: str) -> Vtu:
     return Vtu(placed.astype(float), nodes, cell_type, data)
 
 
-def _cells(found: _Reader, count: int, points: int) -> tuple[str, NDArray[np.int64]]:
-    kinds = found.array("Cells", "types", count)
+def _cells(reader: _Reader, count: int, points: int) -> tuple[str, NDArray[np.int64]]:
+    kinds = reader.array("Cells", "types", count)
     names = [name for name, number in VTK_CELL_TYPES.items() if count and (kinds == number).all()]
     if not names:
         raise ValueError("its cells are not of one type that pinstress writes")
     width = NODES_PER_CELL[names[0]]
-    ends = found.array("Cells", "offsets", count)
+    ends = reader.array("Cells", "offsets", count)
     if not np.array_equal(ends, width * np.arange(1, count + 1)):
         raise ValueError(f"its cells have not {width} nodes each")
-    nodes = found.array("Cells", "connectivity", count * width).astype(np.int64)
+    nodes = reader.array("Cells", "connectivity", count * width).astype(np.int64)
     if nodes.min() < 0 or nodes.max() >= points:
         worst = nodes.min() if nodes.min() < 0 else nodes.max()
         raise ValueError(f"a cell has the node {worst:,} of {points:,}, counted from 0")
@@ -84,7 +91,7 @@ def _cells(found: _Reader, count: int, points: int) -> tuple[str, NDArray[np.int
 
 
 class _Reader:
-    """The elements of the file that are used: attributes of the piece, arrays with their text."""
+    """The parts of the file that are used: attributes of the piece, arrays with their text."""
 
     def __init__(self) -> None:
         self._piece: dict[str, str] | None = None
@@ -116,7 +123,7 @@ class _Reader:
         return int(text)
 
     def array(self, part: str, name: str | None, count: int) -> NDArray[Any]:
-        """Of that name, (count,) or (count, components)."""
+        """Return the array of a name, (count,) or (count, components)."""
         for attributes, texts in self._arrays[part]:
             if name is None or attributes.get("Name") == name:
                 return _decoded(attributes, "".join(texts), count)
@@ -160,7 +167,10 @@ def _decoded(attributes: Mapping[str, str], text: str, count: int) -> NDArray[An
 
 
 def _unpacked(text: str, size: int, shown: str) -> bytes:
-    """Blocks that zlib compressed, after their sizes: in base64 each part by itself."""
+    """Return the blocks that zlib compressed.
+
+    The sizes precede them; in base64 each part is encoded separately.
+    """
     most = f"array {shown!r} is not {size:,} bytes long"
     blocks, block, last = _integers(text[: _coded(3)], 3, shown)
     whole = blocks if last == 0 else blocks - 1
@@ -181,7 +191,7 @@ def _unpacked(text: str, size: int, shown: str) -> bytes:
 
 
 def _coded(numbers: int) -> int:
-    """The characters of so many integers of a header."""
+    """Return the number of characters of a header of so many integers."""
     return 4 * math.ceil(numbers * HEADER_TYPE.itemsize / 3)
 
 

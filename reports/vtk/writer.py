@@ -1,8 +1,4 @@
-"""Meshes with data as VTU files, by VTK's own writer, and XML files that put several together.
-
-Numbers are written with seven digits (float32), compressed by zlib at its first level: half the
-size and a quarter of the time of every digit at the usual level.
-"""
+"""Writer of meshes with data as VTU files, by VTK's own writer, and of XML files over them."""
 
 from __future__ import annotations
 
@@ -26,7 +22,10 @@ Data = Mapping[str, "NDArray[Any] | Sequence[str]"]  # numbers, or texts
 
 @dataclass(frozen=True)
 class Block:
-    """points (N, 3), cells (M, k) of one type, data by name: at points, in cells, of the whole."""
+    """A mesh with cells of one type and data by name.
+
+    points: (N, 3). cells: (M, k). whole: data of the whole block.
+    """
 
     points: Floats
     cells: NDArray[np.int64]
@@ -37,7 +36,10 @@ class Block:
 
 
 def write_block(block: Block, path: Path) -> None:
-    """Write a VTU file. Raises: OSError."""
+    """Write a VTU file.
+
+    Raises: OSError.
+    """
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     writer = vtkXMLUnstructuredGridWriter()
@@ -52,27 +54,27 @@ def write_block(block: Block, path: Path) -> None:
 
 
 def grid(block: Block) -> Any:
-    """The same as a vtkUnstructuredGrid."""
+    """Return the block as a vtkUnstructuredGrid."""
     from vtkmodules.util.numpy_support import numpy_to_vtk
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
-    made, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
+    vtk_grid, points, cells = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
     points.SetData(numpy_to_vtk(_numbers(block.points), deep=True))
-    made.SetPoints(points)
+    vtk_grid.SetPoints(points)
     count, width = block.cells.shape
     ends = np.arange(0, count * width + 1, width, dtype=np.int32)
     nodes = np.ascontiguousarray(block.cells, dtype=np.int32).ravel()
     cells.SetData(numpy_to_vtk(ends, deep=True), numpy_to_vtk(nodes, deep=True))
-    made.SetCells(VTK_CELL_TYPES[block.cell_type], cells)
+    vtk_grid.SetCells(VTK_CELL_TYPES[block.cell_type], cells)
     for place, data in (
-        (made.GetPointData(), block.point_data),
-        (made.GetCellData(), block.cell_data),
-        (made.GetFieldData(), block.whole),
+        (vtk_grid.GetPointData(), block.point_data),
+        (vtk_grid.GetCellData(), block.cell_data),
+        (vtk_grid.GetFieldData(), block.whole),
     ):
         for name, values in data.items():
             place.AddArray(_array(name, values, seven=data is not block.whole))
-    return made
+    return vtk_grid
 
 
 def _array(name: str, values: NDArray[Any] | Sequence[str], seven: bool) -> Any:
@@ -95,7 +97,7 @@ def _numbers(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
-    """Write a VTM file: blocks by name from files in the same folder."""
+    """Write a VTM file of blocks, each with its name and its file in the same folder."""
     lines = [
         f"    <DataSet index={quoteattr(str(i))} name={quoteattr(name)} file={quoteattr(file)}/>"
         for i, (name, file) in enumerate(blocks.items())
@@ -104,7 +106,7 @@ def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
 
 
 def write_series(parts: Sequence[tuple[float, str, str]], path: Path) -> None:
-    """Write a PVD file: time, name and file of every part, files in the same folder."""
+    """Write a PVD file of parts, each with its time, name and file in the same folder."""
     names = list(dict.fromkeys(name for _, name, _ in parts))
     lines = [
         f"    <DataSet timestep={quoteattr(repr(time))} part={quoteattr(str(names.index(name)))} "

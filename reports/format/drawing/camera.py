@@ -19,7 +19,7 @@ VIEW_AXIAL_LEAN = 0.55  # towards the nearer end
 
 @dataclass(frozen=True)
 class View:
-    """Perspective from `eye` to `centre` with `up`, each (3,)."""
+    """A perspective view from `eye` to `centre` with the direction `up`, each (3,)."""
 
     eye: Floats
     centre: Floats
@@ -27,7 +27,7 @@ class View:
 
     @staticmethod
     def of(points: Floats, peak: Floats) -> View:
-        """From the side of the maximum and slightly from one end; the axis is horizontal."""
+        """Return the view from the side of the maximum, slightly from one end, the axis level."""
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + VIEW_TURN_ANGLE
         end = _seen_from(points, peak)
@@ -40,11 +40,11 @@ class View:
 
     @property
     def camera(self) -> list[Point]:
-        """Position, focal point and up, as VTK takes them."""
+        """Return the position, the focal point and the upward direction, in VTK's order."""
         return [_point(self.eye), _point(self.centre), _point(self.up)]
 
     def above(self, points: Floats, place: Floats) -> Floats:
-        """A point (3,) above `place` in the picture, clear of the pin."""
+        """Return a point (3,) above `place` in the picture, clear of the pin."""
         heights = (points - self.centre) @ self.up
         height = float((place - self.centre) @ self.up)
         visible = 2.0 * np.linalg.norm(self.eye - self.centre) * np.tan(np.radians(VIEW_ANGLE / 2))
@@ -53,8 +53,9 @@ class View:
 
 
 def _seen_from(points: Floats, peak: Floats) -> float:
-    """The end (1 or -1 along z) from which no head hides the maximum: the thinner end, or else the
-    nearer one.
+    """Return the end (1 or -1 along z) from which no head hides the maximum.
+
+    It is the thinner end, otherwise the nearer one.
     """
     r, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     little = 1e-6 * float(np.ptp(z))
@@ -66,7 +67,10 @@ def _seen_from(points: Floats, peak: Floats) -> float:
 
 
 def _distance(seen: Floats) -> float:
-    """Distance of the eye at which all points (N, 3: right, up, towards it) are in the picture."""
+    """Return the distance of the eye at which all points are in the picture.
+
+    seen: (N, 3), coordinates to the right, up and towards the eye.
+    """
     half = np.tan(np.radians(VIEW_ANGLE / 2))
     right = seen[:, 2] + np.abs(seen[:, 0]) / (half * ASPECT_RATIO * FILLED_WIDTH)
     up = seen[:, 2] + np.abs(seen[:, 1]) / (half * FILLED_HEIGHT)

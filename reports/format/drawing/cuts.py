@@ -1,6 +1,4 @@
-"""Cuts on the drawing of a pin: what they take from its silhouette, their edges, hidden ones
-dashed, and their sizes in words.
-"""
+"""Cuts on the drawing of a pin: silhouette, edges (hidden ones dashed), and sizes in words."""
 
 from __future__ import annotations
 
@@ -12,7 +10,10 @@ HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
 
 
 def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
-    """On a pin whose start is at x = left, and its axis at y = axis, in pixels."""
+    """Return the SVG of a cut on a pin that starts at x = left, with its axis at y = axis.
+
+    All lengths of the drawing are in pixels.
+    """
 
     def at(z: float, x: float) -> tuple[float, float]:
         return left + scale * z, axis - scale * x
@@ -34,20 +35,20 @@ def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
 
 
 def words(cut: CutShape) -> str:
-    """Sizes and place, in the report's unit of length."""
+    """Return the sizes and the place of a cut as text, in the report's unit of length."""
     kind, size, (low, high) = cut.name.split()[0], short(cut.size), cut.z
     deep = "through" if cut.depth is None else f"{short(cut.depth)} deep"
     between = f"z = {short(low)} to {short(high)}"
     where = f" at {short(cut.angle % 360.0)}°"
     match kind:
         case "hole":
-            found = f"⌀{size}, {deep}, z = {short(low)},"
+            dimensions = f"⌀{size}, {deep}, z = {short(low)},"
         case "flat":
-            found = f"{size} from the axis, {between},"
+            dimensions = f"{size} from the axis, {between},"
         case "slot":
-            found = f"{size} wide, {deep}, {between},"
+            dimensions = f"{size} wide, {deep}, {between},"
         case _:
             aside = f"{short(cut.offset)} from the axis" if cut.offset else "on the axis"
-            found = f"⌀{size}, {deep}, {between}, {aside}"
+            dimensions = f"⌀{size}, {deep}, {between}, {aside}"
             where = where if cut.offset else ""
-    return f"{cut.name}: {found}{where}"
+    return f"{cut.name}: {dimensions}{where}"

@@ -16,7 +16,10 @@ def line(x1: float, y1: float, x2: float, y2: float, more: str = "", ink: str = 
 
 
 def text(x: float, y: float, words: str, halo: bool = False) -> str:
-    """Text centred at x; halo: on a white rim, so that it is read over lines."""
+    """Return an SVG text centred at x.
+
+    halo: whether it has a white rim, so that it is legible over lines.
+    """
     behind = ' stroke="#fff" stroke-width="3" paint-order="stroke"' if halo else ""
     return (
         f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle" fill="{INK_COLOUR}"{behind}>'
@@ -25,5 +28,5 @@ def text(x: float, y: float, words: str, halo: bool = False) -> str:
 
 
 def wide(words: str) -> float:
-    """About how wide a text is, with a little room."""
+    """Return the approximate width of a text, with some margin."""
     return MEAN_LETTER_WIDTH * len(words) + 8.0

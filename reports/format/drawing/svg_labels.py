@@ -1,4 +1,4 @@
-"""Where to write the names of points, so that they hide neither lines nor each other."""
+"""Placement of the names of points, so that they hide neither lines nor each other."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ POINT_COST, LABEL_COST, LINE_COST, DISTANCE_COST, OUTSIDE_COST = 6.0, 10.0, 1.0,
 def label_offsets(
     points: Floats, sizes: Floats, lines: Floats, gap: float, picture: tuple[float, float]
 ) -> Floats:
-    """Offsets (J, 2) of the centres of labels from their points, in the unit of the picture, y
-    downwards; one offset per label for all frames.
+    """Return the offsets (J, 2) of the centres of labels from their points, one for all frames.
 
-    points: (F, J, 2). sizes: (J, 2) of the labels. lines: (F, S, 2, 2) their ends. gap: between
-    a point and its label. picture: its width and height, beyond which nothing is seen.
+    The unit is that of the picture, y downwards.
+    points: (F, J, 2). sizes: (J, 2) of the labels. lines: (F, S, 2, 2), their ends.
+    gap: between a point and its label. picture: its width and height, outside which nothing is
+    visible.
     """
     along = np.linspace(0.0, 1.0, SAMPLES_PER_LINE)[:, None]
     start, end = lines[:, :, None, 0], lines[:, :, None, 1]
@@ -51,7 +52,7 @@ def label_offsets(
 
 
 def _inside(points: Floats, centre: Floats, half: Floats) -> float:
-    """How many of the points (F, N, 2) lie in the box, per frame."""
+    """Return the number of points (F, N, 2) that lie in the box, per frame."""
     return float(np.all(np.abs(points - centre[:, None]) < half, axis=2).sum()) / len(points)
 
 
@@ -60,5 +61,5 @@ def _overlaps(centre: Floats, half: Floats, other: Floats, other_half: Floats) -
 
 
 def _outside(centre: Floats, half: Floats, picture: Floats) -> float:
-    """In which part of the frames the box leaves the picture."""
+    """Return the fraction of the frames in which the box leaves the picture."""
     return float(np.mean(np.any((centre < half) | (centre > picture - half), axis=1)))

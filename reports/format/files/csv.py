@@ -13,7 +13,7 @@ Cell = str | bool | int | float | None
 
 
 def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write rows under column names; None and numbers that are none become empty cells."""
+    """Write rows under column names; None and non-finite numbers become empty cells."""
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(columns)
@@ -24,7 +24,7 @@ def write_csv(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]
 
 
 def cell(value: Cell) -> str:
-    """A value as the text of a cell."""
+    """Return a value as the text of a cell."""
     if isinstance(value, float):  # most are: first, and without numpy
         return repr(float(value)) if math.isfinite(value) else ""
     if value is None:
@@ -37,6 +37,6 @@ def cell(value: Cell) -> str:
 
 
 def harmless(text: str) -> str:
-    """Text which a spreadsheet shows and does not run."""
+    """Return a text that a spreadsheet shows and does not execute."""
     # Spreadsheets skip leading blanks before they look for a formula.
     return "'" + text if text.lstrip()[:1] in tuple("=+-@") or text[:1] in tuple("\t\r\n") else text

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 
 def table(columns: Sequence[str], rows: Sequence[Sequence[str]], numeric: Sequence[bool]) -> str:
-    """A table whose columns also line up as plain text; numbers to the right, names escaped."""
+    """Return a table that lines up as plain text, too; numbers to the right, names escaped."""
     cells = [list(columns), *([escaped(text) for text in row] for row in rows)]
     widths = [max(3, *(len(row[i]) for row in cells)) for i in range(len(columns))]
     rule = [
@@ -23,7 +23,7 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[str]], numeric: Sequen
 
 
 def escaped(text: str) -> str:
-    """Text from the study, escaped and in one line."""
+    """Return a text from the study, escaped and in one line."""
     text = " ".join(text.split())
     for sign in "\\`*_[]|":
         text = text.replace(sign, "\\" + sign)

@@ -12,16 +12,17 @@ ROWS_PER_GROUP = 100_000  # rows of a group
 
 
 def write_parquet(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write rows under column names, a group of rows at a time. What the first group has decides
-    whether a column is of texts, truth values or numbers; None stays empty.
+    """Write rows under column names, a group of rows at a time; None stays empty.
+
+    The first group decides whether a column has texts, truth values or numbers.
     """
     import pyarrow as pa
     from pyarrow import parquet
 
     left = iter(rows)
     first = _group(left)
-    found = [pa.array(column, from_pandas=True).type for column in zip(*first, strict=True)]
-    kinds = [pa.float64() if pa.types.is_null(kind) else kind for kind in found]
+    types = [pa.array(column, from_pandas=True).type for column in zip(*first, strict=True)]
+    kinds = [pa.float64() if pa.types.is_null(kind) else kind for kind in types]
     schema = pa.schema(list(zip(columns, kinds, strict=True)))
     with parquet.ParquetWriter(path, schema) as writer:
         for group in chain([first], iter(lambda: _group(left), [])):

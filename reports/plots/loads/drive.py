@@ -11,7 +11,7 @@ from reports.plots.spec import Abscissa, Panel, Plot, clipped, curves
 
 
 def drive_plot(table: DriveTable, units: Units) -> Plot:
-    """The drive's position, its force or torque, its power, and work and energies, over time."""
+    """Return the drive's position, force or torque, power, work and energies over time."""
     assert table.time is not None
     energy = f"{units.force}·{units.length}"
     rotary = table.kind == "rotary"

@@ -20,7 +20,7 @@ ENERGY_NAMES = {
 
 
 def drop_plots(d: DropRecord, units: Units) -> list[Plot]:
-    """Over time, and over stroke if there is a strut."""
+    """Return the plots over time, and over stroke if there is a strut."""
     forces = {"vertical": d.vertical, "along the strut": d.strut, "drag on the leg": d.leg_drag}
     lengths = {"stroke": d.stroke, "tyre": d.deflection}
     energies = {

@@ -31,7 +31,7 @@ QUANTITY_GROUPS = {
 
 
 def leg_plots(table: LegTable, units: Units) -> Iterator[Plot]:
-    """One plot per group, components in the aircraft's axes against time."""
+    """Yield one plot per group, with components in the aircraft's axes against time."""
     x = Abscissa(f"time [{units.time}]", table.time)
     for group, (what, members) in QUANTITY_GROUPS.items():
         panels = [_vector(table, name, title) for name, title in members.items()]

@@ -21,7 +21,7 @@ POSITION_TOLERANCE = 1e-6  # of the linkage's size: positions nearer than this a
 
 
 def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
-    """Positions from the start (solid) to the end (dashed) with the paths of the joints."""
+    """Return the positions from start (solid) to end (dashed) with the paths of the joints."""
     frame = _Frame(motion)
     moving = motion.time is not None
     instants = _instants(motion, frame.size)
@@ -50,7 +50,7 @@ def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
 
 
 class _Frame:
-    """What the picture shows, at one scale in both directions."""
+    """The extent of the picture, with one scale in both directions."""
 
     def __init__(self, motion: LinkageMotion) -> None:
         parts = [motion.joint_position, *motion.slides.values(), *_around(motion)]
@@ -71,19 +71,19 @@ class _Frame:
         }  # fmt: skip
 
     def pixels(self, points: Floats) -> Floats:
-        """(.., 2) of points (.., 2), y downwards."""
+        """Return the pixels (.., 2) of points (.., 2), y downwards."""
         x, y = points[..., 0] - self.low[0], self.high[1] - points[..., 1]
         return np.asarray(self.scale * np.stack([x, y], axis=-1))
 
 
 def _around(motion: LinkageMotion) -> list[Floats]:
-    """Points that must be seen of pitch circles and lines."""
+    """Return the points of pitch circles and lines that must be visible."""
     box = np.array([[-1.0, -1.0], [1.0, 1.0]])
     return [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in motion.pitch]
 
 
 def _instants(motion: LinkageMotion, size: float) -> list[int]:
-    """The first and, where it differs, the last."""
+    """Return the first instant and, where it differs, the last."""
     points = motion.joint_position
     moved = float(np.abs(points[-1] - points[0]).max())
     return [0] if motion.time is None or moved < POSITION_TOLERANCE * size else [0, len(points) - 1]
@@ -106,7 +106,7 @@ def _keys(motion: LinkageMotion, instants: list[int], units: Units) -> list[str]
 
 
 def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
-    """Outlines of bodies and lines of sliders at an instant, point by point."""
+    """Return the outlines of bodies and lines of sliders at an instant, point by point."""
     at = dict(zip(motion.joints, motion.joint_position[k], strict=True))
     shapes = [
         [at[j] for j in ((*joints, joints[0]) if len(joints) > 2 else joints)]
@@ -121,7 +121,7 @@ def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
 
 
 def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
-    """A rack's line; of a gear the radius that turns with it and the circle from there."""
+    """Return the line of a rack, or a gear's circle with a radius that turns with it."""
     if not curve.round:
         return list(curve.ends[k])
     centre, mark = curve.ends[k]
@@ -160,7 +160,7 @@ def _lines(data: list[Spec], style: str, key: list[str] | None) -> list[Spec]:
 
 
 def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
-    """Rings at joints, with triangles at those that stand still."""
+    """Return rings at joints, with triangles at the fixed ones."""
     layers = []
     for still, shape, size in ((True, "triangle-up", 170), (False, "circle", 34)):
         shown = [
@@ -176,7 +176,7 @@ def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
 
 
 def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Spec]:
-    """Names of joints at the first position drawn and of bodies, where they hide least."""
+    """Return the names of bodies, and of joints at the first position, where they hide least."""
     at = dict(zip(motion.joints, motion.joint_position[0], strict=True))
     bodies = [
         (clipped(body), np.mean([at[j] for j in joints], axis=0))

@@ -18,7 +18,7 @@ MAX_BODIES_PER_PLOT = len(SERIES_COLOURS)  # bodies in one plot
 
 
 def motion_plots(motion: LinkageMotion, units: Units) -> Iterator[Plot]:
-    """All plots against time; none for a static linkage."""
+    """Yield all plots against time; none for a static linkage."""
     if motion.time is None:
         return
     time = Abscissa(f"time [{units.time}]", motion.time)

@@ -9,7 +9,7 @@ from reports.plots.spec import Abscissa, Panel, Plot, Spec, curves, points
 
 
 def motion_plot(check: MotionCheck, units: Units) -> Plot:
-    """A joint's speed and acceleration with their closed form and published points."""
+    """Return a joint's speed and acceleration with their closed form and published points."""
     speed = f"{units.length}/{units.time}"
     panels = [
         Panel(heading, {"linkage": ours, "closed form": exact}, over=_published(check, column))

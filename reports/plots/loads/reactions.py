@@ -28,7 +28,7 @@ NO_PIN_NAME = "no-pin"  # connections that bear on no pin of the study
 def reaction_plot(
     table: ReactionTable, pin: str, units: Units, governs: float | None = None
 ) -> Plot:
-    """Magnitudes and components of the forces of one pin's connections along a motion.
+    """Return magnitudes and components of the forces of one pin's connections along a motion.
 
     governs: where on that axis the pin's stress is largest.
     """
@@ -58,7 +58,7 @@ def reaction_plot(
 
 
 def along(table: ReactionTable, units: Units) -> Abscissa:
-    """The abscissa of a motion's plots: drive position, or time if there is none."""
+    """Return the abscissa of a motion's plots: drive position, or time if there is none."""
     if table.position is not None:
         unit = table.position_unit or units.length
         return Abscissa(f"drive position [{unit}]", table.position)
@@ -93,7 +93,7 @@ def _peak(peak: PeakReaction, units: Units) -> str:
 def _components_that_act(
     table: ReactionTable, members: list[int], units: Units
 ) -> dict[str, Floats]:
-    """Components (T, members) by heading, without those that are zero to round-off."""
+    """Return the components (T, members) by heading, without those that are zero to round-off."""
     shown = {}
     for letter, all_values, unit in (
         ("F", table.forces, units.force),
@@ -108,7 +108,7 @@ def _components_that_act(
 
 
 def bars(table: ReactionTable, units: Units) -> Plot:
-    """One bar per connection with its magnitude, and the published value."""
+    """Return one bar per connection with its magnitude, and the published value."""
     values = [peak.force for peak in table.largest]
     known = [v for v in (*values, *table.published.values()) if v > 0.0]
     log = bool(known) and max(known) / min(known) > LOG_SCALE_RATIO

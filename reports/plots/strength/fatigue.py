@@ -1,4 +1,4 @@
-"""Plots of fatigue: the stress at a pin's worst point, and how often which amplitude occurs."""
+"""Plots of fatigue: the stress at a pin's worst point, and the frequency of its amplitudes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from reports.plots.spec import NUMBER_FORMAT, Abscissa, Panel, Plot, clipped, cu
 
 
 def history_plot(history: PointHistory, units: Units) -> Plot:
-    """Signed and plain von Mises stress at a point, case by case with zero load between them, over
-    the instants.
+    """Return signed and plain von Mises stress at a point over the instants.
+
+    The cases follow each other with zero load between them.
     """
     signed, plain = (_course([getattr(c, name) for c in history.cases]) for name in STRESS_COLUMNS)
     title = f"Pin {clipped(history.pin)}, point {history.point}: stress over the cases"
@@ -37,7 +38,7 @@ def _course(cases: list[Floats]) -> Floats:
 
 
 def collective_plot(point: PointFatigue, unit: str, units: Units) -> Plot:
-    """How often amplitudes at a point are reached per unit, cumulated from the largest."""
+    """Return how often amplitudes at a point are reached per unit, cumulated from the largest."""
     reached = np.cumsum(point.counts)
     steps = [{"x": float(n), "y": float(a)} for a, n in zip(point.amplitudes, reached, strict=True)]
     title = f"Pin {clipped(point.pin)}, point {point.point}: cumulative spectrum per {unit}"

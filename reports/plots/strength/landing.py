@@ -13,8 +13,9 @@ from reports.plots.spec import Abscissa, Panel, Plot, clipped, curves, level
 def landing_plot(
     case: str, members: list[LandingRange], required: float | None, units: Units
 ) -> Plot | None:
-    """Factor against impulse time for the pulse of the case: a panel per velocity change, a curve
-    per pin, logarithmic. None where no pin has a factor.
+    """Return the factor against the impulse time for the pulse of the case; None without factors.
+
+    There is a panel per velocity change and a curve per pin; the axes are logarithmic.
     """
     known = {_label(m): (m, m.safety_factor) for m in members if m.safety_factor is not None}
     if not known:
@@ -26,8 +27,8 @@ def landing_plot(
     for speed in speeds if len(speeds) <= 2 else [speeds[0], speeds[-1]]:
         shown: dict[str, Floats] = {}
         for name, (m, factor) in known.items():
-            own = np.array([pulse == m.nominal_pulse for pulse in m.pulses])
-            here = np.flatnonzero(np.isclose(m.velocity_change, speed) & own)
+            nominal_pulse = np.array([pulse == m.nominal_pulse for pulse in m.pulses])
+            here = np.flatnonzero(np.isclose(m.velocity_change, speed) & nominal_pulse)
             rank = here[np.argsort(m.impulse_time[here])]
             x, shown[name] = m.impulse_time[rank], factor[rank]
         heading = f"factor of safety, velocity change {short(speed)} {units.length}/{units.time}"
@@ -42,7 +43,7 @@ def landing_plot(
 
 
 def _label(m: LandingRange) -> str:
-    """The pin, with its verdict unless it is converged."""
+    """Return the name of the pin, with its verdict unless it is converged."""
     name = clipped(m.pin)
     return f"pin {name}" if m.verdict == "converged" else f"pin {name}, {m.verdict}"
 

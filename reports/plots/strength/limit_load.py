@@ -1,4 +1,4 @@
-"""Plots of the load factor against the displacement of a pin that flows."""
+"""Plots of the load factor against the displacement of a yielding pin."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reports.plots.spec import Abscissa, Panel, Plot, curves, level
 
 
 def limit_plot(pin: PinResult, units: Units) -> Plot | None:
-    """None where no solid was loaded past yield."""
+    """Return the load factor against displacement; None where no solid was loaded past yield."""
     limit = pin.limit_load
     if limit is None or limit.curve is None or limit.upper is None:
         return None

@@ -16,7 +16,7 @@ HEADROOM_FACTOR = 1.25  # over the beam's peak; higher values are cut off
 
 
 def beam_plots(check: BeamCheck, units: Units) -> Iterator[Plot]:
-    """Shear and moment diagrams, and the axial stress of beam and solid along the pin."""
+    """Yield shear and moment diagrams, and the axial stress of beam and solid along the pin."""
     z = Abscissa(f"z from the root [{units.length}]", check.z)
     force = f"{engineering(check.force)} {units.force}"
     title = f"Pin {check.pin}, {check.case}: cantilever under {force}"

@@ -25,7 +25,7 @@ LABEL_HEADROOM_FACTOR = 1.18  # above the largest value, for names and labels
 
 
 def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
-    """Of one pin in one case, at the governing instant; the lugs are shaded."""
+    """Return the plot of one pin in one case at the governing instant; the lugs are shaded."""
     force = f"load per length [{units.force}/{units.length}]"
     z = [z for z, _ in joint.bending_moments]
     title = f"Pin {clipped(pin)}, {clipped(case)}: load from the lugs"
@@ -60,7 +60,7 @@ def _moment_heading(units: Units) -> str:
 
 
 def _load(band: BandContact, heading: str, top: float) -> Spec:
-    """Even along each ring; where there are no rings, a curve."""
+    """Return a load that is constant along each ring; without rings, a curve."""
     load = [q for _, q in band.line_load]
     pairs = zip(band.ends, [*load, load[-1]], strict=True) if band.ends else band.line_load
     return {
@@ -72,7 +72,10 @@ def _load(band: BandContact, heading: str, top: float) -> Spec:
 
 
 def _y(top: float = 0.0) -> Spec:
-    """top: of the scale, if positive."""
+    """Return the ordinate.
+
+    top: of the scale, if positive.
+    """
     scale = {"scale": {"domainMax": top}} if top > 0.0 else {}
     return {"field": "y", "type": "quantitative", "title": None, **scale}
 
@@ -88,7 +91,7 @@ def _extent(band: BandContact) -> tuple[float, float]:
 
 
 def _name(band: BandContact) -> Spec:
-    """Of a lug, above its load."""
+    """Return the name of a lug, above its load."""
     return {
         "data": rows([{"x": float(np.mean(_extent(band)))}]),
         "mark": {"type": "text", "style": "note", "baseline": "top",

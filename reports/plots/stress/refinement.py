@@ -14,12 +14,12 @@ MAXIMUM_HEADING, ENERGY_HEADING = "maximum: deviation [%]", "strain energy: devi
 
 
 def refinement_plot(case: str, pins: Sequence[PinResult], units: Units) -> Plot:
-    """Every pin's maximum and strain energy on its meshes in one case."""
+    """Return every pin's maximum and strain energy on its meshes in one case."""
     return _plot(plot_name("refinement", case), case, pins, [pin.pin for pin in pins], units)
 
 
 def pin_refinement_plot(pin: str, cases: Sequence[PinResult], units: Units) -> Plot:
-    """One pin's maximum and strain energy on its meshes in every case."""
+    """Return one pin's maximum and strain energy on its meshes in every case."""
     name, labels = plot_name("refinement-pin", pin), [clipped(case.case) for case in cases]
     return _plot(name, f"Pin {pin}", cases, labels, units)
 
@@ -54,7 +54,7 @@ def _plot(
 
 
 def _deviations(history: Sequence[Refinement]) -> tuple[list[float], list[float | None]]:
-    """Of the maximum and of the strain energy from those of the last mesh, per cent."""
+    """Return the deviations of maximum and strain energy from those of the last mesh, per cent."""
     last = history[-1]
     stress = [100.0 * (step.max_von_mises / last.max_von_mises - 1.0) for step in history]
     energy = [
@@ -67,7 +67,10 @@ def _deviations(history: Sequence[Refinement]) -> tuple[list[float], list[float 
 
 
 def _panel(field: str, heading: str, value: tuple[str, str], names: list[str]) -> Spec:
-    """value: a field with its title, shown under the pointer."""
+    """Return a panel of deviations.
+
+    value: a field with its title, shown under the pointer.
+    """
     key = {"field": "row", "type": "nominal", "sort": None, "title": None}
     ticks = {"format": "~s", "labelOverlap": "greedy", "labelFlush": True, "labelSeparation": 8}
     column, title = value

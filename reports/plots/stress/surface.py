@@ -29,8 +29,10 @@ FILL_STYLES = {"band": "band", "held": "governs"}
 def surface_plot(
     surface: Surface, case: SurfaceCase, pin: PinResult, shape: PinShape | None, units: Units
 ) -> Plot:
-    """Of a pin with a meridian in one case: outer surface and bore along z, at the governing
-    instant, without the excluded zones. shape: for the strip with the bands.
+    """Return the stress of a pin with a meridian in one case: outer surface and bore along z.
+
+    It is at the governing instant, without the excluded zones.
+    shape: for the strip with the bands.
     """
     z = surface.points[:, 2]
     lugs = _unread(case)
@@ -69,7 +71,7 @@ def surface_plot(
 
 
 def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> Spec:
-    """One curve, in the order of the meridian."""
+    """Return one curve, in the order of the meridian."""
     heading = {"x": "z", "y": f"von Mises, {name}"}
     key: Spec = {"datum": name, "scale": {"domain": names}}
     return {
@@ -86,21 +88,21 @@ def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> 
 
 
 def _sides(z: Floats) -> dict[str, slice]:
-    """Points of the outer surface and of the bore, shoulders with them; the end faces are left out.
+    """Return the points of the outer surface and of the bore, with shoulders, without end faces.
 
     The meridian runs up the outer surface, then down the bore.
     """
     little = 1e-9 * float(np.ptp(z))
     start = int(np.flatnonzero(z > z.min() + little)[0]) - 1
     end = np.flatnonzero(z >= z.max() - little)
-    found = {"outer surface": slice(max(start, 0), int(end[0]) + 1)}
+    sides = {"outer surface": slice(max(start, 0), int(end[0]) + 1)}
     if (z[end[-1] :] < z.max() - little).any():
-        found["bore"] = slice(int(end[-1]), len(z))
-    return found
+        sides["bore"] = slice(int(end[-1]), len(z))
+    return sides
 
 
 def _unread(case: SurfaceCase) -> Mask:
-    """Points (P,) that are read nowhere on the circumference, for lugs press on it or beside."""
+    """Return the points (P,) whose stress is nowhere read, since lugs press on them or beside."""
     if case.unread is None:
         return np.zeros(len(case.largest), dtype=bool)
     return np.asarray(case.largest <= 0.0)
@@ -112,7 +114,7 @@ def _spans(z: Floats, excluded: Mask) -> list[tuple[float, float]]:
 
 
 def _mark(pin: PinResult, units: Units) -> list[Spec]:
-    """The maximum with its error, or the interval of a singular row."""
+    """Return the maximum with its error, or the interval of a singular row."""
     if pin.location is None or pin.max_von_mises is None:
         return []
     value, error = pin.max_von_mises, pin.error_estimate or 0.0
@@ -137,7 +139,7 @@ def _mark(pin: PinResult, units: Units) -> list[Spec]:
 
 
 def _strip(shape: PinShape | None, across: Spec) -> list[Spec]:
-    """Under the curves: bearing bands, and clamped segments with a frame."""
+    """Return the strip under the curves: bearing bands, and clamped segments with a frame."""
     if shape is None:
         return []
     at, shown = 0.0, []

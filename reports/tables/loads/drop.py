@@ -1,4 +1,4 @@
-"""Drops as tables: the course over time, and their largest values."""
+"""Tables of drops: histories over time, and their largest values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ COLUMNS: list[Column[DropRecord]] = [  # of landing.csv
 
 
 def drop_table(results: Results) -> Table[DropRecord]:
-    """landing.csv: a line per instant."""
+    """Return the table of landing.csv, with a line per instant."""
 
     def energy(name: str) -> Column[DropRecord]:
         return Column(f"{name}_energy", lambda d: d.energies[name], "moment")
@@ -27,7 +27,7 @@ def drop_table(results: Results) -> Table[DropRecord]:
 
 
 def peak_grid(d: DropRecord, results: Results) -> Grid:
-    """Largest values of a drop with their times."""
+    """Return the largest values of a drop with their times."""
     units = {"force": results.units.force, "length": results.units.length}
     columns: list[Column[DropPeak]] = [
         *texts("largest=name"),
@@ -39,7 +39,7 @@ def peak_grid(d: DropRecord, results: Results) -> Grid:
 
 
 def impulse_grid(d: DropRecord, results: Results) -> Grid:
-    """The estimate by an impulse next to the drop."""
+    """Return the estimate by an impulse next to the drop."""
     time, peak = results.units.time, d.peaks["vertical"].value
     columns: list[Column[tuple[str, float, str]]] = [
         read_only("by", lambda row: row[0], numeric=False),
@@ -57,7 +57,7 @@ def impulse_grid(d: DropRecord, results: Results) -> Grid:
 
 
 def drop_words(d: DropRecord, results: Results) -> list[str]:
-    """What a drop gave, in sentences."""
+    """Return the results of a drop in sentences."""
     units = results.units
     lines = [
         f"velocity {engineering(d.velocity)} {units.length}/{units.time}, weight on the leg "

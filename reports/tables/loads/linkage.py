@@ -14,7 +14,7 @@ Names = Callable[[LinkageMotion], Iterable[str]]
 
 
 def _columns(key: str, names: Names) -> list[Column[LinkageMotion]]:
-    """Case, time and name of a line for each of `names` at every instant."""
+    """Return the columns of case, time and name, for each of `names` at every instant."""
     return [
         *fields("case"),
         Column(
@@ -25,19 +25,19 @@ def _columns(key: str, names: Names) -> list[Column[LinkageMotion]]:
 
 
 def _flat(key: str, values: Callable[[LinkageMotion], Floats], dimension: str) -> Column[Any]:
-    """Values (T, N) of N names, all names of an instant together."""
+    """Return a column of values (T, N) of N names, all names of an instant together."""
     return Column(key, lambda m: values(m).ravel(), dimension)
 
 
 def _of_each(
     key: str, values: Callable[[LinkageMotion], list[Floats]], dimension: str
 ) -> Column[Any]:
-    """The same of values (T,) of each name."""
+    """Return a column of values (T,) by name, all names of an instant together."""
     return Column(key, lambda m: np.array(values(m)).T.ravel(), dimension)
 
 
 def _xy(keys: tuple[str, str], name: str, dimension: str) -> list[Column[Any]]:
-    """Both components of vectors (T, N, 2)."""
+    """Return the columns of both components of vectors (T, N, 2)."""
 
     def component(k: int) -> Callable[[LinkageMotion], Floats]:
         return lambda m: getattr(m, name)[:, :, k]
@@ -93,8 +93,9 @@ PATH_COLUMNS = [
 
 
 def linkage_tables(results: Results) -> list[Table[LinkageMotion]]:
-    """Motion, joints, transmission, linkage, sliders and, where points are named, paths of all
-    cases.
+    """Return the tables of the linkage over all cases.
+
+    They are motion, joints, transmission, linkage, sliders and, where points are named, paths.
     """
     paths = {"paths": PATH_COLUMNS} if any(m.paths for m in results.motion) else {}
     every = {

@@ -25,7 +25,7 @@ def _component(name: str, key: str, k: int, dimension: str) -> Column[ReactionTa
 
 
 def _names(name: str) -> Callable[[ReactionTable], list[str]]:
-    """Names by connection, again at every instant."""
+    """Return a function that gives the names by connection, repeated at every instant."""
     return lambda table: [*getattr(table, name)] * len(table.forces)
 
 
@@ -55,12 +55,12 @@ MOTION_CHECK_COLUMNS: list[Column[MotionCheck]] = [
 
 
 def reactions_table(results: Results) -> Table[ReactionTable]:
-    """The forces and moments on the pins, world axes: a line per instant and connection."""
+    """Return forces and moments on the pins, world axes: a line per instant and connection."""
     return ArrayTable("reactions", REACTION_COLUMNS, results.reactions)
 
 
 def reactions_pin_axes_table(results: Results) -> Table[ReactionTable]:
-    """The same in the axes of each pin, which turn with the body that carries it."""
+    """Return the same in the axes of each pin, which turn with the body that carries it."""
     turned = [
         replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
         for t in results.reactions
@@ -76,11 +76,11 @@ def _in_pin_axes(table: ReactionTable, vectors: Floats) -> Floats:
 
 
 def drive_table(results: Results) -> Table[DriveTable]:
-    """The drives in every case, with the case in the first column."""
+    """Return the drives in every case, with the case in the first column."""
     turning = any(table.kind != "slider" for table in results.drive)
 
     def of_kind(key: str, sliding: str, rotary: str) -> Column[DriveTable]:
-        """A column of another dimension for a rotary drive."""
+        """Return a column whose dimension is another for a rotary drive."""
 
         def by_kind(table: DriveTable) -> str:
             return sliding if table.kind == "slider" else rotary
@@ -103,18 +103,19 @@ def drive_table(results: Results) -> Table[DriveTable]:
 
 
 def beam_check_table(check: BeamCheck) -> Table[BeamCheck]:
-    """Shear, moment and axial stresses along the cantilever pin."""
+    """Return shear, moment and axial stresses along the cantilever pin."""
     return ArrayTable("beam_check", BEAM_CHECK_COLUMNS, [check])
 
 
 def motion_check_table(check: MotionCheck) -> Table[MotionCheck]:
-    """A joint's speed and acceleration, from the linkage and in closed form."""
+    """Return a joint's speed and acceleration, from the linkage and in closed form."""
     return ArrayTable("motion_check", MOTION_CHECK_COLUMNS, [check])
 
 
 def leg_table(tables: tuple[LegTable, ...]) -> Table[LegTable]:
-    """The dynamics of a spatial leg, all cases: a line per instant, a column per component; the
-    columns carry their units, vectors end in _x, _y, _z (primed axes).
+    """Return the dynamics of a spatial leg: a line per instant, a column per component, all cases.
+
+    The columns carry their units; vectors end in _x, _y, _z (primed axes).
     """
 
     def scalar(name: str) -> Callable[[LegTable], Floats]:

@@ -1,1 +1,1 @@
-"""Tables of strength: safety factors, margins, fatigue, what to change."""
+"""Tables of strength: safety factors, margins, fatigue, changes."""

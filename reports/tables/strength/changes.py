@@ -1,4 +1,4 @@
-"""What to change: for every pin that does not reach its factor, what would do, each alone."""
+"""Changes that make a pin reach its factor, each sufficient alone, for pins below their factor."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ COLUMNS: tuple[Column[Remedy], ...] = (
 
 
 def changes_table(results: Results) -> Table[Remedy]:
-    """A row for each pin, the worst first."""
+    """Return a row for each pin, the worst first."""
     return Table("changes", COLUMNS, results.changes)
 
 
 def change_notes(results: Results) -> list[str]:
-    """What is to be known of the rows, a sentence or two each."""
+    """Return the notes on the rows, a sentence or two each."""
     pins: dict[str, list[str]] = {}
     for change in results.changes:
         if change.diameter_note:
@@ -56,7 +56,7 @@ def change_notes(results: Results) -> list[str]:
 
 
 def _by_contact(results: Results, change: Remedy) -> bool:
-    """Whether what lies beneath contact says what is needed."""
+    """Return whether the stress beneath contact decides what is needed."""
     row = next(p for p in results.pins if (p.pin, p.case) == (change.pin, change.case))
     contact = row.places.contact if row.places else None
     needed = ROUND_OFF_FACTOR * change.yield_strength / change.required
@@ -64,7 +64,7 @@ def _by_contact(results: Results, change: Remedy) -> bool:
 
 
 def _remedies(results: Results) -> list[str]:
-    """What each singularity that governs one of the rows needs."""
+    """Return the remedy of each singularity that governs one of the rows."""
     rows = {(c.pin, c.case) for c in results.changes if c.singular}
     zones = [z for p in results.pins if (p.pin, p.case) in rows for z in p.singular_at if z.governs]
     return [

@@ -44,7 +44,7 @@ COLUMNS: tuple[Column[EnvelopeRow], ...] = (
 
 
 def envelope_table(results: Results) -> Table[EnvelopeRow]:
-    """The largest force and moment on each connection, with the pin's results in the case."""
+    """Return the largest force and moment on each connection, with the pin's results."""
     rows = [
         EnvelopeRow(cell, load, results.units)
         for cell in envelope(results)
@@ -55,8 +55,10 @@ def envelope_table(results: Results) -> Table[EnvelopeRow]:
 
 @dataclass(frozen=True)
 class Matrix:
-    """Cases by pins: pins, the rows as case and cells (None where a pin is not loaded), and what to
-    say of what the report leaves out.
+    """A matrix of cases and pins.
+
+    rows: a case and its cells (None where a pin is not loaded).
+    note: on what the report leaves out.
     """
 
     pins: list[str]
@@ -65,7 +67,7 @@ class Matrix:
 
 
 def matrix(results: Results) -> Matrix | None:
-    """None of a single case."""
+    """Return the matrix of cases and pins; None for a single case."""
     cases = case_names(results)
     if len(cases) < 2:
         return None
@@ -76,7 +78,7 @@ def matrix(results: Results) -> Matrix | None:
 
 
 def heat(cell: EnvelopeCell) -> float:
-    """Share of a cell's full colour, in per cent."""
+    """Return the share of a cell's full colour, in per cent."""
     return (
         0.0
         if cell.used is None
@@ -85,7 +87,7 @@ def heat(cell: EnvelopeCell) -> float:
 
 
 def cell_text(cell: EnvelopeCell) -> str:
-    """Its utilisation."""
+    """Return the utilisation of a cell as text."""
     if cell.used is None:
         return DASH
     return "∞" if cell.used == inf else f"{cell.used:.2f}"

@@ -23,7 +23,7 @@ METHOD_NAMES = {
 
 @dataclass(frozen=True)
 class FatigueRow:
-    """A point of a pin, none where the fatigue of the pin is not known."""
+    """A point of a pin, None where the fatigue of the pin is not known."""
 
     pin: str
     point: PointFatigue | None
@@ -46,12 +46,12 @@ POINT_COLUMNS: list[Column[PointHistory]] = [
 
 
 def _of(key: str, cell: Callable[[PointFatigue], Cell], dimension: str = "") -> Column[FatigueRow]:
-    """A column that is empty where there is no point."""
+    """Return a column that is empty where there is no point."""
     return Column(key, lambda row: None if row.point is None else cell(row.point), dimension)
 
 
 def _part(name: str, k: int) -> Callable[[PointFatigue], Cell]:
-    """One of several values of a point, which may have none."""
+    """Return a function that gives one of several values of a point, which may have none."""
     return lambda point: (getattr(point, name) or (None,) * 3)[k]
 
 
@@ -73,7 +73,7 @@ COLUMNS: list[Column[FatigueRow]] = [
 
 
 def fatigue_tables(results: Results) -> list[Table[Any]]:
-    """Histories, their points, and damage."""
+    """Return the tables of histories, their points, and damage."""
     histories = [(h, case) for h in results.histories for case in h.cases]
     return [
         ArrayTable("stress_history", HISTORY_COLUMNS, histories),
@@ -91,12 +91,12 @@ def _rows(fatigue: Fatigue | None) -> list[FatigueRow]:
 
 
 def worst_points(fatigue: Fatigue) -> list[PointFatigue]:
-    """Of each pin the point with the most damage, the worst pin first."""
+    """Return the point of each pin with the most damage, the worst pin first."""
     return list({p.pin: p for p in reversed(fatigue.points)}.values())[::-1]
 
 
 def shown_fatigue(results: Results) -> Table[PointFatigue] | None:
-    """Each pin's worst point; None where nothing is assessed."""
+    """Return each pin's worst point; None where nothing is assessed."""
     fatigue = results.fatigue
     if fatigue is None or not fatigue.points:
         return None
@@ -140,7 +140,7 @@ def _normal(p: PointFatigue) -> str:
 
 
 def life_words(life: float | None) -> str:
-    """Units until damage 1."""
+    """Return the number of units until damage 1, as text."""
     return "no limit" if life is None else engineering(life, 3)
 
 
@@ -153,8 +153,10 @@ def _or_infinite(value: float) -> str:
 
 
 def fatigue_sentence(fatigue: Fatigue) -> str:
-    """The worst point in a line, with the pins that are not decided and those that another method
-    than the asked one was taken for.
+    """Return a sentence on the worst point.
+
+    It names the pins that are not decided, and those assessed by another method than the requested
+    one.
     """
     known = [p for p in fatigue.points if p.pin not in fatigue.not_decided]
     sentences = [_worst(known[0], fatigue)] if known else []
@@ -188,7 +190,7 @@ def _elsewhere(fatigue: Fatigue) -> str:
 
 
 def _so_far(pin: str, fatigue: Fatigue) -> str:
-    """What the damage is at least."""
+    """Return the lower bound of the damage as text."""
     worst = next((p for p in fatigue.points if p.pin == pin and p.damage), None)
     if worst is None:
         return ""
@@ -209,7 +211,7 @@ POINT: list[Column[PointFatigue]] = [
 
 
 def fatigue_json(fatigue: Fatigue | None) -> dict[str, Any] | None:
-    """As in results.json."""
+    """Return the fatigue for results.json."""
     if fatigue is None:
         return None
     return {**json_of(FATIGUE, fatigue), "points": [json_of(POINT, p) for p in fatigue.points]}

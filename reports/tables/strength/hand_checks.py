@@ -38,8 +38,10 @@ class CheckRow:
 def _check(
     name: str, dimension: str, heading: str, model: Callable[[CheckRow], str], **more: Any
 ) -> Column[CheckRow]:
-    """An attribute of the check: "attribute" or "key=attribute". model: what people read of the
-    model's result there.
+    """Return a column of an attribute of the check.
+
+    name: "attribute" or "key=attribute". model: the text for people in the row of the model's
+    result.
     """
     key, _, attribute = name.rpartition("=")
 
@@ -78,7 +80,7 @@ COLUMNS: list[Column[CheckRow]] = [
 
 
 def hand_checks_table(results: Results) -> Table[CheckRow]:
-    """Every check of every pin and case, with all digits."""
+    """Return every check of every pin and case, with all digits."""
     rows = [
         CheckRow(pin, check, results.units) for pin in results.pins for check in pin.hand_checks
     ]
@@ -99,7 +101,7 @@ def write_hand_checks(results: Results, directory: Path) -> None:
 
 
 def pin_checks(pin: PinResult, units: Units) -> Table[CheckRow]:
-    """For people: the model's result, then every check."""
+    """Return the model's result, then every check, for people."""
     rows = [CheckRow(pin, check, units) for check in (None, *pin.hand_checks)]
     return Table("hand_checks", COLUMNS, rows)
 

@@ -33,13 +33,13 @@ class LandingPoint:
 
     @property
     def meets(self) -> bool | None:
-        """Whether the required factor is met with the error."""
+        """Return whether the required factor is met with the error."""
         if self.factor is None or self.required is None:
             return None
         return _meets(self.of, self.factor / self.required)
 
     def end(self, k: int) -> float | None:
-        """An end of the interval of a singular row's factor."""
+        """Return an end of the interval of a singular row's factor."""
         if self.factor is None or self.of.spread is None:
             return None
         return self.of.spread[k] * self.factor
@@ -63,7 +63,7 @@ COLUMNS: list[Column[LandingPoint]] = [
 
 
 def landing_table(results: Results) -> Table[LandingPoint]:
-    """Every pin at every combination of impulse time, velocity change and pulse."""
+    """Return every pin at every combination of impulse time, velocity change and pulse."""
     required = results.required_safety_factor
     rows = [LandingPoint(r, k, required) for r in results.landing for k in range(len(r.force))]
     return Table("landing_range", COLUMNS, rows)
@@ -83,8 +83,9 @@ def write_landing(results: Results, directory: Path) -> None:
 
 
 def landing_tables(results: Results) -> str:
-    """Markdown tables by case, velocity change and pulse: a row per pin, a column per impulse
-    time.
+    """Return Markdown tables by case, velocity change and pulse.
+
+    They have a row per pin and a column per impulse time.
     """
     parts = []
     for title, grid in landing_blocks(results):
@@ -94,7 +95,10 @@ def landing_tables(results: Results) -> str:
 
 
 def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
-    """Titles and tables by case, velocity change and pulse: a row per pin, a column per time."""
+    """Return titles and tables by case, velocity change and pulse.
+
+    They have a row per pin and a column per impulse time.
+    """
     units, blocks = results.units, []
     for case in dict.fromkeys(r.case for r in results.landing):
         members = [r for r in results.landing if r.case == case]
@@ -113,7 +117,7 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
 
 
 def _at(i: int, heading: str) -> Column[LandingRange]:
-    """The factors of safety at a point, of a singular row their interval."""
+    """Return a column of the factors of safety at a point; for a singular row their interval."""
 
     def text(r: LandingRange) -> str:
         factor = None if r.safety_factor is None else float(r.safety_factor[i])
@@ -125,8 +129,9 @@ def _at(i: int, heading: str) -> Column[LandingRange]:
 
 
 def _meets(r: LandingRange, part: float) -> bool | None:
-    """Whether a factor, here over the required one, is met with its error; a singular row can only
-    fail, with its whole interval.
+    """Return whether a factor, here divided by the required one, is met with its error.
+
+    A singular row can only fail, with its whole interval.
     """
     if r.verdict == "singular":
         return None if (r.spread or (1.0, 1.0))[1] * part >= 1.0 else False

@@ -1,4 +1,4 @@
-"""Past yield: at which part of its loads a pin collapses, and what it keeps of its shape."""
+"""Limit loads: the fraction of its loads at which a pin collapses, and its permanent set."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ LIMIT_LOAD = fields(  # the keys of results.json
 
 
 def limit_rows(results: Results) -> list[tuple[PinResult, LimitLoad]]:
-    """Rows with a limit load."""
+    """Return the rows with a limit load."""
     return [(pin, pin.limit_load) for pin in results.pins if pin.limit_load is not None]
 
 
 def limit_word(limit: LimitLoad) -> str:
-    """Whether the pin collapses under its loads, in a word or two."""
+    """Return whether the pin collapses under its loads, in a word or two."""
     if limit.stopped:
         return "not computed: --limit-load computes it"
     if limit.method == "none":
@@ -58,19 +58,19 @@ def limit_word(limit: LimitLoad) -> str:
 
 
 def limits_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:
-    """A row each, for people."""
+    """Return one row per limit load, for people."""
     return Table("limits", LIMIT_COLUMNS, limit_rows(results))
 
 
 def limit_range(limit: LimitLoad) -> str:
-    """The bracket."""
+    """Return the bracket of the limit load as text."""
     if limit.lower is None or limit.upper is None:
         return DASH
     return f"{engineering(limit.lower, 3)} to {engineering(limit.upper, 3)}"
 
 
 def limit_notes(results: Results) -> list[str]:
-    """Of rows that need one, a sentence each."""
+    """Return a sentence for each row that needs one."""
     return [
         f"Pin {pin.pin}, {pin.case}: {limit.note}."
         for pin, limit in limit_rows(results)
@@ -79,7 +79,7 @@ def limit_notes(results: Results) -> list[str]:
 
 
 def limit_load_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:
-    """Load factor against displacement on the finest mesh."""
+    """Return the load factor against displacement on the finest mesh."""
     rows = [(pin, limit) for pin, limit in limit_rows(results) if limit.curve is not None]
     return ArrayTable("limit_load", COLUMNS, rows)
 
@@ -90,5 +90,5 @@ def _curve(limit: LimitLoad) -> LoadCurve:
 
 
 def limit_load_json(limit: LimitLoad | None) -> dict[str, Any] | None:
-    """For results.json; the curve is in limit_load.csv."""
+    """Return the limit load for results.json; the curve is in limit_load.csv."""
     return None if limit is None else json_of(LIMIT_LOAD, limit)

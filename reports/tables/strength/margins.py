@@ -47,7 +47,7 @@ class MarginRow:
         return dimension if dimension == RATIO_DIMENSION else unit_name(dimension, self.units)
 
     def with_unit(self, value: float | None) -> str:
-        """A demand or an allowable, for people."""
+        """Return a demand or an allowable with its unit, for people."""
         unit = "" if self.unit == RATIO_DIMENSION else f" {self.unit}"
         return f"{engineering(value)}{unit}"
 
@@ -104,57 +104,59 @@ ARM_COLUMNS: list[Column[ArmsRow]] = [
 ]
 
 
-def _rows(found: Iterable[PinMargin], results: Results) -> list[MarginRow]:
-    return [MarginRow(m.pin, m.case, m.margin, results.units) for m in found]
+def _rows(margins: Iterable[PinMargin], results: Results) -> list[MarginRow]:
+    return [MarginRow(m.pin, m.case, m.margin, results.units) for m in margins]
 
 
 def margins_table(results: Results) -> Table[MarginRow]:
-    """A row for every check of every pin and case, with all digits."""
+    """Return a row for every check of every pin and case, with all digits."""
     return Table("margins", COLUMNS, _rows(results.margins, results))
 
 
 def _shown(
-    found: Iterable[PinMargin], results: Results, without: Collection[str]
+    margins: Iterable[PinMargin], results: Results, without: Collection[str]
 ) -> Table[MarginRow]:
     columns = [c for c in in_order(COLUMNS, DISPLAY_ORDER) if c.key not in without]
-    return Table("margins", columns, _rows(found, results))
+    return Table("margins", columns, _rows(margins, results))
 
 
 def governing_table(results: Results) -> Table[MarginRow]:
-    """The governing check of every pin and case, the worst first, for people."""
+    """Return the governing check of every pin and case, the worst first, for people."""
     return _shown(governing(results), results, without=("clause",))
 
 
 def worst_table(results: Results) -> Table[MarginRow]:
-    """The same in brief, of the worst case of each pin; for terminals."""
+    """Return the governing check of the worst case of each pin, in brief, for terminals."""
     worst: dict[str, PinMargin] = {}
-    for found in governing(results):
-        worst.setdefault(found.pin, found)
+    for pin_margin in governing(results):
+        worst.setdefault(pin_margin.pin, pin_margin)
     table = _shown(worst.values(), results, without=("time", "demand", "allowable"))
     return replace(table, columns=[replace(c, drop_if_empty=False) for c in table.columns])
 
 
 def pin_margins(results: Results, pin: str, case: str) -> Table[MarginRow]:
-    """All checks that were made of a pin in a case, the worst first, comparisons last."""
-    own = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
-    order = sorted(own, key=lambda m: (not m.margin.governs, -m.used))
+    """Return all checks that were made of a pin in a case, the worst first, comparisons last."""
+    made_checks = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
+    order = sorted(made_checks, key=lambda m: (not m.margin.governs, -m.used))
     return _shown(order, results, without=("pin", "case"))
 
 
 def not_made_words(results: Results) -> list[str]:
-    """A line for everything that checks need and the study does not give, with these checks."""
+    """Return a line for each datum that checks need and the study lacks, with these checks."""
     pins = {p.pin for p in results.pins}
     lines = []
     for needs, of in skipped(results).items():
-        own = list(dict.fromkeys(m.pin for m in of))
-        where = "" if len(own) == len(pins) else f" (pin{'s' * (len(own) > 1)} {', '.join(own)})"
+        named = list(dict.fromkeys(m.pin for m in of))
+        where = (
+            "" if len(named) == len(pins) else f" (pin{'s' * (len(named) > 1)} {', '.join(named)})"
+        )
         methods = "; ".join(dict.fromkeys(m.margin.method for m in of))
         lines.append(f"Skipped{where}, {needs} missing: {methods}.")
     return lines
 
 
 def not_made_briefly(results: Results) -> str:
-    """The same in a sentence without the checks; empty where all were made."""
+    """Return the missing data in a sentence without the checks; empty where all were made."""
     every = skipped(results)
     alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
     needs = ", ".join(alone)
@@ -162,13 +164,13 @@ def not_made_briefly(results: Results) -> str:
 
 
 def arms_table(results: Results) -> Table[ArmsRow]:
-    """Bending moments of formulas and models, with all digits."""
+    """Return the bending moments of formulas and models, with all digits."""
     rows = [ArmsRow(arms, results.units) for arms in results.arms]
     return Table("bending_arms", ARM_COLUMNS, rows)
 
 
 def shown_arms(results: Results) -> Table[ArmsRow]:
-    """The same for people, of the pins whose joint model has a moment."""
+    """Return the bending moments of the pins whose joint model has one, for people."""
     table = arms_table(results)
     return replace(table, rows=[row for row in table.rows if row.arms.joint])
 

@@ -42,7 +42,7 @@ DISPLAY_ORDER = (  # for people; columns that are not named here come last
 
 @dataclass(frozen=True)
 class FactorRow:
-    """A pin in a case with the results that it is of."""
+    """A pin in a case with the results to which it belongs."""
 
     pin: PinResult
     results: Results
@@ -58,39 +58,39 @@ class FactorRow:
 
     @property
     def joint(self) -> JointRange | None:
-        """The range over what is not known of the joint."""
+        """The range over the unknowns of the joint."""
         return self.pin.joint.range if self.pin.joint else None
 
     @property
     def used(self) -> float | None:
-        """Required over actual factor."""
+        """The required over the actual factor."""
         factor = finite(self.pin.safety_factor)
         return finite((self.required or 1.0) / factor) if factor else None
 
     @property
     def margin(self) -> float | None:
-        """Actual over required factor, less 1."""
+        """The actual over the required factor, minus 1."""
         factor = finite(self.pin.safety_factor)
         return None if factor is None else factor / (self.required or 1.0) - 1.0
 
 
 def _end(name: str, end: int) -> Callable[[FactorRow], float | None]:
-    """An end of an interval of the row."""
+    """Return a function that gives an end of an interval of the row."""
     return lambda row: (getattr(row.pin, name) or (None, None))[end]
 
 
 def _error(part: str) -> Column[FactorRow]:
-    """A part of the error."""
+    """Return a column of a part of the error."""
     return Column(f"error_{part}", lambda row: row.pin.error_parts.get(part), "stress")
 
 
 def _contact(name: str, dimension: str, **more: Any) -> Column[FactorRow]:
-    """A number of what lies beneath contact."""
+    """Return a column of a number of the stress beneath contact."""
     return Column(name, lambda row: _place(row, "contact", name), dimension, **more)
 
 
 def _place(row: FactorRow, place: str, name: str) -> float | None:
-    """A number of one of the places; None where the row has no such place."""
+    """Return a number of one of the places; None where the row has no such place."""
     return getattr(getattr(row.pin.places, place, None), name, None)
 
 
@@ -150,12 +150,15 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
 
 
 def safety_factors_table(results: Results) -> Table[FactorRow]:
-    """A row per pin and case, with all digits."""
+    """Return a row per pin and case, with all digits."""
     return Table("safety_factors", COLUMNS, [FactorRow(pin, results) for pin in results.pins])
 
 
 def shown_factors(results: Results, without: Collection[str] = ()) -> Table[FactorRow]:
-    """The same for people, the worst first, in their order; without the columns of some keys."""
+    """Return the rows for people, the worst first.
+
+    without: keys of columns to leave out.
+    """
     rows = [FactorRow(pin, results) for pin in worst_first(results)]
     heads = {"safety_factor": f"safety factor{_required(results)}"}
     shown = [
@@ -198,7 +201,7 @@ def _markdown(everything: Results) -> str:
 
 
 def reading(table: Table[FactorRow]) -> list[str]:
-    """How the table is to be read, a paragraph each."""
+    """Return the explanation of the table, a paragraph each."""
     names = table.keys
     return [
         RESULT_ROWS_NOTE,

@@ -1,4 +1,4 @@
-"""Sensitivities: what a little more of anything does to a pin's factor, as rows and for display."""
+"""Sensitivities of a pin's factor to each parameter, as rows and for display."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class SensitivityRow:
 
     @property
     def one_sided(self) -> bool:
-        """Whether something else may govern with a little more of anything."""
+        """Whether something else may govern after a small increase of a parameter."""
         return bool(self.of.tied_places or self.of.tied_times or self.of.changing)
 
 
@@ -66,28 +66,29 @@ COLUMNS: list[Column[SensitivityRow]] = [
 
 
 def sensitivities_table(results: Results) -> Table[SensitivityRow]:
-    """A row for each parameter of every pin, with all digits."""
+    """Return a row for each parameter of every pin, with all digits."""
     rows = [SensitivityRow(x, by, results.units) for x in results.sensitivities for by in x.rows]
     return Table("sensitivities", COLUMNS, rows)
 
 
 def sensitivities_json(results: Results) -> list[dict[str, Any]]:
-    """The same for results.json, by pin and case."""
+    """Return the sensitivities for results.json, by pin and case."""
     parameters = in_order([c for c in COLUMNS if c.key in PARAMETER_KEYS], PARAMETER_KEYS)
     return [
         {
-            **json_of(PIN_SENSITIVITIES, found),
+            **json_of(PIN_SENSITIVITIES, effects),
             "parameters": [
-                json_of(parameters, SensitivityRow(found, by, results.units)) for by in found.rows
+                json_of(parameters, SensitivityRow(effects, by, results.units))
+                for by in effects.rows
             ],
-            "without": dict(found.without),
+            "without": dict(effects.without),
         }
-        for found in results.sensitivities
+        for effects in results.sensitivities
     ]
 
 
 def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[SensitivityRow]:
-    """A row for each dimension that matters, the largest effects of each pin first, for people."""
+    """Return a row for each dimension that matters, the largest effects of each pin first."""
     columns: list[Column[SensitivityRow]] = [
         *texts("of.pin of.case dimension=by.key"),
         read_only("current", lambda row: short(row.by.value), "length"),
@@ -104,17 +105,17 @@ def shown_sensitivities(results: Results, most: int = MAX_SHOWN_ROWS) -> Table[S
         ),
     ]  # fmt: skip
     rows = [
-        SensitivityRow(found, by, results.units)
-        for found in results.sensitivities
-        for by in _shown(found)[:most]
+        SensitivityRow(effects, by, results.units)
+        for effects in results.sensitivities
+        for by in _shown(effects)[:most]
     ]
     return Table("sensitivities", columns, rows)
 
 
-def _shown(found: PinSensitivities) -> list[Sensitivity]:
-    """Dimensions whose effect is not negligible."""
-    least = MIN_SHOWN_EFFECT * found.maximum
-    return [x for x in found.rows if x.kind == "length" and abs(x.stress * x.step) >= least]
+def _shown(effects: PinSensitivities) -> list[Sensitivity]:
+    """Return the dimensions whose effect is not negligible."""
+    least = MIN_SHOWN_EFFECT * effects.maximum
+    return [x for x in effects.rows if x.kind == "length" and abs(x.stress * x.step) >= least]
 
 
 def _change(per: float | None, step: float) -> str:
@@ -125,29 +126,29 @@ def _change(per: float | None, step: float) -> str:
 
 
 def sensitivity_notes(results: Results) -> list[str]:
-    """What is to be known of the rows, a sentence or two each."""
+    """Return the notes on the rows, a sentence or two each."""
     units, notes = results.units, []
-    for found in results.sensitivities:
-        who = f"Pin {found.pin}, {found.case}"
+    for effects in results.sensitivities:
+        who = f"Pin {effects.pin}, {effects.case}"
         places = [
             f"at r = {short(r)} {units.length}, z = {short(z)} {units.length}"
-            for r, z in found.tied_places
+            for r, z in effects.tied_places
         ]
-        places += [f"at t = {short(time)} {units.time}" for time in found.tied_times]
-        if places and _shown(found):
+        places += [f"at t = {short(time)} {units.time}" for time in effects.tied_times]
+        if places and _shown(effects):
             notes.append(f"{who}, {ONE_SIDED_NOTE.format(places=' and '.join(places))}")
-        if found.changing and _shown(found):
-            notes.append(f"{who}, {CHANGING_CELLS_NOTE.format(count=found.changing)}")
-        if found.without:
-            keys = ", ".join(key for key, _ in found.without)
-            notes.append(f"{who}, no derivative by {keys}: {found.without[0][1]}.")
-    rows = {(found.pin, found.case) for found in results.sensitivities if _shown(found)}
+        if effects.changing and _shown(effects):
+            notes.append(f"{who}, {CHANGING_CELLS_NOTE.format(count=effects.changing)}")
+        if effects.without:
+            keys = ", ".join(key for key, _ in effects.without)
+            notes.append(f"{who}, no derivative by {keys}: {effects.without[0][1]}.")
+    rows = {(effects.pin, effects.case) for effects in results.sensitivities if _shown(effects)}
     if any((p.pin, p.case) in rows and p.verdict == "singular" for p in results.pins):
         notes.append(SINGULAR_SENSITIVITIES_NOTE)
     without: dict[str, list[str]] = {}
-    for found in results.sensitivities:
-        if found.note:
-            without.setdefault(found.note, []).append(found.pin)
+    for effects in results.sensitivities:
+        if effects.note:
+            without.setdefault(effects.note, []).append(effects.pin)
     for note, pins in without.items():
         notes.append(f"{'Pins' if pins[1:] else 'Pin'} {', '.join(pins)}: {note}.")
     return notes

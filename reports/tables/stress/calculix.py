@@ -14,7 +14,7 @@ from reports.tables.column import Column, Table, fields, json_of, unit_columns
 
 
 def opinions_of(results: Results) -> list[Opinion]:
-    """All that there are, in the order of the rows."""
+    """Return all second opinions, in the order of the rows."""
     return [pin.second_opinion for pin in results.pins if pin.second_opinion]
 
 
@@ -27,12 +27,12 @@ class OpinionRow:
 
 
 def _contact(key: str, cell: Callable[[ContactOpinion], Cell], dimension: str = "") -> Column[Any]:
-    """A column of those in contact."""
+    """Return a column that only rows in contact have."""
     return Column(key, lambda row: row.of.contact and cell(row.of.contact), dimension)
 
 
 def _in_contact(unit: str) -> Column[OpinionRow]:
-    """A unit that only those in contact need."""
+    """Return a column of a unit that only rows in contact need."""
     return Column(f"{unit}_unit", lambda row: getattr(row.units, unit) if row.of.contact else None)
 
 
@@ -56,7 +56,7 @@ COLUMNS: list[Column[OpinionRow]] = [
 
 @dataclass(frozen=True)
 class LoadRow:
-    """The load per length of a band between two ends, ours and CalculiX's."""
+    """The load per length of a band between two ends, computed and of CalculiX."""
 
     of: Opinion
     connection: str
@@ -88,12 +88,12 @@ LIMIT = fields("unknowns factor_same_mesh=ours factor_calculix=theirs")
 
 
 def over_answer(opinion: Opinion) -> float | None:
-    """CalculiX's stress over ours."""
+    """Return CalculiX's stress over the computed one."""
     return None if opinion.deviation is None else 1.0 + opinion.deviation
 
 
 def opinion_tables(results: Results) -> list[Table[Any]]:
-    """A row per pin and case, and the loads per length of those in contact."""
+    """Return a row per pin and case, and the loads per length of the rows in contact."""
     opinions, units = opinions_of(results), results.units
     loads = [
         LoadRow(o, band.name, *ends, ours, theirs, units)
@@ -108,7 +108,7 @@ def opinion_tables(results: Results) -> list[Table[Any]]:
 
 
 def opinion_json(opinion: Opinion | None) -> dict[str, Any] | None:
-    """As results.json has it."""
+    """Return a second opinion for results.json."""
     if opinion is None:
         return None
     contact = opinion.contact

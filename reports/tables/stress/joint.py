@@ -23,7 +23,7 @@ from reports.tables.column import (
 
 @dataclass(frozen=True)
 class LoadStep:
-    """The load per length of a band between two ends, which not every model has."""
+    """The load per length of a band between two ends, which only some models have."""
 
     band: str
     z: float
@@ -33,7 +33,7 @@ class LoadStep:
 
 
 def bearing_share(row: PinRow[BandContact]) -> float | None:
-    """The part of its bearing strength that a band uses."""
+    """Return the fraction of its bearing strength that a band uses."""
     contact = row.pin.places.contact if row.pin.places else None
     shares = {b.name: b.bearing_share for b in contact.bands} if contact else {}
     return shares.get(row.of.name)
@@ -90,8 +90,9 @@ VARIATION = fields("what value length max_von_mises max_von_mises_interval=inter
 
 
 def joint_tables(results: Results) -> list[Table[Any]]:
-    """Of all pins in lugs: their bands, the load per length along these, and the maximum with the
-    joint changed.
+    """Return the tables of all pins in lugs.
+
+    They are bands, load per length along them, and the maximum with the joint changed.
     """
     units = results.units
     joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
@@ -118,7 +119,7 @@ def _per_cent(share: float | None) -> str:
 
 
 def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
-    """As results.json has it."""
+    """Return the joint for results.json."""
     if joint is None:
         return None
     over = joint.range
@@ -134,5 +135,5 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
 
 
 def lugs_word(over: JointRange) -> str:
-    """Whose the lugs of a range are."""
+    """Return the words for the owner of the lugs of a range."""
     return "assumed" if over.assumed else "study"

@@ -1,4 +1,4 @@
-"""Surface, section and contact of every row: as results.json has them, and as tables."""
+"""Surface, section and contact of every row, for results.json and as tables."""
 
 from __future__ import annotations
 
@@ -13,30 +13,33 @@ from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, u
 
 
 def factor_at(pin: PinResult, stress: float | None) -> float | None:
-    """Yield strength of a row over a stress of it; None without either."""
+    """Return the yield strength of a row over a stress of it; None without either."""
     strength = pin.yield_strength
     return strength / stress if strength and stress else None
 
 
 def places_json(pin: PinResult) -> dict[str, Any]:
-    """The keys of a row; without contact or section where it has none."""
+    """Return the keys of a row; without contact or section where it has none."""
     places = pin.places
     if places is None:
         return {"governs": None}
-    found: dict[str, Any] = {"governs": places.governs}
+    keys: dict[str, Any] = {"governs": places.governs}
     for name, at in (("surface", places.surface), ("section", places.section)):
         if at is not None:
             factor = factor_at(pin, at.max_von_mises)
-            found[name] = {**plain(at), "safety_factor": finite(factor)}
+            keys[name] = {**plain(at), "safety_factor": finite(factor)}
     if places.contact is not None:
-        found["contact"] = plain(places.contact)
-        del found["contact"]["depths"]
-    return found
+        keys["contact"] = plain(places.contact)
+        del keys["contact"]["depths"]
+    return keys
 
 
 @dataclass(frozen=True)
 class PlaceRow:
-    """A place of a pin in a case, of what it is of (`contact`: what lies beneath it)."""
+    """A place of a pin in a case.
+
+    of: what the stress belongs to (`contact`: the field beneath it).
+    """
 
     pin: PinResult
     place: Literal["surface", "section", "beneath"]
@@ -59,12 +62,12 @@ class PlaceRow:
 
     @property
     def factor(self) -> float | None:
-        """Yield strength over the stress."""
+        """The yield strength over the stress."""
         return factor_at(self.pin, self.stress)
 
     @property
     def at(self) -> tuple[float | None, float | None, float | None]:
-        """Where the stress is read; of a section its z alone."""
+        """The coordinates of the stress; for a section only z."""
         if isinstance(self.of, SectionPlace):
             return None, None, self.of.z
         return self.of.beneath_location if isinstance(self.of, ContactPlace) else self.of.location
@@ -75,7 +78,7 @@ class PlaceRow:
 
 
 def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
-    """Surface, section and what lies beneath contact, as far as the row has them."""
+    """Return surface, section and field beneath contact, as far as the row has them."""
     if pin.places is None:
         return []
     places = pin.places
@@ -86,7 +89,7 @@ def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
 
 
 def _of(key: str, dimension: str = "") -> Column[PlaceRow]:
-    """A number that some of the places have."""
+    """Return a column of a number that only some of the places have."""
     return Column(key, lambda row: getattr(row.of, key, None), dimension)
 
 
@@ -114,9 +117,7 @@ EDGE_COLUMNS: list[Column[PinRow[ContactEdge]]] = [
 
 
 def place_tables(results: Results) -> list[Table[Any]]:
-    """Of all rows: surface, section and what lies beneath contact, one below the other; and the
-    edges of lugs.
-    """
+    """Return the places of all rows, one below the other, and the edges of lugs."""
     units = results.units
     places = [row for pin in results.pins for row in place_rows(pin, units)]
     contacts = [(p, p.places.contact) for p in results.pins if p.places and p.places.contact]

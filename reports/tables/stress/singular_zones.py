@@ -22,7 +22,7 @@ from reports.tables.column import (
 
 @dataclass(frozen=True)
 class ShownZone:
-    """A zone with its number on the pin (one circle has one number in all cases); r its radius."""
+    """A zone with its number on the pin; a circle has the same number in all cases."""
 
     number: int
     found: SingularZone
@@ -41,7 +41,7 @@ class ShownZone:
 
     @property
     def exponents(self) -> str:
-        """Measured / theoretical; at the edge of a load the theory gives a logarithm."""
+        """The measured and the theoretical exponent; at a load's edge theory is logarithmic."""
         theory = self.found.exponent_theory
         known = "logarithm" if theory == 0.0 else engineering(theory, 3)
         return f"{engineering(self.found.exponent, 3)} / {known}"
@@ -54,7 +54,7 @@ class ShownZone:
 
 
 def pin_zones(results: Results, pin: str) -> dict[str, list[ShownZone]]:
-    """A pin's zones by case, numbered from its start."""
+    """Return the zones of a pin by case, numbered from its start."""
     cases = [p for p in results.pins if p.pin == pin]
     every = [zone for p in cases for zone in p.singular_at]
     # Cases differ in the point on the circle, not in the circle.
@@ -64,12 +64,12 @@ def pin_zones(results: Results, pin: str) -> dict[str, list[ShownZone]]:
 
 
 def circles(zones: Iterable[ShownZone]) -> list[ShownZone]:
-    """One zone per number, preferably from a case in which it governs."""
-    found: dict[int, ShownZone] = {}
+    """Return one zone per number, preferably from a case in which it governs."""
+    by_number: dict[int, ShownZone] = {}
     for zone in zones:
-        if zone.number not in found or zone.found.governs:
-            found[zone.number] = zone
-    return [found[number] for number in sorted(found)]
+        if zone.number not in by_number or zone.found.governs:
+            by_number[zone.number] = zone
+    return [by_number[number] for number in sorted(by_number)]
 
 
 def _circle(zone: SingularZone) -> tuple[str, tuple[str, str], str, str]:
@@ -87,7 +87,7 @@ class ZoneRow:
 
 
 def _intensity(name: str) -> Callable[[ZoneRow], float | None]:
-    """A number of how strong the field is, where that was measured."""
+    """Return a function that gives a strength of the singular field, where it was measured."""
     return lambda row: getattr(row.zone.found.strength, name, None)
 
 
@@ -123,7 +123,7 @@ DISPLAY_ORDER = ("zone", "z", "radius", "between", "kind", "exponent", "excluded
 
 
 def zones_table(results: Results) -> Table[ZoneRow]:
-    """Every zone of every pin and case."""
+    """Return every zone of every pin and case."""
     numbered = {pin: pin_zones(results, pin) for pin in dict.fromkeys(p.pin for p in results.pins)}
     rows = [
         ZoneRow(pin, zone, results.units)
@@ -134,7 +134,7 @@ def zones_table(results: Results) -> Table[ZoneRow]:
 
 
 def shown_zones(pin: PinResult, zones: list[ShownZone], units: Units) -> Table[ZoneRow]:
-    """The zones of a pin in a case, for people."""
+    """Return the zones of a pin in a case, for people."""
     heading = f"strength [{units.stress} {units.length}^exponent]"
     strength = read_only(heading, _intensity("along"))
     columns = [replace(strength, key="strength") if c.key == "strength" else c for c in COLUMNS]
