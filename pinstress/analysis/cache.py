@@ -103,14 +103,14 @@ class Cache:
         """Remove what was longest not used until all is within the limit; partial files too, which
         killed runs leave, and nothing that has another name than ours.
         """
-        found, room = [], self.limit
+        files, room = [], self.limit
         with suppress(OSError):  # it is not there, or not ours
             for entry in os.scandir(self.folder):
                 if CACHE_FILE_PATTERN.fullmatch(entry.name) and _ours(entry.path):
                     with suppress(FileNotFoundError):  # another run was quicker
                         seen = entry.stat(follow_symlinks=False)
-                        found.append((seen.st_mtime_ns, seen.st_size, entry.path))
-            for _, size, path in sorted(found, reverse=True):
+                        files.append((seen.st_mtime_ns, seen.st_size, entry.path))
+            for _, size, path in sorted(files, reverse=True):
                 room -= size
                 if room < 0:
                     Path(path).unlink(missing_ok=True)
@@ -147,13 +147,13 @@ def program() -> str:
     that whoever changes a formula does not meet the answers of the old one.
     """
     made_by = [(name, _version(name)) for name in REQUIRED_PACKAGES], portable()
-    found = hashlib.sha256(repr(made_by).encode())
+    digest = hashlib.sha256(repr(made_by).encode())
     root = Path(__file__).parents[2]
     for room in SOURCE_PACKAGES:
         for path in sorted((root / room).rglob("*.py")):
             name = path.relative_to(root).as_posix()
-            found.update(name.encode() + hashlib.sha256(path.read_bytes()).digest())
-    return found.hexdigest()
+            digest.update(name.encode() + hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
 
 
 def _version(name: str) -> str | None:

@@ -55,13 +55,13 @@ def motion_check(
     speed, acceleration = np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)
     rows = []
     for t, their_v, their_a in published.motion:
-        there = at_time(case, t * unit("time"))
-        if there is None or there.dynamics is None:
+        instant_loads = at_time(case, t * unit("time"))
+        if instant_loads is None or instant_loads.dynamics is None:
             raise study.error(
                 f"published.motion: time {t:g} {study.system.time} is outside case {check.case}",
                 code="time-outside",
             )
-        _, *rates = there.dynamics.motion.joint(check.joint)
+        _, *rates = instant_loads.dynamics.motion.joint(check.joint)
         at_v, at_a = (float(np.linalg.norm(x)) for x in rates)
         rows.append((t, their_v, their_a, at_v, at_a))
     return plain.MotionCheck(

@@ -34,9 +34,9 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
     if mechanism is not None:
         determined(study, mechanism)  # once, not in every case
     wrong = Errors(study.path)
-    found = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    attempts = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
     wrong.tell()
-    loads = {name: loads for name, loads in found.items() if loads is not None}
+    loads = {name: loads for name, loads in attempts.items() if loads is not None}
     require_times(study, {name: case.reactions.times for name, case in loads.items()})
     return loads
 

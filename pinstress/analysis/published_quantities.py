@@ -52,12 +52,12 @@ def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.Published
         )
     of, dimension = PUBLISHED_QUANTITIES[row.quantity]
     if row.time is not None:
-        there = at_time(case, row.time * study.system.factor("time"))
-        if there is None:
+        instant_loads = at_time(case, row.time * study.system.factor("time"))
+        if instant_loads is None:
             raise InputError(
                 f"{row.where}: case {row.case} has no time {row.time:g}", code="unknown-time"
             )
-        case = there
+        case = instant_loads
     try:
         if of == "connection":
             c = case.reactions.connections.index(row.name)

@@ -61,14 +61,14 @@ class RunResults(Results):
 
     def to_pandas(self, table: str = "safety_factors") -> pandas.DataFrame:
         """A table as a pandas frame. Raises: ImportError without pandas, ValueError."""
-        found, library = self._table(table), _library("pandas")
-        frame: pandas.DataFrame = library.DataFrame(list(found.cells()), columns=found.keys)
+        content, library = self._table(table), _library("pandas")
+        frame: pandas.DataFrame = library.DataFrame(list(content.cells()), columns=content.keys)
         return frame
 
     def to_polars(self, table: str = "safety_factors") -> polars.DataFrame:
         """A table as a polars frame. Raises: ImportError without polars, ValueError."""
-        found, library = self._table(table), _library("polars")
-        rows, columns = [list(row) for row in found.cells()], found.keys
+        content, library = self._table(table), _library("polars")
+        rows, columns = [list(row) for row in content.cells()], content.keys
         frame: polars.DataFrame = library.DataFrame(
             rows, schema=columns, orient="row", infer_schema_length=None
         )
@@ -85,8 +85,8 @@ class RunResults(Results):
         from reports.vtk.writer import grid
 
         content = block(self._field(pin, case), self.units)
-        made: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
-        return made
+        mesh: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
+        return mesh
 
     mesh = to_pyvista  # its name before
 
@@ -122,8 +122,8 @@ class RunResults(Results):
             with one_thread():
                 solve_tasks(dataclasses.replace(self.plan, tasks=tasks), self._keep)
         if (pin, case) not in self.fields:
-            there = ", ".join(f"{p} in {c}" for p, c in self.fields) or "none"
-            raise ValueError(f"no field of pin {pin} in {case}; there are {there}")
+            available = ", ".join(f"{p} in {c}" for p, c in self.fields) or "none"
+            raise ValueError(f"no field of pin {pin} in {case}; there are {available}")
         return self.fields[pin, case]
 
     def _keep(self, field: Field) -> None:
@@ -184,13 +184,13 @@ def solve(plan: Plan, *, fields: bool = False, jobs: int | None = 1) -> RunResul
     Raises: InputError where the study has [fatigue] and its extra is not installed.
     """
     require_fatigue(plan.study)
-    kept: dict[tuple[str, str], Field] = {}
+    kept_fields: dict[tuple[str, str], Field] = {}
 
     def keep(field: Field) -> None:
-        kept[field.pin, field.case] = field
+        kept_fields[field.pin, field.case] = field
 
     most = 1 if fields else processes(jobs)
     with one_thread():
         results = results_of(plan, solve_tasks(plan, keep if fields else keep_none, jobs=most))
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
-    return RunResults(**plain, fields=kept, plan=plan)
+    return RunResults(**plain, fields=kept_fields, plan=plan)

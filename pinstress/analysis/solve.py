@@ -77,12 +77,14 @@ def solve_tasks(
         Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
         for task in (plan.tasks[i] for i in order)
     ]
-    found: dict[int, PinOutcome] = {}
-    for i, made in zip(order, in_parallel(work, _together(plan, jobs), progress), strict=True):
-        found[i] = (
-            _failed(plan, plan.tasks[i], made.reason) if isinstance(made, ProcessDied) else made
+    outcomes: dict[int, PinOutcome] = {}
+    for i, outcome in zip(order, in_parallel(work, _together(plan, jobs), progress), strict=True):
+        outcomes[i] = (
+            _failed(plan, plan.tasks[i], outcome.reason)
+            if isinstance(outcome, ProcessDied)
+            else outcome
         )
-    return [found[i] for i in range(len(plan.tasks))]
+    return [outcomes[i] for i in range(len(plan.tasks))]
 
 
 def _in_units(unit: Unit, keep: Keep, field: Field) -> None:
@@ -185,9 +187,9 @@ def _joints(study: Study, task: Task) -> Joints:
 
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     study = plan.study
-    found = solutions(study, task, plan.asked, tell)
-    pressures = [solution.pressure for solution in found]
-    for solution, pressure in zip(found, pressures, strict=True):
+    solved = solutions(study, task, plan.asked, tell)
+    pressures = [solution.pressure for solution in solved]
+    for solution, pressure in zip(solved, pressures, strict=True):
         case = plan.loads[solution.peak.case]
         field = gather_fields.field(task, solution, case, plan.also, pressure)
         if field is not None:
@@ -195,23 +197,23 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
             keep(field)
     notes = shape_notes(task.pin)
     peaks = tuple(
-        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in found
+        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in solved
     )
-    ranges = (gather.landing_range(plan.loads, task, s) for s in found)
+    ranges = (gather.landing_range(plan.loads, task, s) for s in solved)
     landing = tuple(r for r in ranges if r is not None)
     beam = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
-    joints = tuple(s.joint for s in found) if task.lugs else _around(plan, task, peaks)
-    surfaces = surfaces_of(plan.loads, task, found, pressures)
-    histories, no_histories = _histories(task, found)
+    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, peaks)
+    surfaces = surfaces_of(plan.loads, task, solved, pressures)
+    histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, found)
+    to_do = change(plan.asked, task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, found, step, plan.sensitive)
-    limits = limit_loads(plan, task, found, tell)
+    sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
+    limits = limit_loads(plan, task, solved, tell)
     return PinOutcome(
         peaks,
         landing,
@@ -226,12 +228,12 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     )
 
 
-def _histories(task: Task, found: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
+def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
     """Of stress at the pin's critical points; why there are none if that fails, which must not
     take the pin's stress with it.
     """
     try:
-        return stress_histories(task.pin.name, found), ""
+        return stress_histories(task.pin.name, solved), ""
     except Exception as error:
         return (), f"{type(error).__name__}: {error}"
 

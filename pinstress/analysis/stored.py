@@ -64,8 +64,8 @@ class Entry:
     def answers(self, task: Task) -> bool:
         """Whether it is of this pin in these cases: files are named after them."""
         rows = [(task.pin.name, loads.case) for loads in task.loads]
-        own = [(p.pin, p.case) for p in self.solved.peaks]
-        return own == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
+        solved_rows = [(p.pin, p.case) for p in self.solved.peaks]
+        return solved_rows == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
 
 
 def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:

@@ -46,11 +46,11 @@ def limit_seconds(plan: Plan) -> float:
 
 
 def limit_loads(
-    plan: Plan, task: Task, found: Iterable[Solution], tell: Tell
+    plan: Plan, task: Task, solutions: Iterable[Solution], tell: Tell
 ) -> tuple[LimitLoad | None, ...]:
     """One for each case of a task, None where it is not requested."""
     rung = rung_of(plan, task.pin.name)
-    return tuple(_limit_load(plan, task, solved, rung, tell) for solved in found)
+    return tuple(_limit_load(plan, task, solved, rung, tell) for solved in solutions)
 
 
 def _limit_load(

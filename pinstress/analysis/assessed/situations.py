@@ -76,11 +76,11 @@ def load_factors(study: Study) -> LoadFactors:
     return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
 
 
-def factor_assumption(study: Study, found: Sequence[Assessed]) -> tuple[str, ...]:
+def factor_assumption(study: Study, assessments: Sequence[Assessed]) -> tuple[str, ...]:
     """A sentence on the factors that the study does not give, if any margin depends on them."""
     table = study.table.analysis
     assumed = [key for key in LOAD_FACTOR_KEYS if key not in table.model_fields_set]
-    if not assumed or not any(x.worst for x in found):
+    if not assumed or not any(x.worst for x in assessments):
         return ()
     values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
     return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)

@@ -53,31 +53,37 @@ def _in_lugs(study: Study) -> bool:
     )
 
 
-def results_of(plan: Plan, found: list[PinOutcome]) -> plain.Results:
+def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     """A plan's results from what was found of its tasks."""
     study = plan.study
-    found = [
-        replace(made, histories=with_sequences(study, plan.loads, made.histories)) for made in found
+    outcomes = [
+        replace(outcome, histories=with_sequences(study, plan.loads, outcome.histories))
+        for outcome in outcomes
     ]
     pins, cases = list(study.table.pin), list(plan.loads)
     rows = [
         (task, *row)
-        for task, made in zip(plan.tasks, found, strict=True)
+        for task, outcome in zip(plan.tasks, outcomes, strict=True)
         for row in zip(
-            made.peaks, made.joints or [None] * len(made.peaks), made.strength, strict=True
+            outcome.peaks,
+            outcome.joints or [None] * len(outcome.peaks),
+            outcome.strength,
+            strict=True,
         )
     ]
-    opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
+    opinions = {(o.pin, o.case): o for outcome in outcomes for o in outcome.opinions}
     limits = {
         (peak.pin, peak.case): limit
-        for made in found
-        for peak, limit in zip(made.peaks, made.limits, strict=False)  # none of a task that failed
+        for outcome in outcomes
+        for peak, limit in zip(
+            outcome.peaks, outcome.limits, strict=False
+        )  # none of a task that failed
     }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
-    beam = next((made.beam for made in found if made.beam is not None), None)
+    beam = next((outcome.beam for outcome in outcomes if outcome.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
-    landing = {(r.pin, r.case): r for made in found for r in made.landing}
-    fatigue, fatigue_margins = fatigue_of(plan, found)
+    landing = {(r.pin, r.case): r for outcome in outcomes for r in outcome.landing}
+    fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
         pins=tuple(
@@ -90,27 +96,27 @@ def results_of(plan: Plan, found: list[PinOutcome]) -> plain.Results:
             for p in results.pins
         ),
         landing=tuple(landing.values()),
-        surfaces=tuple(surface for made in found for surface in made.surfaces),
-        changes=_worst_changes(found),
-        sensitivities=_in_order(found, pins, cases, plan.sensitive),
-        histories=tuple(history for made in found for history in made.histories),
+        surfaces=tuple(surface for outcome in outcomes for surface in outcome.surfaces),
+        changes=_worst_changes(outcomes),
+        sensitivities=_in_order(outcomes, pins, cases, plan.sensitive),
+        histories=tuple(history for outcome in outcomes for history in outcome.histories),
         fatigue=fatigue,
         margins=(*results.margins, *fatigue_margins),
     )
     return _in_study_units(results, study)
 
 
-def _worst_changes(found: list[PinOutcome]) -> tuple[Remedy, ...]:
+def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
     """One for each pin, for the worst of its cases; the pin with the worst first."""
-    rows = sorted((x.change for x in found if x.change), key=lambda change: change.load_factor)
+    rows = sorted((x.change for x in outcomes if x.change), key=lambda change: change.load_factor)
     return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
 
 
 def _in_order(
-    found: list[PinOutcome], pins: list[str], cases: list[str], every: bool
+    outcomes: list[PinOutcome], pins: list[str], cases: list[str], every: bool
 ) -> tuple[PinSensitivities, ...]:
     """As the rows are; without `every` one for each pin, for the worst of its cases."""
-    rows = [row for made in found for row in made.sensitivities]
+    rows = [row for outcome in outcomes for row in outcome.sensitivities]
     if not every:
         rows = list({row.pin: row for row in sorted(rows, key=lambda row: row.maximum)}.values())
     return tuple(sorted(rows, key=lambda row: (pins.index(row.pin), cases.index(row.case))))
@@ -140,7 +146,7 @@ def _results(
     """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
     table = study.table
     tasks = {task.pin.name: task for task, *_ in reversed(rows)}
-    strength = [found for *_, found in rows]
+    strength = [assessment for *_, assessment in rows]
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -154,8 +160,8 @@ def _results(
             for name in table.pin
             if name in tasks
         ),
-        margins=tuple(margin for found in strength for margin in found.worst),
-        arms=tuple(found.arms for found in strength if found.arms),
+        margins=tuple(margin for assessment in strength for margin in assessment.worst),
+        arms=tuple(assessment.arms for assessment in strength if assessment.arms),
         **mechanics(study, loads, published),
         beam_check=beam,
         provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
@@ -184,7 +190,7 @@ def _pin_result(
     task: Task,
     peak: Maximum,
     joint: JointResult | None,
-    found: Assessed,
+    assessment: Assessed,
     published: Published,
 ) -> plain.PinResult:
     strength = task.material.yield_strength
@@ -222,7 +228,7 @@ def _pin_result(
         published_safety_factor=theirs[1],
         why=peak.why,
         singular_at=peak.singular_at,
-        margins=found.margins,
+        margins=assessment.margins,
         max_von_mises_interval=peak.interval,
         safety_factor_interval=_factors(peak, strength),
         error_parts={} if peak.parts is None else asdict(peak.parts),
@@ -324,10 +330,10 @@ def _spread(peak: Maximum) -> tuple[float, float] | None:
 def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
     """The cuts of a pin as reports draw them, in SI."""
     for name, cut in pin.cuts.items():
-        found = drawn(cut, pin.profile)
+        drawing = drawn(cut, pin.profile)
         size, offset, depth = _cut_sizes(cut)
         low, high = (cut.z, cut.z) if isinstance(cut, Hole) else _cut_ends(cut)
-        lines = tuple((tuple((z, x) for z, x in at.tolist()), hide) for at, hide in found.lines)
+        lines = tuple((tuple((z, x) for z, x in at.tolist()), hide) for at, hide in drawing.lines)
         yield CutShape(
             name,
             (max(low, 0.0), min(high, pin.length)),
@@ -336,7 +342,7 @@ def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
             depth,
             math.degrees(cut.angle),
             lines,
-            found.notches,
+            drawing.notches,
         )
 
 

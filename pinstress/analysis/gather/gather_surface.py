@@ -45,10 +45,10 @@ def surfaces_of(
     """
     together: dict[int, list[tuple[Solution, CellPressure | None]]] = {}
     for solution, pressure in zip(solutions, pressures, strict=True):
-        own = id(_unit_fields(solution.answer))
-        together.setdefault(own, []).append((solution, pressure))
-    found = (_surface(loads, task, each) for each in together.values())
-    return tuple(surface for surface in found if surface is not None)
+        mesh_id = id(_unit_fields(solution.answer))
+        together.setdefault(mesh_id, []).append((solution, pressure))
+    surfaces = (_surface(loads, task, group) for group in together.values())
+    return tuple(surface for surface in surfaces if surface is not None)
 
 
 def _unit_fields(answer: StressField | None) -> object:
@@ -63,11 +63,11 @@ def _unit_fields(answer: StressField | None) -> object:
 def _surface(
     loads: dict[str, CaseLoads],
     task: Task,
-    each: Sequence[tuple[Solution, CellPressure | None]],
+    solved: Sequence[tuple[Solution, CellPressure | None]],
 ) -> Surface | None:
     """Of cases solved on one mesh; None where no model has fields."""
-    found = [(s, s.answer, p) for s, p in each if s.answer is not None]
-    with_fields = [(s, a, p) for s, a, p in found if unit_surface(a) is not None]
+    answers = [(s, s.answer, p) for s, p in solved if s.answer is not None]
+    with_fields = [(s, a, p) for s, a, p in answers if unit_surface(a) is not None]
     if not with_fields:
         return None
     surface = unit_surface(with_fields[0][1])
@@ -79,12 +79,12 @@ def _surface(
     ]
     keep = np.ones(len(surface.points), dtype=bool)
     if surface.revolved:
-        kept = np.any(
+        required = np.any(
             [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
             axis=0,
         )
         surface, cases = fewer_loads(surface, cases)
-        keep = meridian_points(surface, cases, kept)
+        keep = meridian_points(surface, cases, required)
         cases = [
             replace(c, unread=_unread(loads[c.case], s, np.flatnonzero(keep), c.location))
             for c, (s, _, _) in zip(cases, with_fields, strict=True)
@@ -142,8 +142,8 @@ def _unread(
 
 
 def _zones(answer: StressField) -> Floats:
-    found = answer.singularities if isinstance(answer, HarmonicField | CutField) else ()
-    return np.array([(p.r, p.z, p.radius) for p in found]).reshape(-1, 3)
+    singularities = answer.singularities if isinstance(answer, HarmonicField | CutField) else ()
+    return np.array([(p.r, p.z, p.radius) for p in singularities]).reshape(-1, 3)
 
 
 def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
@@ -170,15 +170,15 @@ def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
     """Points (P,) of a meridian that the case needs: where its maximum is if it is on the surface,
     and where contact pressure jumps.
     """
-    kept = np.zeros(len(points), dtype=bool)
+    required = np.zeros(len(points), dtype=bool)
     if case.rings is not None:
         jumps = np.flatnonzero(np.diff(case.rings))
-        kept[jumps] = kept[jumps + 1] = True
+        required[jumps] = required[jumps + 1] = True
     if case.location is not None:
         x, y, z = case.location
         away = np.hypot(points[:, 0] - np.hypot(x, y), points[:, 2] - z)
-        kept |= away <= away.min() * (1.0 + 1e-9)
-    return kept
+        required |= away <= away.min() * (1.0 + 1e-9)
+    return required
 
 
 def _kept(case: SurfaceCase, keep: Mask) -> SurfaceCase:

@@ -74,11 +74,11 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
     """The parts of plain.Results that need no stresses."""
-    made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
+    dynamics = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
-        "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n])),
-        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
+        "drive": tuple(t for n, d in dynamics.items() for t in _drives(study, n, d, loads[n])),
+        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
@@ -90,9 +90,9 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
     """(T, A) what is shown as positions: lengths less their offsets, angles in degrees."""
     shown, less = dynamics.course[0], offsets(study)
-    for k, each in enumerate(dynamics.actuators):
-        if isinstance(each, Slider):
-            shown[:, k] = shown[:, k] - less.get(each.name, 0.0)
+    for k, actuator in enumerate(dynamics.actuators):
+        if isinstance(actuator, Slider):
+            shown[:, k] = shown[:, k] - less.get(actuator.name, 0.0)
         else:
             shown[:, k] = np.degrees(shown[:, k])
     return shown
@@ -141,22 +141,22 @@ def _reactions(
 def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
     if case.peaks is None:
         return ()
-    found = case.peaks
-    position: list[float | None] = [None] * len(found.force)
+    peaks = case.peaks
+    position: list[float | None] = [None] * len(peaks.force)
     if drive_position(study, case) is not None and case.solve is not None:
-        there = case.solve(np.array([peak.time for peak in found.force.values()]))
-        position = list(_drive_positions(study, there)[:, 0].tolist())
+        dynamics = case.solve(np.array([peak.time for peak in peaks.force.values()]))
+        position = list(_drive_positions(study, dynamics)[:, 0].tolist())
     return tuple(
         plain.PeakReaction(
             name,
             peak.value,
             peak.time,
-            tuple(found.vector[name].tolist()),
+            tuple(peaks.vector[name].tolist()),
             position[c],
-            found.moment[name].value,
+            peaks.moment[name].value,
             None if case.frictionless is None else case.frictionless.peaks.force[name].value,
         )
-        for c, (name, peak) in enumerate(found.force.items())
+        for c, (name, peak) in enumerate(peaks.force.items())
     )
 
 
@@ -169,14 +169,14 @@ def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> lis
     stored, shown = energy(motion), _drive_positions(study, dynamics)
     power, (_, speeds, rates) = dynamics.power, dynamics.course
     tables = []
-    for k, each in enumerate(dynamics.actuators):
-        slides = isinstance(each, Slider)
+    for k, actuator in enumerate(dynamics.actuators):
+        slides = isinstance(actuator, Slider)
         effort = None if case.over is None else case.over.drives[k]
         free = None if case.frictionless is None else case.frictionless.drives[k].largest.value
         tables.append(
             plain.DriveTable(
                 case=name,
-                name=each.name,
+                name=actuator.name,
                 kind="slider" if slides else "rotary",
                 time=dynamics.reactions.times,
                 position=shown[:, k],
@@ -193,15 +193,15 @@ def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> lis
     return tables
 
 
-def _effort(found: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
+def _effort(effort: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
     return plain.DriveEffort(
-        found.largest.value,
-        found.largest.time,
-        found.mean,
-        found.rms,
-        found.power.value,
-        found.power.time,
-        found.stroke if slides else float(np.degrees(found.stroke)),
+        effort.largest.value,
+        effort.largest.time,
+        effort.mean,
+        effort.rms,
+        effort.power.value,
+        effort.power.time,
+        effort.stroke if slides else float(np.degrees(effort.stroke)),
         frictionless,
     )
 
@@ -277,14 +277,14 @@ def _motion(
 def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:
     mechanism, motion = study.table.mechanism, dynamics.motion
     assert mechanism is not None
-    found = {}
+    paths = {}
     for name, point in mechanism.point.items():
         at = point.at if not isinstance(point.at, str) else motion.linkage.joint(point.at).at
         position, velocity, _ = motion.point(point.body, at)
         speed = np.linalg.norm(velocity, axis=1)
         curvature = motion.curvature(point.body, at)
-        found[name] = plain.PointPath(position, velocity, speed, curvature)
-    return found
+        paths[name] = plain.PointPath(position, velocity, speed, curvature)
+    return paths
 
 
 def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:
@@ -300,22 +300,24 @@ def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:
 
 
 def _slider_forces(dynamics: Dynamics) -> dict[str, plain.GuideForces]:
-    found = dynamics.sliders
+    sliders = dynamics.sliders
     return {
-        s.name: plain.GuideForces(found.normal[:, k], found.couple[:, k], found.friction[:, k])
+        s.name: plain.GuideForces(
+            sliders.normal[:, k], sliders.couple[:, k], sliders.friction[:, k]
+        )
         for k, s in enumerate(dynamics.motion.linkage.sliders)
     }
 
 
 def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
-    found, times = case.leg, case.reactions.times
-    assert found is not None
+    leg, times = case.leg, case.reactions.times
+    assert leg is not None
     assert times is not None
 
     def quantity(key: str, dimension: str) -> plain.Dimensioned:
-        return plain.Dimensioned(getattr(found, key), dimension, study.system.unit(dimension))
+        return plain.Dimensioned(getattr(leg, key), dimension, study.system.unit(dimension))
 
-    beta = plain.Dimensioned(np.degrees(found.motion.beta), "degrees", "deg")
+    beta = plain.Dimensioned(np.degrees(leg.motion.beta), "degrees", "deg")
     axes = "x' to the aircraft's right, y' ahead, z' up from the slope"
     return plain.LegTable(
         name,
@@ -352,19 +354,19 @@ def _direction(dynamics: Dynamics, body: str) -> Floats:
 
 def _pitch_curves(motion: Motion) -> tuple[PitchCurve, ...]:
     """Pitch circles of gears and pitch lines of racks as drawn: of all teeth, each circle once."""
-    found: dict[tuple[str, str, float], PitchCurve] = {}
+    curves: dict[tuple[str, str, float], PitchCurve] = {}
     for teeth in motion.linkage.teeth:
         for side in teeth.sides:
             if isinstance(side, Rack):
-                found[side.body, side.slider, 0.0] = _pitch_line(motion, teeth, side)
+                curves[side.body, side.slider, 0.0] = _pitch_line(motion, teeth, side)
                 continue
             centre = motion.linkage.joint(side.joint).at
             radius = float(f"{math.dist(centre, teeth.at):.9g}")
-            if (key := (side.body, side.joint, radius)) not in found:
-                found[key] = PitchCurve(
+            if (key := (side.body, side.joint, radius)) not in curves:
+                curves[key] = PitchCurve(
                     side.body, _moving_points(motion, side, centre, teeth.at), True
                 )
-    return tuple(found.values())
+    return tuple(curves.values())
 
 
 def _moving_points(motion: Motion, side: Gear | Rack, first: Point, second: Point) -> np.ndarray:

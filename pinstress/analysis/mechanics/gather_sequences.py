@@ -32,12 +32,12 @@ def _joined(parts: Sequence[Any]) -> Any:
     if isinstance(first, np.ndarray):
         return np.concatenate(parts)
     if is_dataclass(first):
-        own = {f.name: _joined([getattr(p, f.name) for p in parts]) for f in fields(first)}
-        return replace(first, **own)  # type: ignore[type-var]
+        joined = {f.name: _joined([getattr(p, f.name) for p in parts]) for f in fields(first)}
+        return replace(first, **joined)  # type: ignore[type-var]
     if isinstance(first, dict):
         return {k: _joined([p[k] for p in parts]) for k in first if all(k in p for p in parts)}
     if isinstance(first, tuple) and any(map(is_dataclass, first)):
-        return tuple(_joined(each) for each in zip(*parts, strict=True))
+        return tuple(_joined(items) for items in zip(*parts, strict=True))
     return first
 
 
@@ -54,8 +54,11 @@ def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats
     """(T,) s, to go with `_course`."""
     out = []
     for step in order:
-        own = times[step.case]
-        out.append(step.begin + (np.array([0.0, step.duration]) if own is None else own - own[0]))
+        case_times = times[step.case]
+        out.append(
+            step.begin
+            + (np.array([0.0, step.duration]) if case_times is None else case_times - case_times[0])
+        )
     return np.concatenate(out)
 
 
@@ -68,18 +71,18 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
     out: dict[str, list[Any]] = {"reactions": [], "drive": [], "motion": []}
     for name in complete(study, reactions):
         order = list(steps(study.table.sequence[name], times))
-        own = [step.case for step in order]
+        cases = [step.case for step in order]
         table = _reactions(name, reactions, order)
-        if all(case in motions for case in own):
-            held = dict.fromkeys(d for case, d in drives if case in own)
-            of = [{case: drives.get((case, drive)) for case in own} for drive in held]
-            found = [_drive(name, there, times, order) for there in of]
-            note = f"{table.note} {_work(study, found)}{_jumps(motions, order)}"
+        if all(case in motions for case in cases):
+            held = dict.fromkeys(d for case, d in drives if case in cases)
+            of = [{case: drives.get((case, drive)) for case in cases} for drive in held]
+            joined_drives = [_drive(name, by_case, times, order) for by_case in of]
+            note = f"{table.note} {_work(study, joined_drives)}{_jumps(motions, order)}"
             table = replace(table, note=note)
             out["motion"].append(_motion(name, motions, order))
-            out["drive"] += found
+            out["drive"] += joined_drives
         out["reactions"].append(table)
-    return {key: (*parts[key], *found) for key, found in out.items()}
+    return {key: (*parts[key], *tables) for key, tables in out.items()}
 
 
 def _reactions(
@@ -116,16 +119,16 @@ def _with_all(
     have = {c: k for k, c in enumerate(table.connections)}
     owner = {c: t for t in of.values() for c in t.connections}
     at = [have.get(c, -1) for c in names]
-    there = np.array([k >= 0 for k in at])
-    turn = None if table.turn is None else np.where(there, table.turn[:, at], 0.0)
+    present = np.array([k >= 0 for k in at])
+    turn = None if table.turn is None else np.where(present, table.turn[:, at], 0.0)
     of_name = {peak.connection: peak for peak in table.largest}
     return replace(
         table,
         connections=tuple(names),
         bodies=tuple(owner[c].bodies[owner[c].connections.index(c)] for c in names),
         pins=tuple(owner[c].pins[owner[c].connections.index(c)] for c in names),
-        forces=np.where(there[:, None], table.forces[:, at], 0.0),
-        moments=np.where(there[:, None], table.moments[:, at], 0.0),
+        forces=np.where(present[:, None], table.forces[:, at], 0.0),
+        moments=np.where(present[:, None], table.moments[:, at], 0.0),
         turn=turn,
         peaks=tuple(of_name.get(c, plain.PeakReaction(c, 0.0, None)) for c in names),
     )
@@ -135,14 +138,14 @@ def _peak(
     c: int, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
 ) -> plain.PeakReaction:
     """Of connection number c, where it first occurs."""
-    found = [(s, tables[s.case].peaks[c]) for s in order]
-    step, peak = max(found, key=lambda each: each[1].force)
-    own = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
-    rubs = [p.frictionless for _, p in found if p.frictionless is not None]
+    peaks = [(s, tables[s.case].peaks[c]) for s in order]
+    step, peak = max(peaks, key=lambda pair: pair[1].force)
+    case_time = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
+    rubs = [p.frictionless for _, p in peaks if p.frictionless is not None]
     return replace(
         peak,
-        time=step.begin + own,
-        moment=max(p.moment for _, p in found),
+        time=step.begin + case_time,
+        moment=max(p.moment for _, p in peaks),
         frictionless=max(rubs, default=None),
     )
 
@@ -154,9 +157,9 @@ def _steps_in_words(order: list[Occurrence]) -> str:
             runs[-1].append(step)
         else:
             runs.append([step])
-    each = (f"{len(r)} × {r[0].case}" if len(r) > 1 else r[0].case for r in runs)
+    run_texts = (f"{len(r)} × {r[0].case}" if len(r) > 1 else r[0].case for r in runs)
     end = order[-1].begin + order[-1].duration
-    return f"Sequence of {', '.join(each)}; {end:g} s. Stresses are those of its cases."
+    return f"Sequence of {', '.join(run_texts)}; {end:g} s. Stresses are those of its cases."
 
 
 def _motion(
@@ -166,10 +169,10 @@ def _motion(
     times = {case: m.time for case, m in used.items()}
     whole = _course(used, times, order)
 
-    def later(step: Occurrence, found: tuple[float, float | None]) -> tuple[float, float]:
-        value, time = found
-        own = 0.0 if time is None else time - _first(times[step.case])
-        return value, step.begin + own
+    def later(step: Occurrence, extreme: tuple[float, float | None]) -> tuple[float, float]:
+        value, time = extreme
+        case_time = 0.0 if time is None else time - _first(times[step.case])
+        return value, step.begin + case_time
 
     links = [(k, later(s, v)) for s in order for k, v in used[s.case].poorest.items()]
     angles = {k: min((v for link, v in links if link == k)) for k in dict.fromkeys(dict(links))}
@@ -186,13 +189,13 @@ def _motion(
 
 def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) -> str:
     """A sentence on the cases that do not begin where those before them end; empty without any."""
-    found: dict[str, None] = {}
+    jumps: dict[str, None] = {}
     for one, two in pairwise(order):
         end, begin = (motions[s.case].joint_position for s in (one, two))
         size = float(np.ptp(begin[0], axis=0).max()) or 1.0
         if np.abs(end[-1] - begin[0]).max() > JUMP_TOLERANCE * size:
-            found[f"{one.case} and {two.case}"] = None
-    return f" The linkage jumps between {'; '.join(found)}." if found else ""
+            jumps[f"{one.case} and {two.case}"] = None
+    return f" The linkage jumps between {'; '.join(jumps)}." if jumps else ""
 
 
 def _drive(
@@ -204,14 +207,14 @@ def _drive(
     """tables: of the drive by case; None where something else holds, and its force is zero."""
     like = next(t for t in tables.values() if t is not None)
     whole = {
-        case: t or _idle(like, 1 if (own := times[case]) is None else len(own))
+        case: t or _idle(like, 1 if (course := times[case]) is None else len(course))
         for case, t in tables.items()
     }
     joined, axis = _course(whole, times, order), _axis(times, order)
     work, done = [], 0.0
     for step in order:
-        own = whole[step.case].work
-        work.append(done + (own if times[step.case] is not None else np.zeros(2)))
+        case_work = whole[step.case].work
+        work.append(done + (case_work if times[step.case] is not None else np.zeros(2)))
         done = float(work[-1][-1])
     efforts = [(step, _effort(whole[step.case])) for step in order]
     effort = _over(efforts, float(np.nanmax(joined.position) - np.nanmin(joined.position)))
@@ -220,8 +223,8 @@ def _drive(
 
 def _work(study: Study, drives: list[plain.DriveTable]) -> str:
     unit, factor = study.system.unit("energy"), study.system.factor("energy")
-    each = (f"{d.name} {engineering(d.work[-1] / factor)} {unit}" for d in drives)
-    return f"Work per cycle: {', '.join(each)}."
+    drive_texts = (f"{d.name} {engineering(d.work[-1] / factor)} {unit}" for d in drives)
+    return f"Work per cycle: {', '.join(drive_texts)}."
 
 
 def _idle(like: plain.DriveTable, count: int) -> plain.DriveTable:
@@ -243,8 +246,8 @@ def _effort(table: plain.DriveTable) -> plain.DriveEffort:
 def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) -> plain.DriveEffort:
     lasts = np.array([step.duration for step, _ in efforts])
     mean, rms = (np.array([getattr(e, key) for _, e in efforts]) for key in ("mean", "rms"))
-    step, most = max(efforts, key=lambda each: each[1].largest)
-    busy, strongest = max(efforts, key=lambda each: each[1].power)
+    step, most = max(efforts, key=lambda pair: pair[1].largest)
+    busy, strongest = max(efforts, key=lambda pair: pair[1].power)
     rubs = [e.frictionless for _, e in efforts if e.frictionless is not None]
     return plain.DriveEffort(
         most.largest,
@@ -264,7 +267,7 @@ def with_sequences(
     """The same with the stress over every sequence whose cases are all among the loads: zero in
     those that do not load the pin.
     """
-    times = {case: found.reactions.times for case, found in loads.items()}
+    times = {case: case_loads.reactions.times for case, case_loads in loads.items()}
     orders = {n: list(steps(study.table.sequence[n], times)) for n in complete(study, loads)}
     return tuple(
         replace(history, cases=(*history.cases, *_sequences(history, orders)))

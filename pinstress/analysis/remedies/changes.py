@@ -51,8 +51,8 @@ def change(asked: Requirement, task: Task, solutions: tuple[Solution, ...]) -> R
     peak = worst.peak
     if strength is None or not peak.max_von_mises:
         return None
-    own = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
-    if max(own, _beneath(worst)) <= strength / required:
+    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    if max(stress, _beneath(worst)) <= strength / required:
         return None
     high = max(peak.upper_end, _beneath(worst))
     failing = FailingCase(task, worst, strength / required / high)
@@ -144,13 +144,13 @@ def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> flo
         if scale == 1.0:
             return factor
         wide = replace(problem, pin=widened(pin, min(scale, most)))
-        found = factor * before / result_on(wide, FIRST_RUNG).maximum
-        if scale > most and found < required:
+        new_factor = factor * before / result_on(wide, FIRST_RUNG).maximum
+        if scale > most and new_factor < required:
             raise NoSizeError(
                 f"a pin as wide as long, {most:.2g} times its diameters, has a factor of only "
-                f"{found:.2g}: lengthen its bands, strengthen it or reduce its loads"
+                f"{new_factor:.2g}: lengthen its bands, strengthen it or reduce its loads"
             )
-        return found
+        return new_factor
 
     return min(smallest(factor_at, required, close=FIRST_MESH_TOLERANCE).scale, most)
 

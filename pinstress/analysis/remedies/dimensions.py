@@ -60,14 +60,14 @@ def _band(name: str, end: int) -> TableChange:
 
 def _along(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
     """z: of all corners and bands at one z together."""
-    found: list[tuple[float, str, TableChange]] = []
+    coordinates: list[tuple[float, str, TableChange]] = []
     for line in MERIDIAN_KEYS:
         for k, corner in enumerate(getattr(table, line) or ()):
-            found.append((corner[Z_INDEX], f"{line}[{k + 1}][1]", _corner(line, k, Z_INDEX)))
+            coordinates.append((corner[Z_INDEX], f"{line}[{k + 1}][1]", _corner(line, k, Z_INDEX)))
     for name, band in table.band.items():
         for end, z in enumerate(band.z or ()):
-            found.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
-    for z, run in groupby(sorted(found, key=lambda one: one[0]), lambda one: one[0]):
+            coordinates.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
+    for z, run in groupby(sorted(coordinates, key=lambda one: one[0]), lambda one: one[0]):
         some = list(run)
         if z:
             yield some[0][1], z, [change for _, __, change in some]

@@ -75,10 +75,10 @@ def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
-    own = "pin", task.pin.name, "lug", name
+    lug_path = "pin", task.pin.name, "lug", name
     if name not in study.table.pin[task.pin.name].lug:
-        study = _changed(study, own, LugTable())
-    return _made_anew(_changed(study, (*own, *key.split(".")), value), task)
+        study = _changed(study, lug_path, LugTable())
+    return _made_anew(_changed(study, (*lug_path, *key.split(".")), value), task)
 
 
 def _with_material(study: Study, task: Task, name: str, key: str, value: float) -> Joint:

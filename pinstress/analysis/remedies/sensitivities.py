@@ -61,13 +61,13 @@ def sensitivities(
     """Of a task's worst case, or of every one. step: of a dimension (m) whose effect is shown; a
     tenth of it, or a hundredth, where that is no small part of the dimension.
     """
-    found = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
+    ranked = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
     dimensions = tuple(dimensions_of(study, task.pin))
     return tuple(
         _of_lugs(study, task, s, step if every else None)
         if task.lugs
         else _of_case(asked, task, s, dimensions, step)
-        for s in found[: None if every else 1]
+        for s in ranked[: None if every else 1]
     )
 
 
@@ -140,19 +140,19 @@ def differentiated(
     return scaled(derivatives(solved, dimensions), peak.max_von_mises)
 
 
-def scaled(found: Derivatives, maximum: float) -> Derivatives:
+def scaled(gradient: Derivatives, maximum: float) -> Derivatives:
     """With another maximum, Pa, and the same relative derivatives."""
-    times = maximum / found.maximum
+    times = maximum / gradient.maximum
     if times == 1.0:
-        return found
+        return gradient
     return replace(
-        found,
+        gradient,
         maximum=maximum,
-        by_dimension={key: times * x for key, x in found.by_dimension.items()},
-        by_force={key: times * x for key, x in found.by_force.items()},
-        by_moment={key: times * x for key, x in found.by_moment.items()},
-        poisson_ratio=times * found.poisson_ratio,
-        density=times * found.density,
+        by_dimension={key: times * x for key, x in gradient.by_dimension.items()},
+        by_force={key: times * x for key, x in gradient.by_force.items()},
+        by_moment={key: times * x for key, x in gradient.by_moment.items()},
+        poisson_ratio=times * gradient.poisson_ratio,
+        density=times * gradient.density,
     )
 
 
@@ -170,28 +170,28 @@ def _of_case(
     if not isinstance(task.pin, Pin):
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:
-        found = differentiated(asked, task, solution, dimensions)
+        gradient = differentiated(asked, task, solution, dimensions)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
-    if found is None or peak.governing is None:
+    if gradient is None or peak.governing is None:
         return replace(out, note=f"no derivatives with the {peak.model} model")
     rows = (
-        *_of_dimensions(found, dimensions, step),
-        *_of_loads(found, peak.governing),
-        *_of_material(found, task.material),
+        *_of_dimensions(gradient, dimensions, step),
+        *_of_loads(gradient, peak.governing),
+        *_of_material(gradient, task.material),
     )
-    return _with_rows(out, found, rows)
+    return _with_rows(out, gradient, rows)
 
 
 def _with_rows(
-    out: PinSensitivities, found: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
+    out: PinSensitivities, gradient: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
 ) -> PinSensitivities:
     return replace(
         out,
         rows=_sorted(rows, out.factor),
-        tied_places=found.tied_places,
-        tied_times=found.tied_times,
-        without=tuple(found.without.items()),
+        tied_places=gradient.tied_places,
+        tied_times=gradient.tied_times,
+        without=tuple(gradient.without.items()),
     )
 
 
@@ -209,20 +209,20 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
         return replace(out, note=IN_LUGS_NOTE)
     try:
         parameters = [x.of_joint for x in joint_parameters(study, task)]
-        found = differentiated_in_lugs(joined, task, parameters)
+        gradient = differentiated_in_lugs(joined, task, parameters)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
-    if found is None:
+    if gradient is None:
         return replace(out, note=f"no derivatives with the {peak.model} model")
     rows = [
-        *_of_forces(found.by_force, "force", links.surfaces, links.forces[0], maximum),
-        *_of_forces(found.by_moment, "moment", links.surfaces, links.moments[0], maximum),
-        *_of_joint(joint_parameters(study, task), found.by_parameter, maximum, step),
+        *_of_forces(gradient.by_force, "force", links.surfaces, links.forces[0], maximum),
+        *_of_forces(gradient.by_moment, "moment", links.surfaces, links.moments[0], maximum),
+        *_of_joint(joint_parameters(study, task), gradient.by_parameter, maximum, step),
     ]
     if strength is not None:
         key, more = f"material.{task.material.name}.yield_strength", STEP_FRACTION * strength
         rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
-    return _with_rows(replace(out, changing=found.changing), found, rows)
+    return _with_rows(replace(out, changing=gradient.changing), gradient, rows)
 
 
 def _of_joint(
@@ -275,27 +275,27 @@ class _Parameter:
 
 
 def _of_dimensions(
-    found: Derivatives, dimensions: tuple[Dimension, ...], step: float
+    gradient: Derivatives, dimensions: tuple[Dimension, ...], step: float
 ) -> Iterator[_Parameter]:
     for dimension in dimensions:
-        if dimension.key in found.by_dimension:
+        if dimension.key in gradient.by_dimension:
             more = _little(step, dimension.value)
-            stress = found.by_dimension[dimension.key]
-            relative = -stress / found.maximum
+            stress = gradient.by_dimension[dimension.key]
+            relative = -stress / gradient.maximum
             yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
 
 
 def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
     """The largest effects first."""
-    return tuple(each.sensitivity(factor) for each in sorted(rows, key=lambda x: -abs(x.effect)))
+    return tuple(row.sensitivity(factor) for row in sorted(rows, key=lambda x: -abs(x.effect)))
 
 
-def _of_loads(found: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
+def _of_loads(gradient: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
     for kind, by, given in (
-        ("force", found.by_force, loads.forces[0]),
-        ("moment", found.by_moment, loads.moments[0]),
+        ("force", gradient.by_force, loads.forces[0]),
+        ("moment", gradient.by_moment, loads.moments[0]),
     ):
-        yield from _of_forces(by, kind, loads.surfaces, given, found.maximum)
+        yield from _of_forces(by, kind, loads.surfaces, given, gradient.maximum)
 
 
 def _of_forces(
@@ -313,16 +313,16 @@ def _of_forces(
             yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
 
 
-def _of_material(found: Derivatives, material: Material) -> Iterator[_Parameter]:
+def _of_material(gradient: Derivatives, material: Material) -> Iterator[_Parameter]:
     rho, strength = material.density, material.yield_strength
     for name, kind, value, step, stress in (
-        ("youngs_modulus", "stress", material.youngs_modulus, None, found.youngs_modulus),
-        ("poisson_ratio", "1", material.poisson_ratio, POISSON_RATIO_STEP, found.poisson_ratio),
-        ("density", "density", rho, None, found.density),
+        ("youngs_modulus", "stress", material.youngs_modulus, None, gradient.youngs_modulus),
+        ("poisson_ratio", "1", material.poisson_ratio, POISSON_RATIO_STEP, gradient.poisson_ratio),
+        ("density", "density", rho, None, gradient.density),
         ("yield_strength", "stress", strength, None, 0.0),
     ):
         if value is not None:
-            relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / found.maximum
+            relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / gradient.maximum
             more = STEP_FRACTION * value if step is None else step
             yield _Parameter(
                 f"material.{material.name}.{name}", kind, value, more, stress, relative

@@ -42,8 +42,8 @@ def given_warnings(study: Study) -> list[str]:
 
 def other_warnings(study: Study, todo: list[Task]) -> list[str]:
     """The same of all else, from what is to be solved."""
-    found = ((task.pin.name, *each) for task in todo for each in _reacted(study, task).items())
-    return [text for pin, case, text in found if not _stated(study, pin, case)]
+    rows = ((task.pin.name, *item) for task in todo for item in _reacted(study, task).items())
+    return [text for pin, case, text in rows if not _stated(study, pin, case)]
 
 
 def _stated(study: Study, pin: str, case: str) -> bool:
@@ -102,7 +102,7 @@ def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
     (force, couple, torque), size = balance.shares, study.system.factor
     n, nm = study.system.force, study.system.unit("energy")
     by = "of the largest force times the length of the pin"
-    found = (
+    residuals = (
         (force, f"a force of {_shown(balance.left[0] / size('force'))} {n} ({force:.1%} of the "
          "largest)"),
         (couple, f"a couple across the axis of {_shown(balance.left[1] / size('moment'))} {nm} "
@@ -110,7 +110,7 @@ def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
         (torque, f"a torque of {_shown(balance.left[2] / size('moment'))} {nm} ({torque:.1%} of "
          "the largest)"),
     )  # fmt: skip
-    parts = [text for share, text in found if share > MIN_REPORTED_SHARE]
+    parts = [text for share, text in residuals if share > MIN_REPORTED_SHARE]
     where = "links" if task.lugs else "bands"
     return (
         f"case.{case.case}: the loads on pin {task.pin.name} are not quite in equilibrium"

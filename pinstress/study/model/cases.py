@@ -159,10 +159,10 @@ def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
     at = partial(_hinge, study, name)
     times = instants(study, case)
     note = f"Axes of the hinge: {LEG_AXES}. The moment about z is the actuator's, not the pin's."
-    found = dynamics(study, times)
+    leg = dynamics(study, times)
     peaks = peak_forces(times, at)
     moving = MovingLoads(partial(_without_joints, at), times)
-    return CaseLoads(at(times), note=note, at=at, leg=found, peaks=peaks, moving=moving)
+    return CaseLoads(at(times), note=note, at=at, leg=leg, peaks=peaks, moving=moving)
 
 
 def _hinge(study: Study, name: str, times: Floats) -> Reactions:
@@ -204,39 +204,39 @@ def _motion(
     applied, note = applied_loads(study, name, case, mechanism)
     moved = _Moved(name, course, applied)
     if not extremes:
-        found = moved.solve(np.linspace(0.0, end, case.samples))
-        require_possible(course, moved.solve, found)
-        return CaseLoads(found.reactions, found, note)
+        solved = moved.solve(np.linspace(0.0, end, case.samples))
+        require_possible(course, moved.solve, solved)
+        return CaseLoads(solved.reactions, solved, note)
     return _over_time(moved, case.samples, note)
 
 
 def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
     """A case with its extremes."""
     course = moved.course
-    found = moved.solve(np.linspace(course.first, course.last, samples))
-    over = over_time(course, moved.solve, found)
+    solved = moved.solve(np.linspace(course.first, course.last, samples))
+    over = over_time(course, moved.solve, solved)
     free = None
     if course.loops.linkage.rubs:
         smooth = replace(moved, friction=False).solve
-        free = over_time(course, smooth, smooth(found.motion.times))
+        free = over_time(course, smooth, smooth(solved.motion.times))
     return CaseLoads(
-        found.reactions,
-        found,
+        solved.reactions,
+        solved,
         note,
         moved.reactions,
         solve=moved.solve,
         peaks=over.peaks,
         over=over,
         frictionless=free,
-        moving=MovingLoads(moved.acting, found.motion.times, over.corners),
+        moving=MovingLoads(moved.acting, solved.motion.times, over.corners),
     )
 
 
 def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes: bool) -> CaseLoads:
     leg, where = drop(study, name, case, mechanism)
     if not extremes:  # its course takes SciPy: extended and at rest instead
-        found = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
-        return CaseLoads(found.reactions, found)
+        solved = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
+        return CaseLoads(solved.reactions, solved)
     landing = fallen(study, name, leg)
     course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
     loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
@@ -262,8 +262,8 @@ def _on_ground(
     applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
     note = ground_note(study, case, reference) if reference else ""
     loads: list[Load] = [*springs(study, mechanism), applied]
-    found = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
-    return CaseLoads(found.reactions, found, note)
+    solved = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
+    return CaseLoads(solved.reactions, solved, note)
 
 
 def _at_instant(
@@ -273,10 +273,10 @@ def _at_instant(
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     motion = move(mechanism, drives, np.zeros(1))
     hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
-    found = motion_reactions(name, motion, applied, timed=False, hold=hold)
+    solved = motion_reactions(name, motion, applied, timed=False, hold=hold)
     return CaseLoads(
-        found.reactions,
-        found,
+        solved.reactions,
+        solved,
         note,
         range=over_range(study, name, case, motion),
         impulse=with_impulse(study, name, case, motion),

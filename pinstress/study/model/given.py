@@ -31,5 +31,5 @@ def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
         except ArgumentError as error:
             raise TableError(f"{case.table}: {error}", error.code) from None
 
-    found = read_reactions(study.path_to(case.table), layout, unit, known)
-    return replace(found, case=name)
+    reactions = read_reactions(study.path_to(case.table), layout, unit, known)
+    return replace(reactions, case=name)

@@ -55,8 +55,8 @@ def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
 
     Raises: as that and `apart`.
     """
-    found: RecognisedProfile = apart(recognised_profile, file, upright)
-    return found
+    profile: RecognisedProfile = apart(recognised_profile, file, upright)
+    return profile
 
 
 def require_readable(file: BodyFile) -> None:
@@ -73,11 +73,11 @@ def require_readable(file: BodyFile) -> None:
         ) from None
 
 
-def _profiled(file: BodyFile, found: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
+def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
     """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
-    start, stripes = found.start * file.unit, []
+    start, stripes = recognised.start * file.unit, []
     for place in file.places:
-        at = found.surfaces.get(place.surface or "")
+        at = recognised.surfaces.get(place.surface or "")
         if place.z is not None:
             at = place.z[0] - start, place.z[1] - start
         if at is None:
@@ -85,24 +85,28 @@ def _profiled(file: BodyFile, found: RecognisedProfile, clamps: set[str]) -> Pin
             raise NotTurnedError(file.name, file.path.name, why)
         stripes.append(Stripe(place.name, *at, place.connection))
     named = {place.name for place in file.places}
-    stripes += [Stripe(c, *found.surfaces[c], False) for c in clamps - named if c in found.surfaces]
+    stripes += [
+        Stripe(c, *recognised.surfaces[c], False)
+        for c in clamps - named
+        if c in recognised.surfaces
+    ]
     try:
-        profile = with_stripes(found.pin(file.name), stripes)
-        pin = CutPin.of(profile, found.cuts)
+        profile = with_stripes(recognised.pin(file.name), stripes)
+        pin = CutPin.of(profile, recognised.cuts)
         for clamp in clamps:
             pin.surface(clamp)
     except GeometryError as error:
         raise NotTurnedError(file.name, file.path.name, str(error)) from None
     counted = (
         (len(profile.segments), "segment"),
-        *((sum(c.what == kind for c in found.cuts), kind) for kind in CUT_KINDS),
+        *((sum(c.what == kind for c in recognised.cuts), kind) for kind in CUT_KINDS),
     )
     parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
     source = f"{file.path.name} is taken as a profile: {parts}"
-    if found.start:
-        source += f"; z counts from its start face, at z = {found.start:g} of the file"
+    if recognised.start:
+        source += f"; z counts from its start face, at z = {recognised.start:g} of the file"
     profile = replace(profile, source=source)
-    return replace(pin, profile=profile) if found.cuts else profile
+    return replace(pin, profile=profile) if recognised.cuts else profile
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
@@ -115,10 +119,10 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
     job: Job[Any] = Job(
         f"pin {file.name}", partial(_read, work, file, arguments, limits.memory), limits
     )
-    (made,) = in_parallel([job], 2, anew=not can_fork())
-    if isinstance(made, ProcessDied):
-        why = made.reason
-        if made.status == -signal.SIGABRT and not portable():
+    (result,) = in_parallel([job], 2, anew=not can_fork())
+    if isinstance(result, ProcessDied):
+        why = result.reason
+        if result.status == -signal.SIGABRT and not portable():
             why += f"; its memory limit is {limits.memory / 2**30:g} GB"
         raise GeometryError(
             f"pin {file.name}: reading {file.path.name} failed ({why}): it is "
@@ -126,7 +130,7 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
             "or mesh it in another program and give the mesh",
             "reading-crashed",
         )
-    return made
+    return result
 
 
 def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:

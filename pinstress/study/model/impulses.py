@@ -47,8 +47,8 @@ def applied_loads(
     study: Study, name: str, case: MechanismCase, mechanism: Linkage
 ) -> tuple[tuple[Load, ...], str]:
     """The loads of a case with the mechanism's springs, and how impulses among them came about."""
-    made = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
-    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(made)]
+    applied = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
+    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(applied)]
     notes = [_impulse_note(study, x) for x in case.apply if x.impulse is not None]
     return tuple(loads), " ".join(notes)
 
@@ -65,8 +65,8 @@ def _load(
     table = case.apply[which]
     force = table.force or (0.0, 0.0)
     if (impulse := table.impulse) is not None:
-        own = _size(impulse, impulse.velocity_change, impulse.impulse_time)
-        force = _directed(impulse.direction, own if size is None else size)
+        nominal = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+        force = _directed(impulse.direction, nominal if size is None else size)
     elif table.direction is not None:
         force = _directed(table.direction, 1.0)
     return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
@@ -151,7 +151,7 @@ def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats
     others: list[Load] = [*springs(study, mechanism)]
     for k in range(len(case.apply)):
         others += _load(study, name, case, k, mechanism) if k != which else ()
-    found = [
+    reactions = [
         motion_reactions(
             name,
             motion,
@@ -162,6 +162,7 @@ def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats
         for size in sizes.tolist()
     ]
     forces, moments, turn = (
-        np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
+        np.concatenate([getattr(r, key) for r in reactions])
+        for key in ("forces", "moments", "turn")
     )
-    return replace(found[0], forces=forces, moments=moments, turn=turn)
+    return replace(reactions[0], forces=forces, moments=moments, turn=turn)

@@ -62,8 +62,8 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
         key = f"case.{name}.tyre"
         tyre = _tyre(case.tyre)
         key = f"case.{name}"
-        own = case.unsprung or _unsprung(case, mechanism, where)
-        return _drop(case, mechanism, strut, rises, tyre, own), where
+        unsprung = case.unsprung or _unsprung(case, mechanism, where)
+        return _drop(case, mechanism, strut, rises, tyre, unsprung), where
     except ArgumentError as error:
         raise study.error(f"{key}: {error}", code=error.code) from None
 
@@ -75,37 +75,37 @@ def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
             "give unsprung: without a strut nothing in the mechanism moves with the axle",
             "no-unsprung",
         )
-    found = effective_mass(mechanism, where, case.strut.stroke)
-    if found <= 0.0:
+    mass = effective_mass(mechanism, where, case.strut.stroke)
+    if mass <= 0.0:
         raise ArgumentError(
             "give unsprung, or masses of the bodies that move with the axle: the mechanism has "
             "none",
             "no-unsprung",
         )
-    return found
+    return mass
 
 
 def unsprung_warnings(study: Study) -> list[str]:
     """For every drop whose unsprung mass is not that of its mechanism, with both."""
     drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
-    found = []
+    warnings = []
     for name, case in drops.items():
         if case.unsprung is None or case.strut is None:
             continue
         try:
             mechanism = linkage(study)
-            own = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
+            mass = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
         except (InputError, LinkageError, ArgumentError):
             continue  # whoever needs the case says what is wrong with it
-        if abs(case.unsprung - own) > UNSPRUNG_MASS_TOLERANCE * own:
+        if abs(case.unsprung - mass) > UNSPRUNG_MASS_TOLERANCE * mass:
             text = (
                 f"case.{name}.unsprung: {case.unsprung:.4g} kg is stated, but the mechanism's "
-                f"bodies move with the axle like {own:.4g} kg; the stated mass is used for the "
+                f"bodies move with the axle like {mass:.4g} kg; the stated mass is used for the "
                 "fall, the bodies' for the forces in the leg. Remove it to use that of the "
                 "mechanism, or correct the masses"
             )
-            found.append(str(study.error(text)))
-    return found
+            warnings.append(str(study.error(text)))
+    return warnings
 
 
 def _drop(
@@ -153,10 +153,10 @@ def _strut(table: StrutTable) -> Strut:
         assert table.spring is not None
         spring = LinearSpring(table.spring.stiffness, table.spring.preload)
     oil = table.oil
-    made = None
+    damper = None
     if oil is not None:
-        made = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
-    return Strut(spring, table.stroke, made, table.friction)
+        damper = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
+    return Strut(spring, table.stroke, damper, table.friction)
 
 
 def _tyre(table: TyreTable) -> PowerTyre | TableTyre:

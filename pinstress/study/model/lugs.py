@@ -86,8 +86,8 @@ def known_lugs(study: Study, pin: Pin) -> tuple[Lug, ...]:
     """The same of a pin that is known to sit in lugs. Raises: ArgumentError for impossible ones."""
     table = study.table.pin[pin.name]
     made_of = material(study, table.material)
-    each = _held(pin, table)
-    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in each)
+    names = _held(pin, table)
+    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in names)
 
 
 def _held(pin: Pin, table: PinTable) -> tuple[str, ...]:
@@ -181,12 +181,12 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
-        found = tuple(
+        assumed = tuple(
             _lug(study, pin, name, table.lug.get(name, LugTable()), made_of) for name in names
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))
-    return AssumedLugs(free, found, not table.lug)
+    return AssumedLugs(free, assumed, not table.lug)
 
 
 def _freed(pin: Pin, clamped: list[str]) -> Pin:

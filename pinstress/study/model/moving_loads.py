@@ -62,5 +62,5 @@ class MovingLoads:
         count, values = len(r.connections), self._resolved.interpolate(times)
         forces, moments, turn, joints = np.split(values, np.cumsum([3, 3, 1]) * count, axis=1)
         forces, moments = (x.reshape(len(times), count, 3) for x in (forces, moments))
-        found = Reactions(r.case, times, r.connections, r.bodies, forces, moments, turn)
-        return found, joints.reshape(len(times), -1, 2)
+        reactions = Reactions(r.case, times, r.connections, r.bodies, forces, moments, turn)
+        return reactions, joints.reshape(len(times), -1, 2)

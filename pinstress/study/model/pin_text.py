@@ -63,12 +63,12 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
         raise InputError(str(error), code=error.code) from None
 
 
-def _text(file: BodyFile, found: RecognisedProfile, unit: str, material: str) -> str:
-    pin, head = found.pin(file.name), f"[pin.{_key(file.name)}]"
+def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) -> str:
+    pin, head = profile.pin(file.name), f"[pin.{_key(file.name)}]"
     lines = [
         f"# From {json.dumps(file.path.name)}:",
-        f"# the axis is along {_vector(found.along)} of the file, and",
-        f"# z = 0 is {found.start:g} {unit} along it; angles count from {_vector(found.x)}.",
+        f"# the axis is along {_vector(profile.along)} of the file, and",
+        f"# z = 0 is {profile.start:g} {unit} along it; angles count from {_vector(profile.x)}.",
         head,
         f"material = {json.dumps(material, ensure_ascii=False)}  # a [material] of the study",
         "profile = [",
@@ -76,7 +76,7 @@ def _text(file: BodyFile, found: RecognisedProfile, unit: str, material: str) ->
         "]",
         *_listed(pin, file.unit, unit),
     ]
-    for cut in found.cuts:
+    for cut in profile.cuts:
         lines += ["", f"[[pin.{_key(file.name)}.{cut.what}]]", *_cut(cut, file.unit, unit)]
     return "\n".join(lines) + "\n"
 

@@ -45,18 +45,18 @@ def pin(study: Study, name: str) -> PinLike:
     """
     p = study.table.pin[name]
     try:
-        made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
+        shape = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
     except GeometryError as error:
         raise study.error(str(error), _key(name, p, error.at), error.code) from None
     unknown: list[Wrong] = []
     for key, clamp in _clamps(study, name):
         try:
-            made.surface(clamp)
+            shape.surface(clamp)
         except GeometryError as error:
             unknown.append(Wrong(str(error), at=key, code=error.code))
     if unknown:
         raise study.errors(unknown)
-    return made
+    return shape
 
 
 def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:

@@ -101,16 +101,16 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         left_out[case] = tuple(c for c in here if c in constrained)
         spread = study.table.case[case].distribution
         heavy = not clamps and bool(made_of.density)
-        made = partial(_pin_loads, case, given, applied, spread, heavy)
+        build = partial(_pin_loads, case, given, applied, spread, heavy)
         if given.moving is None:
-            cases.append(made(given.reactions))
+            cases.append(build(given.reactions))
         else:
-            between[case] = partial(_at, made, given.moving)
+            between[case] = partial(_at, build, given.moving)
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
-            ranges[case] = made(given.range.reactions)
+            ranges[case] = build(given.range.reactions)
         if given.impulse is not None:
-            impulses[case] = PinImpulse(given.impulse.time, made(given.impulse.reactions))
+            impulses[case] = PinImpulse(given.impulse.time, build(given.impulse.reactions))
     in_lugs = lugs(study, pin, clamps) if cases else ()
     around = assumed_lugs(study, pin, clamps) if cases and not in_lugs else None
     given_ones = given_lugs(study, pin, in_lugs) if cases else ()
@@ -120,8 +120,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
     )  # fmt: skip
 
 
-def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:
-    return made(*moving.at(times))
+def _at(build: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:
+    return build(*moving.at(times))
 
 
 def _pin_loads(
@@ -155,8 +155,10 @@ def _own_weight(
     motion = case.dynamics.motion
     for k, joint in enumerate(motion.linkage.joints):
         if any(c.name == connection for c in joint.connections):
-            own = motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
+            acceleration = (
+                motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
+            )
             across = np.zeros((len(reactions), 3))
-            across[:, :2] = np.array(motion.linkage.gravity) - own
+            across[:, :2] = np.array(motion.linkage.gravity) - acceleration
             return reactions.to_pin_axes(across, connection)
     return np.zeros(3)

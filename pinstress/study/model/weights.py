@@ -20,12 +20,12 @@ def weight_warnings(study: Study) -> list[str]:
     if mechanism is None:
         return []
     gravity = math.hypot(*mechanism.gravity) or STANDARD_GRAVITY
-    found = []
+    warnings = []
     for name, joint in mechanism.joint.items():
         if joint.weight is not None:
             said = _idle(name, joint.fixed_in) or _differs(study, name, joint.weight, gravity)
-            found += [str(study.error(f"mechanism.joint.{name}.weight: {said}"))] if said else []
-    return found
+            warnings += [str(study.error(f"mechanism.joint.{name}.weight: {said}"))] if said else []
+    return warnings
 
 
 def _idle(name: str, fixed_in: str | None) -> str:
@@ -44,14 +44,14 @@ def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
     if not density:
         return ""
     try:
-        own = weight(pin(study, name), density, gravity)
+        computed = weight(pin(study, name), density, gravity)
     except InputError:
         return ""  # whoever needs the pin says what is wrong with it
-    if abs(stated - own) <= STATED_WEIGHT_TOLERANCE * own:
+    if abs(stated - computed) <= STATED_WEIGHT_TOLERANCE * computed:
         return ""
     unit, factor = study.system.force, study.system.factor("force")
     return (
         f"{stated / factor:.4g} {unit} is stated, but the pin's shape and density give "
-        f"{own / factor:.4g} {unit}; the stated weight is used. Remove it to use the weight of the "
-        "shape, or correct the shape or the density"
+        f"{computed / factor:.4g} {unit}; the stated weight is used. Remove it to use the weight "
+        "of the shape, or correct the shape or the density"
     )

@@ -38,9 +38,9 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
     factors = [f"{key} {value:g}" for key, value in values.items()]
     rest = required / math.prod(values.values())
     times = [] if note or abs(rest - 1.0) <= FACTOR_DIFFERENCE_TOLERANCE else [f"{rest:.3g}"]
-    found = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
+    statement = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
     return (
-        f"{REQUIRED_FACTOR_KEY}: {required:g} {found}{' by its note' * bool(note)}, and the "
+        f"{REQUIRED_FACTOR_KEY}: {required:g} {statement}{' by its note' * bool(note)}, and the "
         f"margins of safety "
         f"already contain {' and '.join(keys)}; the required factor compares yield with the stress "
         "under the loads of the study as they are (1: no yielding at limit load); if it is another "

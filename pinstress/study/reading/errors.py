@@ -28,7 +28,7 @@ class InputError(Exception):
         super().__init__("\n".join(map(clipped, message.split("\n"))))
         errors = tuple(listed) or ((str(self), code),)
         self.lines = tuple(line for line, _ in errors)
-        self.codes = tuple(each for _, each in errors)
+        self.codes = tuple(error_code for _, error_code in errors)
         self.more = more
 
     @property

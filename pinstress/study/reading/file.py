@@ -64,8 +64,8 @@ class Study:
         """Implausible values, each with its line: the first ones, and the number of others."""
         if not self.questions:
             return ()
-        found = self.errors([Wrong(question) for question in self.questions])
-        return found.lines + ((f"{self.path}: and {found.more:,} more",) if found.more else ())
+        errors = self.errors([Wrong(question) for question in self.questions])
+        return errors.lines + ((f"{self.path}: and {errors.more:,} more",) if errors.more else ())
 
     @property
     def system(self) -> UnitSystem:
@@ -219,8 +219,8 @@ def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -
 def _written(value: Any) -> str:
     """A value as the study writes it, shortened; of a table its values with their keys."""
     if isinstance(value, dict):
-        own = ((k, v) for k, v in value.items() if not isinstance(v, dict))
-        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(own, MAX_LISTED_NAMES))
+        numbers = ((k, v) for k, v in value.items() if not isinstance(v, dict))
+        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(numbers, MAX_LISTED_NAMES))
     if isinstance(value, list):
         more = ", ..." * (len(value) > MAX_LISTED_NAMES)
         return f"[{', '.join(map(_written, value[:MAX_LISTED_NAMES]))}{more}]"
@@ -229,7 +229,7 @@ def _written(value: Any) -> str:
     return cut(value) if isinstance(value, str) else in_toml(value)
 
 
-def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
+def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) -> Any:
     """The same tree without provenance and notes, which go to `found`; of { value, provenance,
     note } the value remains. long: where keys go that are too long.
     """
@@ -242,13 +242,13 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
                 )
             )
             return []
-        return [unwrapped(v, f"{key}[{i}]", found, long) for i, v in enumerate(node, 1)]
+        return [unwrapped(v, f"{key}[{i}]", sourced, long) for i, v in enumerate(node, 1)]
     if not isinstance(node, dict):
         return node
     if isinstance(node.get("provenance"), str):
         kind, note = node["provenance"], str(node.get("note", ""))
         node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
-        found.append(Sourced(key, kind, note, _written(node.get("value", node))))
+        sourced.append(Sourced(key, kind, note, _written(node.get("value", node))))
         if set(node) == {"value"}:
             return node["value"]
     long += [
@@ -257,7 +257,7 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
         for k in node if len(k) > MAX_KEY_LENGTH
     ]  # fmt: skip
     inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= MAX_KEY_LENGTH}
-    return {k: unwrapped(node[k], place, found, long) for k, place in inner.items()}
+    return {k: unwrapped(node[k], place, sourced, long) for k, place in inner.items()}
 
 
 def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:

@@ -63,7 +63,7 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
 def key_parts(study: Study, key: str) -> list[str | int]:
     """The parts of a key: names, and indices from 0. Raises: InputError."""
-    found: list[str | int] = []
+    parts: list[str | int] = []
     at = 0
     while at < len(key):
         match = KEY_PART_PATTERN.match(key, at)
@@ -72,12 +72,12 @@ def key_parts(study: Study, key: str) -> list[str | int]:
                 f"{as_text(key)} is not a key; a key looks like pin.E.profile[2].diameter",
                 code="not-a-key",
             )
-        found.append(match[1] if match[1] is not None else match[2])
-        found += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
+        parts.append(match[1] if match[1] is not None else match[2])
+        parts += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
         at = match.end()
-    if not found:
+    if not parts:
         raise study.error("'' is not a key", code="not-a-key")
-    return found
+    return parts
 
 
 def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
@@ -88,9 +88,9 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
             raise IndexError
         return table[part]
     except (KeyError, IndexError, TypeError):
-        there = part + 1 if isinstance(part, int) else part
+        position = part + 1 if isinstance(part, int) else part
         raise study.error(
-            f"{key}: the study has no {as_text(there)} there", code="unknown-key"
+            f"{key}: the study has no {as_text(position)} there", code="unknown-key"
         ) from None
 
 

@@ -81,7 +81,7 @@ class StatedValue:
 
 def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
     """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
-    return tuple(text for each in _numbers(table, raw) if (text := _question(each, system)))
+    return tuple(text for number in _numbers(table, raw) if (text := _question(number, system)))
 
 
 def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:
@@ -155,10 +155,10 @@ def _likely(stated: StatedValue, system: UnitSystem) -> str:
     """The number as it is written with the unit in which it is most usual, if there is one: of the
     units of its own kind the one nearest to the typical value, else of the others.
     """
-    found = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
-    if found is None:
+    quantity = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
+    if quantity is None:
         return ""
-    (number, unit), usual = found, stated.usual
+    (number, unit), usual = quantity, stated.usual
     kinds = [usual.metric, usual.imperial]
     if unit in usual.imperial or (not unit and system is UNIT_SYSTEMS["in-lbf-s"]):
         kinds.reverse()

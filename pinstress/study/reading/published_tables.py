@@ -54,7 +54,7 @@ def read_published(study: Study) -> Published:
 
 def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
     columns = ("case", "time", "quantity", "name", "reason")
-    found = []
+    rows = []
     for where, text, (value,) in _rows(study, name, columns, ("published",)):
         case, when, quantity, what, reason = text
         if case not in study.table.case:
@@ -65,8 +65,8 @@ def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
             raise InputError(
                 f"{where}: time {when!r} is not a number", code="not-a-number"
             ) from None
-        found.append(PublishedRow(case, time, quantity, what, value, reason, where))
-    return tuple(found)
+        rows.append(PublishedRow(case, time, quantity, what, value, reason, where))
+    return tuple(rows)
 
 
 def _rows(
@@ -75,11 +75,11 @@ def _rows(
     """Rows of one table: file and line, names and numbers of each."""
     if name is None:
         return []
-    found = []
+    rows = []
     try:
         for row in read_table(study.path_to(name), (*names, *numbers)):
             cells = [row.cells[c] for c in names]
-            found.append((row.where, cells, [row.number(c) for c in numbers]))
+            rows.append((row.where, cells, [row.number(c) for c in numbers]))
     except TableError as error:
         raise study.table_error("published", error) from None
-    return found
+    return rows

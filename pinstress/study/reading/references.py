@@ -34,12 +34,12 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
     bears: dict[str, str] = {}
     for name, pin in table.pin.items():
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
-        own = dict.fromkeys(connection for _, connection in pin.connections)
-        own |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
-        own |= dict.fromkeys(pin.band)
+        surfaces = dict.fromkeys(connection for _, connection in pin.connections)
+        surfaces |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
+        surfaces |= dict.fromkeys(pin.band)
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
-            yield from _known(key, "connection or segment", connection, own)
+            yield from _known(key, "connection or segment", connection, surfaces)
             for at, made_of in (
                 ("material", lug.material),
                 ("bushing.material", None if lug.bushing is None else lug.bushing.material),
@@ -283,9 +283,9 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
     moves = all(d.moves for d in mechanism.drive)
     holders = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.slider, *mechanism.stop])
     for name, case in table.case.items():
-        for each in (case.hold or ()) if isinstance(case, StaticCase) else ():
+        for hold_name in (case.hold or ()) if isinstance(case, StaticCase) else ():
             what = "drive, slider or stop"
-            yield from _known(f"case.{name}.hold", what, each, holders)
+            yield from _known(f"case.{name}.hold", what, hold_name, holders)
         if isinstance(case, MotionCase) and not moves:
             yield Wrong(
                 f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",

@@ -55,19 +55,19 @@ def places(text: str) -> dict[Place, int]:
     that has no line of its own has the first of what it contains.
     """
     tokens = Tokens(text)
-    found: dict[Place, int] = {}
+    lines: dict[Place, int] = {}
     sizes: dict[Place, int] = {}  # of the arrays of tables
     table: Place = ()
     while tokens:
         token, line = tokens.first
         if token == "[":
             table = _header(tokens, sizes)
-            _mark(table, line, found)
+            _mark(table, line, lines)
         elif token == "\n":
             tokens.pop()
         else:
-            _pair(tokens, table, found)
-    return found
+            _pair(tokens, table, lines)
+    return lines
 
 
 def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
@@ -147,14 +147,14 @@ def _key(tokens: Tokens, end: str) -> list[str]:
     return parts
 
 
-def _pair(tokens: Tokens, table: Place, found: dict[Place, int]) -> None:
+def _pair(tokens: Tokens, table: Place, lines: dict[Place, int]) -> None:
     line = tokens.first[1]
     place = (*table, *_key(tokens, "="))
-    _mark(place, line, found)
-    _value(tokens, place, found)
+    _mark(place, line, lines)
+    _value(tokens, place, lines)
 
 
-def _value(tokens: Tokens, place: Place, found: dict[Place, int]) -> None:
+def _value(tokens: Tokens, place: Place, lines: dict[Place, int]) -> None:
     """Past a value, and what it contains; what ends it remains."""
     first, _ = tokens.pop()
     if first not in ("[", "{"):
@@ -168,13 +168,13 @@ def _value(tokens: Tokens, place: Place, found: dict[Place, int]) -> None:
             tokens.pop()
             return
         if first == "{":
-            _pair(tokens, place, found)
+            _pair(tokens, place, lines)
         else:
-            _mark((*place, i), tokens.first[1], found)
-            _value(tokens, (*place, i), found)
+            _mark((*place, i), tokens.first[1], lines)
+            _value(tokens, (*place, i), lines)
 
 
-def _mark(place: Place, line: int, found: dict[Place, int]) -> None:
+def _mark(place: Place, line: int, lines: dict[Place, int]) -> None:
     for depth in range(1, len(place)):
-        found.setdefault(place[:depth], line)
-    found[place] = line
+        lines.setdefault(place[:depth], line)
+    lines[place] = line

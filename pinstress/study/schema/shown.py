@@ -45,11 +45,11 @@ def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | No
     merely has some letters in common.
     """
     wanted, among = cut(str(name)), [cut(k) for k in islice(known, MAX_COMPARED_NAMES)]
-    for each in among:
-        if each.casefold() == wanted.casefold():
-            return each
-    found = difflib.get_close_matches(wanted, among, n=MAX_HINT_CANDIDATES, cutoff=cutoff)
-    return next((one for one in found if _misspelt(wanted.casefold(), one.casefold())), None)
+    for candidate in among:
+        if candidate.casefold() == wanted.casefold():
+            return candidate
+    close = difflib.get_close_matches(wanted, among, n=MAX_HINT_CANDIDATES, cutoff=cutoff)
+    return next((one for one in close if _misspelt(wanted.casefold(), one.casefold())), None)
 
 
 def _misspelt(a: str, b: str) -> bool:
@@ -78,8 +78,8 @@ def _mistakes(a: str, b: str) -> int:
 def near(name: object, known: Iterable[str]) -> str:
     """A hint for a name that is not known."""
     known = list(known)
-    found = nearest(name, known)
-    return f"did you mean {found!r}?" if found else f"there are {listed(known)}"
+    suggestion = nearest(name, known)
+    return f"did you mean {suggestion!r}?" if suggestion else f"there are {listed(known)}"
 
 
 def in_toml(value: object) -> str:

@@ -94,9 +94,9 @@ def described(table: type["StrictTable"]) -> dict[str, str]:
     for one in reversed(table.__mro__):
         if not issubclass(one, StrictTable) or one is StrictTable:
             continue
-        (made,) = ast.parse(dedent(inspect.getsource(one))).body
-        assert isinstance(made, ast.ClassDef)
-        for field, text in pairwise(made.body):
+        (definition,) = ast.parse(dedent(inspect.getsource(one))).body
+        assert isinstance(definition, ast.ClassDef)
+        for field, text in pairwise(definition.body):
             match (field, text):
                 case (
                     ast.AnnAssign(target=ast.Name(id=key)),

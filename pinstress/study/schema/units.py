@@ -228,18 +228,18 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
             f"mark",
             "decimal-comma",
         )
-    found = split(text)
-    if found is None and MINUS_SIGN in text:
+    quantity = split(text)
+    if quantity is None and MINUS_SIGN in text:
         hyphen = text.replace(MINUS_SIGN, "-")
         raise ArgumentError(
             f"{as_text(text)} has a minus that is no hyphen; write {hyphen!r}", "not-a-number"
         )
-    if found is None:
+    if quantity is None:
         raise ArgumentError(
             f"{as_text(text)} does not begin with a number; write for instance {example!r}",
             "not-a-number",
         )
-    number, unit = found
+    number, unit = quantity
     if not unit:
         return _plain(number, dimension, system)
     return number * _unit_factor(unit, dimension, text)

@@ -140,9 +140,9 @@ def _coordinate(
         return default
     slides = isinstance(drive, SliderDrive)
     try:
-        found = to_si(value, DRIVE_DIMENSIONS[key][0 if slides else 1], study.system)
+        coordinate = to_si(value, DRIVE_DIMENSIONS[key][0 if slides else 1], study.system)
     except ArgumentError as error:
         raise study.error(f"{where}: {error}", code=error.code) from None
     if key == "position" and isinstance(drive, RotaryDrive) and drive.line is not None:
-        found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
-    return found
+        coordinate += 2.0 * math.pi * round((default - coordinate) / (2.0 * math.pi))
+    return coordinate

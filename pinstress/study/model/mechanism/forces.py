@@ -176,8 +176,8 @@ def _varying(
     if law is None:
         return None
     measure, x = _argument(study, law, mechanism)
-    found = curve(study, where, law, x, (value, value))
-    return None if found is None else Varying(measure, found)
+    table = curve(study, where, law, x, (value, value))
+    return None if table is None else Varying(measure, table)
 
 
 def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, _Column]:
@@ -187,8 +187,8 @@ def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Mea
         return Distance((a, b), (p, q)), _column(study, "length", "length")
     if law.position_of is None:
         return Clock(), _column(study, "time", "time")
-    found: dict[str, Slider | Turn] = {s.name: s for s in mechanism.sliders}
-    of = (found | {t.name: t for t in mechanism.turns})[law.position_of]
+    sources: dict[str, Slider | Turn] = {s.name: s for s in mechanism.sliders}
+    of = (sources | {t.name: t for t in mechanism.turns})[law.position_of]
     if isinstance(of, Turn):
         return Position(of), _angle("position_deg")
     return Position(of), _column(study, "position", "length")

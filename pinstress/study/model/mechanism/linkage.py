@@ -64,8 +64,12 @@ def linkage(study: Study) -> Linkage:
 
 def _wrong(error: LinkageError) -> list[Wrong]:
     return [
-        Wrong(f"mechanism: {each}", at=".".join(map(str, ("mechanism", *each.at))), code=each.code)
-        for each in error.each
+        Wrong(
+            f"mechanism: {problem}",
+            at=".".join(map(str, ("mechanism", *problem.at))),
+            code=problem.code,
+        )
+        for problem in error.each
     ]
 
 
@@ -84,13 +88,13 @@ def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage:
     wrong: list[LinkageError] = []
 
     def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
-        made = []
+        parts = []
         for one in of:
             try:
-                made.append(make(one))
+                parts.append(make(one))
             except LinkageError as error:
                 wrong.extend(error.each)
-        return tuple(made)
+        return tuple(parts)
 
     bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items())
     sliders = each(lambda s: _slider(drawing, *s), mechanism.slider.items())

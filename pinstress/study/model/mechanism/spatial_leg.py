@@ -66,21 +66,21 @@ def dynamics(study: Study, times: Floats) -> LegDynamics:
     return leg_dynamics(leg, motion)
 
 
-def hinge_reactions(study: Study, case: str, times: Floats, found: LegDynamics) -> Reactions:
+def hinge_reactions(study: Study, case: str, times: Floats, leg: LegDynamics) -> Reactions:
     """What the leg does to the pin at its hinge, which is fixed in the aircraft with its axis along
     y'': force, and moment across the axis; the moment about the axis is the actuator's.
     """
     table = study.table.spatial_leg
     assert table is not None
     cyclic = [2, 0, 1]
-    moments = found.M_B[:, None, cyclic].copy()
+    moments = leg.M_B[:, None, cyclic].copy()
     moments[..., 2] = 0.0
     return Reactions(
         case=case,
         times=times,
         connections=(table.connection,),
         bodies=("leg",),
-        forces=found.F_B[:, None, cyclic],
+        forces=leg.F_B[:, None, cyclic],
         moments=moments,
         turn=np.zeros((len(times), 1)),
     )
