@@ -1,4 +1,4 @@
-"""What `pinstress.run` returns: the results that the command writes, with what a notebook wants."""
+"""Results of `pinstress.run`: those that the command writes, with access from notebooks."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ class Png:
 class RunResults(Results):
     """Results in the study's units, with tables, frames, and fields by pin and case.
 
-    fields: those that were kept. plan: from which pins without a kept field are solved again.
+    fields: those that were kept.
+    plan: used to solve pins without a kept field again.
     """
 
     fields: dict[tuple[str, str], Field] = dataclasses.field(default_factory=dict)
@@ -56,17 +57,23 @@ class RunResults(Results):
 
     @property
     def tables(self) -> dict[str, Table[Any]]:
-        """All tables of the run by name: columns, and rows with every digit."""
+        """Return all tables of the run by name: columns, and rows with every digit."""
         return {t.name: t for t in (*stress_tables(self), *load_tables(self))}
 
     def to_pandas(self, table: str = "safety_factors") -> pandas.DataFrame:
-        """A table as a pandas frame. Raises: ImportError without pandas, ValueError."""
+        """Return a table as a pandas frame.
+
+        Raises: ImportError without pandas, ValueError for an unknown table.
+        """
         content, library = self._table(table), _library("pandas")
         frame: pandas.DataFrame = library.DataFrame(list(content.cells()), columns=content.keys)
         return frame
 
     def to_polars(self, table: str = "safety_factors") -> polars.DataFrame:
-        """A table as a polars frame. Raises: ImportError without polars, ValueError."""
+        """Return a table as a polars frame.
+
+        Raises: ImportError without polars, ValueError for an unknown table.
+        """
         content, library = self._table(table), _library("polars")
         rows, columns = [list(row) for row in content.cells()], content.keys
         frame: polars.DataFrame = library.DataFrame(
@@ -75,7 +82,7 @@ class RunResults(Results):
         return frame
 
     def to_pyvista(self, pin: str, case: str) -> pyvista.UnstructuredGrid:
-        """A pin's mesh with its fields at the governing instant, as its VTU file has them.
+        """Return a pin's mesh with its fields at the governing instant, as its VTU file has them.
 
         Raises: ValueError when the run kept no such field.
         """
@@ -91,7 +98,7 @@ class RunResults(Results):
     mesh = to_pyvista  # its name before
 
     def picture(self, pin: str, case: str) -> Png:
-        """A pin coloured by its von Mises stress.
+        """Return a picture of a pin coloured by its von Mises stress.
 
         Raises: ValueError as `to_pyvista`, RuntimeError where nothing can be drawn.
         """
@@ -153,14 +160,17 @@ def run(
 ) -> RunResults:
     """Analyse a study.
 
-    pins, cases: names; all by default. model, tolerance: override those of the study. memory_limit:
-    limit for a solid model in MB, by default most of the free memory. limit_load: find the limit
-    load of every row that yields, however long it takes; otherwise as the study has it, where
-    "auto" gives each 20 s of processor time. fields: whether to keep every
-    pin's field (some 10 MB each) for `to_pyvista` and `picture`, which otherwise solve the pin
-    again. jobs: number of parallel processes (None: number of cores); 1, in this process, if fields
-    are kept or other threads run. A pin whose numerics fail has the
-    verdict `failed`.
+    pins, cases: names; all by default.
+    model, tolerance: override those of the study.
+    memory_limit: limit for a solid model in MB, by default most of the free memory.
+    limit_load: compute the limit load of every row that yields, however long it takes; otherwise
+    the study decides, where "auto" gives each 20 s of processor time.
+    fields: whether to keep every pin's field (about 10 MB each) for `to_pyvista` and `picture`,
+    which otherwise solve the pin again.
+    jobs: number of parallel processes (None: number of cores); 1, in this process, if fields are
+    kept or other threads run.
+
+    A pin whose solution fails has the verdict `failed`.
 
     Raises: InputError for bad input.
     """

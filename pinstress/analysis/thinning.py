@@ -1,4 +1,4 @@
-"""Which points of a pin's meridian, and how many unit loads, are needed to draw what is known."""
+"""Points of a pin's meridian, and unit loads, that suffice to draw its surface."""
 
 from __future__ import annotations
 
@@ -29,9 +29,12 @@ COINCIDENCE_DISTANCE = 1e-9  # of the length: points that are one
 
 
 def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], required: Mask) -> Mask:
-    """Which points (P,) of a meridian to keep so that its shape, displacements and stresses in all
-    cases stay what they are, but for the stresses that every case excludes. kept: (P,) points that
-    are kept in any case.
+    """Return which points (P,) of a meridian to keep.
+
+    They preserve the shape, displacements and stresses in all cases, except stresses that every
+    case excludes.
+
+    required: (P,) points that are kept in any case.
     """
     x, excluded = surface.points, np.all([c.excluded for c in cases], axis=0)
     size = float(np.ptp(x, axis=0).max())
@@ -60,8 +63,9 @@ def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], required
 def fewer_loads(
     surface: UnitSurface, cases: Sequence[SurfaceCase]
 ) -> tuple[UnitSurface, list[SurfaceCase]]:
-    """The same with as few unit loads as make the fields of all cases, where many act, as under
-    contact: of every harmonic the singular vectors that matter.
+    """Return the surface with as few unit loads as reproduce the fields of all cases.
+
+    Where many act, as under contact, the significant singular vectors of every harmonic are taken.
     """
     fields = np.concatenate([surface.stress, surface.displacement * _scale(surface, cases)], axis=1)
     acting = [_weighed(c) for c in cases]
@@ -96,14 +100,14 @@ def fewer_loads(
 
 
 def _weighed(case: SurfaceCase) -> Floats:
-    """Amounts for a largest stress of one, the governing instant's so many times as large."""
+    """Return amounts for a largest stress of one, the governing instant weighted more."""
     weight = np.ones(len(case.amounts))
     weight[case.instant] = GOVERNING_WEIGHT
     return np.asarray(case.amounts * weight[:, None, None] / (case.maxima.max() or 1.0))
 
 
 def _scale(surface: UnitSurface, cases: Sequence[SurfaceCase]) -> float:
-    """Stress over displacement, Pa/m, of the first case that moves the pin."""
+    """Return stress over displacement, Pa/m, of the first case that moves the pin."""
     for case in cases:
         stress, moved = (
             float(np.abs(_around(surface, case.amounts[case.instant], x)).max())
@@ -119,7 +123,7 @@ def _step(case: SurfaceCase) -> int:
 
 
 def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
-    """Those of the eight numbers of the surface, (P, C, SAMPLE_ANGLES), under amounts (K, 2)."""
+    """Return those of the surface's eight numbers, (P, C, SAMPLE_ANGLES), under amounts (K, 2)."""
     turns = surface.n * np.linspace(0.0, 2.0 * np.pi, SAMPLE_ANGLES, endpoint=False)[:, None]
     c, s = np.cos(turns), np.sin(turns)
     first, second = amount.T
@@ -130,13 +134,13 @@ def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
 
 
 def _ends(mask: Mask) -> Mask:
-    """Points whose neighbour differs."""
+    """Return the points whose neighbour differs."""
     differs = mask[1:] != mask[:-1]
     return np.asarray(np.append(differs, False) | np.insert(differs, 0, False))
 
 
 def _corners(x: Floats, close: float) -> Mask:
-    """Points (P,) at which the meridian turns sharply; where it does so they come in pairs."""
+    """Return the points (P,) at which the meridian turns sharply; they come in pairs."""
     step = np.diff(x, axis=0)
     length = np.linalg.norm(step, axis=1)
     corners = np.zeros(len(x), dtype=bool)

@@ -1,4 +1,4 @@
-"""From what the rooms found, in SI, to the results that reports are made from."""
+"""Results for reports, gathered in SI from the solutions and assessments of a run."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ WITHOUT_FRICTION_NOTE = (
 
 
 def _in_lugs(study: Study) -> bool:
-    """Whether lugs support any pin."""
+    """Return whether lugs support any pin."""
     joints = study.table.analysis.joints
     return joints in ("contact", "foundation") or (
         joints == "auto" and any(pin.lug for pin in study.table.pin.values())
@@ -54,7 +54,7 @@ def _in_lugs(study: Study) -> bool:
 
 
 def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
-    """A plan's results from what was found of its tasks."""
+    """Return a plan's results from the outcomes of its tasks."""
     study = plan.study
     outcomes = [
         replace(outcome, histories=with_sequences(study, plan.loads, outcome.histories))
@@ -107,7 +107,9 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
-    """One for each pin, for the worst of its cases; the pin with the worst first."""
+    """Return one remedy for each pin, for the worst of its cases; the pin with the worst comes
+    first.
+    """
     rows = sorted((x.change for x in outcomes if x.change), key=lambda change: change.load_factor)
     return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
 
@@ -115,7 +117,10 @@ def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
 def _in_order(
     outcomes: list[PinOutcome], pins: list[str], cases: list[str], every: bool
 ) -> tuple[PinSensitivities, ...]:
-    """As the rows are; without `every` one for each pin, for the worst of its cases."""
+    """Return the sensitivities in the order of the rows.
+
+    every: whether of all cases; otherwise of each pin's worst case only.
+    """
     rows = [row for outcome in outcomes for row in outcome.sensitivities]
     if not every:
         rows = list({row.pin: row for row in sorted(rows, key=lambda row: row.maximum)}.values())
@@ -128,7 +133,10 @@ def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
 
 
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
-    """The mechanics of a study without stresses. Raises: InputError for bad input."""
+    """Return the mechanics of a study without stresses.
+
+    Raises: InputError for bad input.
+    """
     published = read_published(study)
     loads = all_loads(study, chosen_cases(study, cases))
     tolerance = study.table.analysis.tolerance
@@ -143,7 +151,10 @@ def _results(
     published: Published,
     tolerance: float,
 ) -> plain.Results:
-    """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
+    """Return all results of a run, in SI.
+
+    rows: each peak with its task, in the order of the table.
+    """
     table = study.table
     tasks = {task.pin.name: task for task, *_ in reversed(rows)}
     strength = [assessment for *_, assessment in rows]
@@ -243,7 +254,9 @@ def _held(task: Task, joint: JointResult | None) -> str:
 
 
 def _factors(peak: Maximum, strength: float | None) -> tuple[float, float | None] | None:
-    """Factor of safety over the interval of the maximum; None above, where no stress is left."""
+    """Return the factors of safety at both ends of the interval of the maximum; the upper one is
+    None where no stress is left.
+    """
     if peak.interval is None or strength is None:
         return None
     low, high = peak.interval
@@ -260,7 +273,7 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
 
 
 def _meets(peak: Maximum, strength: float | None, required: float | None) -> bool | None:
-    """Whether the required factor, or yield, is reached; None where that is open."""
+    """Return whether the required factor, or yield, is reached; None where that is undecided."""
     return None if strength is None else meets_limit(peak, strength / (required or 1.0))
 
 
@@ -281,7 +294,7 @@ def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
 def landing_range(
     loads: Mapping[str, CaseLoads], task: Task, solution: Solution
 ) -> plain.LandingRange | None:
-    """A pin over the ranges of its landing's impulse: unit fields superposed."""
+    """Return a pin's results over the ranges of its landing's impulse, by superposition."""
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
@@ -304,7 +317,9 @@ def landing_range(
 
 
 def _maxima(task: Task, solution: Solution, loads: PinLoads) -> plain.Floats:
-    """The larger of surface and section, Pa, under other loads of a case, at each instant."""
+    """Return the larger of the stresses of surface and section, Pa, at each instant of other loads
+    of a case.
+    """
     acting, clamps = solution.pressed(loads), tuple[str, ...]()
     if task.lugs:
         pin = solution.rings
@@ -328,7 +343,7 @@ def _spread(peak: Maximum) -> tuple[float, float] | None:
 
 
 def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
-    """The cuts of a pin as reports draw them, in SI."""
+    """Yield the cuts of a pin as reports draw them, in SI."""
     for name, cut in pin.cuts.items():
         drawing = drawn(cut, pin.profile)
         size, offset, depth = _cut_sizes(cut)
@@ -352,7 +367,7 @@ def _cut_ends(cut: Cut) -> tuple[float, float]:
 
 
 def _cut_sizes(cut: Cut) -> tuple[float, float, float | None]:
-    """Diameter, width or distance, offset, depth."""
+    """Return the diameter, width or distance of a cut, its offset and its depth."""
     if isinstance(cut, Flat):
         return cut.distance, 0.0, None
     if isinstance(cut, Slot):

@@ -1,4 +1,4 @@
-"""From histories of stress to damage under the study's spectrum."""
+"""Damage under the study's spectrum, from histories of stress."""
 
 from __future__ import annotations
 
@@ -36,16 +36,17 @@ GRADIENT_SUPPORT_NOTE = (
 
 @dataclass(frozen=True)
 class _Open:
-    """Why a pin's fatigue is not decided, and what would decide it."""
+    """The reason why a pin's fatigue is undecided, and what would decide it."""
 
     reason: str
     needs: str
 
 
 def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, list[PinMargin]]:
-    """Of all critical points, the worst first, and the margins; None and none without a spectrum.
+    """Return the fatigue of all critical points, the worst first, and the margins; None and no
+    margins without a spectrum.
 
-    Whatever fails here fails for a pin, whose fatigue is then not decided: other results stay.
+    A failure here leaves the fatigue of its pin undecided; other results are unaffected.
     """
     table = plan.study.table.fatigue
     if table is None:
@@ -85,8 +86,9 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
 
 
 def _margins(plan: Plan, result: Fatigue, needs: dict[str, str]) -> list[PinMargin]:
-    """The margins of checks over all cases of a pin, the worst pin first. needs: what is missing of
-    pins whose damage is not decided.
+    """Return the margins of checks over all cases of a pin, the worst pin first.
+
+    needs: by pin whose damage is undecided, what is missing.
     """
     tasks = {task.pin.name: task for task in plan.tasks}
     damaged = dict.fromkeys(p.pin for p in result.points if p.pin not in needs)
@@ -105,12 +107,12 @@ def _material(plan: Plan, pin: str) -> FatigueMaterial:
 
 
 def _pressed(lugs: Iterable[Lug]) -> bool:
-    """Whether any is an interference fit."""
+    """Return whether any lug has an interference fit."""
     return any(lug.clearance < 0.0 for lug in lugs)
 
 
 def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
-    """Pins whose material has no data for the method."""
+    """Return the pins whose material has no data for the method."""
     pins = dict.fromkeys(task.pin.name for task in plan.tasks)
     data = {pin: _material(plan, pin) for pin in pins}
     needs_fkm = table.method == "fkm-p-ram"
@@ -120,7 +122,7 @@ def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
 def _points(
     plan: Plan, histories: list[PointHistory], table: FatigueTable
 ) -> tuple[list[PointFatigue], _Open | None]:
-    """Of one pin, and what is open at any of its points."""
+    """Return the fatigue of the points of one pin, and what is undecided at any of them."""
     points, failed = [], None
     for history in histories:
         at = f"at point {history.point}"
@@ -139,7 +141,7 @@ def _points(
 
 
 def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
-    """What of the spectrum no stress of the pin is known of."""
+    """Return the part of the spectrum for which no stress of the pin is known."""
     sequences = plan.study.table.sequence
     cases: dict[str, None] = {}
     for name in table.occurrences:
@@ -174,7 +176,7 @@ def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTab
 
 
 def _named(cases: list[str], verb: str = "was") -> str:
-    """A case was, cases were; without a verb the cases alone."""
+    """Return "case A was" or "cases A, B were"; without a verb the cases alone."""
     many = len(cases) > 1
     ending = f" {'were' if many else 'was'}" if verb else ""
     return f"case{'s' * many} {', '.join(cases)}{ending}"
@@ -221,12 +223,12 @@ def _left_out(
 
 
 def _spectrum(table: FatigueTable) -> Spectrum:
-    """Of a study."""
+    """Return the spectrum of a study."""
     return Spectrum(table.occurrences, table.method, table.failure_probability, table.life)
 
 
 def _fatigue_material(table: MaterialTable) -> FatigueMaterial:
-    """What is given of a material."""
+    """Return the fatigue data that the study gives for a material."""
     sn, fkm, ultimate = table.fatigue, table.fkm, table.ultimate_strength
     return FatigueMaterial(
         None if sn is None else _sn_curve(sn, ultimate),

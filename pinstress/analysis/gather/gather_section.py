@@ -1,4 +1,4 @@
-"""What a pin shows when it is cut open through its maximum."""
+"""Section of a pin through its maximum, as reports draw it."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ RADIUS_TOLERANCE = 2e-3  # of the radius
 def half_section(
     plane: MeridianPlane, loads: PinLoads, instant: int, maximum: float, at: tuple[float, ...]
 ) -> HalfSection:
-    """Through the point `at` (x, y, z) of the surface's maximum, which is outside of what is
-    excluded; what exceeds it is cut down to it, but not what lies beneath lugs.
+    """Return the half section through the surface's maximum, which lies outside the excluded zones.
+
+    Stress that exceeds the maximum is limited to it, except beneath lugs.
+
+    at: the point of the maximum (x, y, z), m.
     """
     x, y, z = at
     angle, r = atan2(y, x), hypot(x, y)
@@ -50,7 +53,7 @@ def half_section(
 
 
 def _stations(plane: MeridianPlane) -> Floats:
-    """Along z, close together where the mesh is, twice at shoulders."""
+    """Return stations along z, close together where the mesh is fine, double at shoulders."""
     r, z = plane.skin.T
     low, high = float(z.min()), float(z.max())
     near = SHOULDER_OFFSET * (high - low)
@@ -63,7 +66,7 @@ def _stations(plane: MeridianPlane) -> Floats:
 
 
 def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
-    """Points (Z, R, 2), r and z, none of them outside by round-off."""
+    """Return points (Z, R, 2) r and z, none of them outside the pin by round-off."""
     safe = 1.0 - SHOULDER_OFFSET
     r = inner[:, None] + (outer - inner)[:, None] * (0.5 + safe * (part - 0.5))
     near = SHOULDER_OFFSET * (z[-1] - z[0])
@@ -74,7 +77,12 @@ def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
 def _needed(
     at: Floats, stress: Floats, allowed: Floats, peak: int, radii: Floats | None = None
 ) -> Mask:
-    """Which of N places to keep, `own` among them, for stresses (2, N, ..) and radii (N, 2)."""
+    """Return which of N places to keep.
+
+    stress: (2, N, ..).
+    peak: index of a place that is kept in any case.
+    radii: (N, 2) inner and outer.
+    """
     values, within = (np.moveaxis(x, 1, 0).reshape(len(at), -1) for x in (stress, allowed))
     if radii is not None:
         values = np.concatenate([values, radii], axis=1)

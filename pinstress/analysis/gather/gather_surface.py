@@ -1,4 +1,4 @@
-"""From a pin's solutions to the surfaces that reports show."""
+"""Surfaces of a pin as reports show them, from its solutions."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ def surfaces_of(
     solutions: Sequence[Solution],
     pressures: Sequence[CellPressure | None],
 ) -> tuple[Surface, ...]:
-    """A pin's surfaces with all the cases that some model with fields solved, one for each mesh.
+    """Return a pin's surfaces, one for each mesh, with all cases that a model with fields solved.
 
-    pressures: of contact with its lugs, by solution.
+    pressures: contact pressure of the lugs, by solution.
     """
     together: dict[int, list[tuple[Solution, CellPressure | None]]] = {}
     for solution, pressure in zip(solutions, pressures, strict=True):
@@ -52,7 +52,7 @@ def surfaces_of(
 
 
 def _unit_fields(answer: StressField | None) -> object:
-    """What answers from one mesh share."""
+    """Return the object that answers from one mesh share."""
     if isinstance(answer, SolidField):
         return answer.solution.fields
     if isinstance(answer, CutField):
@@ -65,7 +65,7 @@ def _surface(
     task: Task,
     solved: Sequence[tuple[Solution, CellPressure | None]],
 ) -> Surface | None:
-    """Of cases solved on one mesh; None where no model has fields."""
+    """Return the surface of the cases solved on one mesh; None where no model has fields."""
     answers = [(s, s.answer, p) for s, p in solved if s.answer is not None]
     with_fields = [(s, a, p) for s, a, p in answers if unit_surface(a) is not None]
     if not with_fields:
@@ -111,7 +111,7 @@ def _plane(answer: StressField) -> MeridianPlane | None:
 def _case(
     case: CaseLoads, task: Task, solution: Solution, plane: MeridianPlane | None
 ) -> SurfaceCase:
-    """At the case's samples and the governing instant."""
+    """Return a case's fields at its samples and the governing instant."""
     shown, answer = at_samples(solution, case), solution.answer
     assert answer is not None
     maxima = answer.maxima(shown.loads)
@@ -134,7 +134,9 @@ def _case(
 def _unread(
     case: CaseLoads, solution: Solution, points: Ints, at: tuple[float, ...] | None
 ) -> Mask | None:
-    """Of points (J,) of a meridian, from the angle of a location on."""
+    """Return the points (J,) of a meridian, counted from the angle of a location, that are not
+    read.
+    """
     assert solution.answer is not None
     start = 0.0 if at is None else atan2(at[1], at[0])
     turns = start + 2.0 * np.pi * np.arange(SURFACE_SECTORS) / SURFACE_SECTORS
@@ -147,7 +149,7 @@ def _zones(answer: StressField) -> Floats:
 
 
 def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
-    """Of every band on which a link bears."""
+    """Return the load courses of every band on which a link bears."""
     links = loads.links
     none = np.zeros((len(loads), 3))
     acting = {name: links.forces[:, c] for c, name in enumerate(links.surfaces)}
@@ -167,8 +169,10 @@ def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -
 
 
 def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
-    """Points (P,) of a meridian that the case needs: where its maximum is if it is on the surface,
-    and where contact pressure jumps.
+    """Return the points (P,) of a meridian that the case needs.
+
+    These are the point of its maximum, if that is on the surface, and those where contact pressure
+    jumps.
     """
     required = np.zeros(len(points), dtype=bool)
     if case.rings is not None:

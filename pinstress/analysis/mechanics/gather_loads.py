@@ -1,4 +1,4 @@
-"""From what the loads room found to the results that reports are made from, in SI."""
+"""Results of the mechanics for reports, gathered in SI from the dynamics."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 
 
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
-    """The parts of plain.Results that need no stresses."""
+    """Return the parts of plain.Results that need no stresses."""
     dynamics = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
@@ -88,7 +88,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
-    """(T, A) what is shown as positions: lengths less their offsets, angles in degrees."""
+    """Return the displayed positions (T, A): lengths less their offsets, angles in degrees."""
     shown, less = dynamics.course[0], offsets(study)
     for k, actuator in enumerate(dynamics.actuators):
         if isinstance(actuator, Slider):
@@ -99,7 +99,7 @@ def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
 
 
 def drive_position(study: Study, case: CaseLoads) -> Floats | None:
-    """(T,) position of the only drive along a motion; None without one or with several."""
+    """Return the position (T,) of the only drive along a motion; None unless there is one."""
     dynamics = case.dynamics
     if dynamics is None or case.reactions.times is None or dynamics.drive.shape[1] != 1:
         return None
@@ -107,7 +107,7 @@ def drive_position(study: Study, case: CaseLoads) -> Floats | None:
 
 
 def position_unit(study: Study, case: CaseLoads) -> str:
-    """Of what `drive_position` gives: "deg", or empty for a length."""
+    """Return the unit of `drive_position`: "deg", or empty for a length."""
     if drive_position(study, case) is None or case.dynamics is None:
         return ""
     (drive,) = case.dynamics.actuators
@@ -329,7 +329,7 @@ def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
 
 
 def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
-    """Joints on a body, around their middle so that lines between them do not cross."""
+    """Return the joints on a body, around their middle so that lines between them do not cross."""
     joints = linkage.joints_on(body)
     at = np.array([complex(*j.at) for j in joints])
     if len(joints) < 4:
@@ -338,8 +338,10 @@ def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
 
 
 def _direction(dynamics: Dynamics, body: str) -> Floats:
-    """(T,) degrees from x of the line from the body's first joint to its second, or with fewer
-    joints of the slider it belongs to, or else since the drawing; NaN for a particle.
+    """Return the direction of a body (T,), degrees from x; NaN for a particle.
+
+    It is that of the line from the body's first joint to its second. With fewer joints it is the
+    direction of the body's slider, or else the rotation since the drawing.
     """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     joints = linkage.joints_on(body)
@@ -353,7 +355,7 @@ def _direction(dynamics: Dynamics, body: str) -> Floats:
 
 
 def _pitch_curves(motion: Motion) -> tuple[PitchCurve, ...]:
-    """Pitch circles of gears and pitch lines of racks as drawn: of all teeth, each circle once."""
+    """Return the pitch circles of gears and pitch lines of racks as drawn, each circle once."""
     curves: dict[tuple[str, str, float], PitchCurve] = {}
     for teeth in motion.linkage.teeth:
         for side in teeth.sides:
@@ -370,12 +372,14 @@ def _pitch_curves(motion: Motion) -> tuple[PitchCurve, ...]:
 
 
 def _moving_points(motion: Motion, side: Gear | Rack, first: Point, second: Point) -> np.ndarray:
-    """(T, 2, 2) of two points of a body, m as drawn."""
+    """Return the positions (T, 2, 2) of two points of a body, m as drawn."""
     return np.stack([motion.point(side.body, p)[0] for p in (first, second)], axis=1)
 
 
 def _pitch_line(motion: Motion, teeth: Teeth, rack: Rack) -> PitchCurve:
-    """What of the pitch line meets the gear, and as much again as its radius on both sides."""
+    """Return the part of the pitch line that meets the gear, extended by its radius at both
+    ends.
+    """
     slider = next(s for s in motion.linkage.sliders if s.name == rack.slider)
     gear = next(side for side in teeth.sides if isinstance(side, Gear))
     radius = math.dist(motion.linkage.joint(gear.joint).at, teeth.at)

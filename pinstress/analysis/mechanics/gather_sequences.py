@@ -1,4 +1,6 @@
-"""Cases one after the other on one time axis: from the results of each, nothing is solved again."""
+"""Sequences: cases one after the other on one time axis, joined from their results without solving
+again.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,10 @@ JUMP_TOLERANCE = 1e-6
 
 
 def _joined(parts: Sequence[Any]) -> Any:
-    """Arrays one after the other, as are those in dataclasses, tuples and dictionaries; None where
-    any part has none; else the first.
+    """Return parts joined one after the other.
+
+    Arrays are concatenated, also those in dataclasses, tuples and dictionaries. The result is None
+    where any part has none; of other values the first is taken.
     """
     first: Any = parts[0]
     if any(part is None for part in parts):
@@ -44,14 +48,16 @@ def _joined(parts: Sequence[Any]) -> Any:
 def _course(
     parts: Mapping[str, T], times: Mapping[str, Floats | None], order: list[Occurrence]
 ) -> T:
-    """What there is of every step's case; one at rest at its beginning and its end."""
+    """Return the joined parts of every step's case; one at rest is taken at its beginning and its
+    end.
+    """
     every = [parts[s.case] for s in order for _ in range(2 if times[s.case] is None else 1)]
     joined: T = _joined(every)
     return joined
 
 
 def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats:
-    """(T,) s, to go with `_course`."""
+    """Return the times (T,) s that belong to `_course`."""
     out = []
     for step in order:
         case_times = times[step.case]
@@ -63,7 +69,9 @@ def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats
 
 
 def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
-    """The reactions, drives and motions of the sequences whose cases are all among the parts."""
+    """Return the reactions, drives and motions of the sequences whose cases are all among the
+    parts.
+    """
     reactions = {t.case: t for t in parts["reactions"]}
     motions = {m.case: m for m in parts["motion"]}
     drives = {(d.case, d.name): d for d in parts["drive"]}
@@ -115,7 +123,7 @@ def _first(times: Floats | None) -> float:
 def _with_all(
     table: plain.ReactionTable, names: list[str], of: Mapping[str, plain.ReactionTable]
 ) -> plain.ReactionTable:
-    """With all connections, in one order: without force where the case has none."""
+    """Return a table with all connections in one order, without force where the case has none."""
     have = {c: k for k, c in enumerate(table.connections)}
     owner = {c: t for t in of.values() for c in t.connections}
     at = [have.get(c, -1) for c in names]
@@ -137,7 +145,7 @@ def _with_all(
 def _peak(
     c: int, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
 ) -> plain.PeakReaction:
-    """Of connection number c, where it first occurs."""
+    """Return the peak of connection number c, at its first occurrence."""
     peaks = [(s, tables[s.case].peaks[c]) for s in order]
     step, peak = max(peaks, key=lambda pair: pair[1].force)
     case_time = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
@@ -188,7 +196,9 @@ def _motion(
 
 
 def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) -> str:
-    """A sentence on the cases that do not begin where those before them end; empty without any."""
+    """Return a sentence on the cases that do not begin where those before them end; empty without
+    any.
+    """
     jumps: dict[str, None] = {}
     for one, two in pairwise(order):
         end, begin = (motions[s.case].joint_position for s in (one, two))
@@ -204,7 +214,10 @@ def _drive(
     times: Mapping[str, Floats | None],
     order: list[Occurrence],
 ) -> plain.DriveTable:
-    """tables: of the drive by case; None where something else holds, and its force is zero."""
+    """Return a drive's table over a sequence.
+
+    tables: of the drive by case; None where something else holds, so that its force is zero.
+    """
     like = next(t for t in tables.values() if t is not None)
     whole = {
         case: t or _idle(like, 1 if (course := times[case]) is None else len(course))
@@ -235,7 +248,7 @@ def _idle(like: plain.DriveTable, count: int) -> plain.DriveTable:
 
 
 def _effort(table: plain.DriveTable) -> plain.DriveEffort:
-    """Over the case's own time, which begins at zero."""
+    """Return a drive's effort over the case's own time, which begins at zero."""
     if table.effort is not None:
         begin, e = _first(table.time), table.effort
         return replace(e, time=e.time - begin, power_time=e.power_time - begin)
@@ -264,8 +277,9 @@ def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) ->
 def with_sequences(
     study: Study, loads: Mapping[str, CaseLoads], histories: tuple[PointHistory, ...]
 ) -> tuple[PointHistory, ...]:
-    """The same with the stress over every sequence whose cases are all among the loads: zero in
-    those that do not load the pin.
+    """Return the histories with the stress over every sequence whose cases are all among the loads.
+
+    The stress is zero in cases that do not load the pin.
     """
     times = {case: case_loads.reactions.times for case, case_loads in loads.items()}
     orders = {n: list(steps(study.table.sequence[n], times)) for n in complete(study, loads)}

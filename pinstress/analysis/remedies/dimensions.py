@@ -18,9 +18,11 @@ Z_INDEX, R_INDEX, RADIUS_INDEX = range(3)  # of a corner
 
 
 def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
-    """Those of a body of revolution that are not zero, in m: of its profile
-    (geometry.shape.dimensions), or of its outline by corners: "meridian[3][2]" is the radius of the
-    third one. None of any other pin, and none of one from a file.
+    """Yield the non-zero dimensions of a body of revolution, m; none of any other pin or of one
+    from a file.
+
+    They are those of its profile (geometry.shape.dimensions), or of its outline by corners, where
+    "meridian[3][2]" is the radius of the third corner.
     """
     table = study.table.pin[pin.name]
     if not isinstance(pin, Pin) or table.geometry is not None:
@@ -59,7 +61,7 @@ def _band(name: str, end: int) -> TableChange:
 
 
 def _along(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
-    """z: of all corners and bands at one z together."""
+    """Yield the dimensions along z; corners and bands at one z change together."""
     coordinates: list[tuple[float, str, TableChange]] = []
     for line in MERIDIAN_KEYS:
         for k, corner in enumerate(getattr(table, line) or ()):
@@ -74,7 +76,7 @@ def _along(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
 
 
 def _across(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
-    """r: of neighbours where it is equal together."""
+    """Yield the dimensions along r; neighbours of equal radius change together."""
     for line in MERIDIAN_KEYS:
         corners = enumerate(getattr(table, line) or ())
         for r, run in groupby(corners, lambda one: one[1][R_INDEX]):

@@ -1,5 +1,5 @@
-"""All that a pin in contact with its lugs depends on, by the keys of the study: dimensions of pin
-and lugs, and what they are made of.
+"""Parameters of a pin in contact with its lugs, by the keys of the study: the dimensions and
+materials of pin and lugs.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ CLEARANCE_SCALE = 1e-3
 
 @dataclass(frozen=True)
 class StudyParameter:
-    """One of them; kind: its dimension ("length", "stress", .., "1")."""
+    """A parameter of a joint; kind: its dimension ("length", "stress", .., "1")."""
 
     kind: str
     of_joint: JointParameter
 
 
 def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
-    """Those of a pin in lugs that are not zero, and its clearances."""
+    """Yield the non-zero parameters of a pin in lugs, and its clearances."""
     pin = task.pin
     assert isinstance(pin, Pin)
     for d in dimensions_of(study, pin):
@@ -97,7 +97,7 @@ def _changed(study: Study, path: tuple[str, ...], value: Any) -> Study:
 
 
 def _set(table: Any, path: tuple[str, ...], value: Any) -> Any:
-    """A table with another value at a path of names."""
+    """Return a table with another value at a path of names."""
     first, *rest = path
     named = isinstance(table, dict)
     if rest:

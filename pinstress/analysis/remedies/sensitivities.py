@@ -1,8 +1,9 @@
-"""What a little more of anything does to a pin's factor of safety: true derivatives.
+"""Sensitivities of a pin's factor of safety: derivatives with respect to dimensions, loads and
+material.
 
-They are of the row's number: of the stress of a section where that governs, otherwise of the
-surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic model's
-first mesh are taken, relative to its own maximum.
+They are derivatives of the row's number: of the stress of a section where that governs, otherwise
+of the surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic
+model's first mesh are taken, relative to its own maximum.
 """
 
 from __future__ import annotations
@@ -58,8 +59,10 @@ def sensitivities(
     step: float,
     every: bool = False,
 ) -> tuple[PinSensitivities, ...]:
-    """Of a task's worst case, or of every one. step: of a dimension (m) whose effect is shown; a
-    tenth of it, or a hundredth, where that is no small part of the dimension.
+    """Return the sensitivities of a task's worst case, or of every case.
+
+    step: the change of a dimension (m) whose effect is shown; a tenth of it, or a hundredth, where
+    it is not small relative to the dimension.
     """
     ranked = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
     dimensions = tuple(dimensions_of(study, task.pin))
@@ -83,8 +86,12 @@ def differentiated_in_lugs(
     alone: bool = False,
     place: Place | None = None,
 ) -> JointDerivatives | None:
-    """Of the maximum of a pin in contact, or of a place at the row's instant; None where it has
-    none. alone: by the parameters only, not by loads. Raises: MeshError, SolveError.
+    """Return the derivatives of the maximum of a pin in contact, or of the stress at a place at the
+    row's instant; None where there is none.
+
+    alone: differentiate by the parameters only, not by loads.
+
+    Raises: MeshError, SolveError.
     """
     solution, held, rings = joined, joined.held, joined.rings
     peak, answer = solution.peak, solution.answer
@@ -110,14 +117,17 @@ def differentiated_in_lugs(
 
 
 def governing_place(peak: Maximum) -> Place:
-    """Of which place the maximum is."""
+    """Return the place whose stress is the maximum."""
     return "surface" if peak.places is None else peak.places.governs
 
 
 def differentiated(
     asked: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> Derivatives | None:
-    """Of a solution's maximum; None where it has none. Raises: MeshError, SolveError."""
+    """Return the derivatives of a solution's maximum; None where it has none.
+
+    Raises: MeshError, SolveError.
+    """
     peak, pin, answer = solution.peak, task.pin, solution.answer
     if not peak.max_von_mises or peak.governing is None or not isinstance(pin, Pin):
         return None
@@ -141,7 +151,7 @@ def differentiated(
 
 
 def scaled(gradient: Derivatives, maximum: float) -> Derivatives:
-    """With another maximum, Pa, and the same relative derivatives."""
+    """Return derivatives of another maximum, Pa, with the same relative derivatives."""
     times = maximum / gradient.maximum
     if times == 1.0:
         return gradient
@@ -196,7 +206,7 @@ def _with_rows(
 
 
 def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> PinSensitivities:
-    """Of a pin in contact; without a step, why there are none."""
+    """Return the sensitivities of a pin in contact; without a step, why there are none."""
     peak = joined.peak
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing
@@ -243,7 +253,9 @@ def _of_joint(
 
 
 def _little(step: float, value: float) -> float:
-    """A step (m) of a dimension, a power of ten smaller where that would be no small part of it."""
+    """Return a step (m) of a dimension, reduced by powers of ten where it is not small relative to
+    it.
+    """
     while step > MAX_STEP_FRACTION * value:
         step /= 10.0
     return step
@@ -251,7 +263,7 @@ def _little(step: float, value: float) -> float:
 
 @dataclass(frozen=True)
 class _Parameter:
-    """As a Sensitivity; relative: derivative of the factor over the factor."""
+    """A parameter as in Sensitivity; relative: derivative of the factor over the factor."""
 
     key: str
     kind: str
@@ -262,11 +274,11 @@ class _Parameter:
 
     @property
     def effect(self) -> float:
-        """Of the step on the factor, relative."""
+        """The relative effect of the step on the factor."""
         return self.relative * self.step
 
     def sensitivity(self, factor: float | None) -> Sensitivity:
-        """Of this factor."""
+        """Return the sensitivity of a given factor."""
         of_factor = None if factor is None else factor * self.relative
         after = None if factor is None else factor * (1.0 + self.effect)
         return Sensitivity(
@@ -286,7 +298,7 @@ def _of_dimensions(
 
 
 def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
-    """The largest effects first."""
+    """Return the sensitivities, the largest effects first."""
     return tuple(row.sensitivity(factor) for row in sorted(rows, key=lambda x: -abs(x.effect)))
 
 
