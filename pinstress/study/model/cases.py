@@ -1,4 +1,4 @@
-"""From a study's cases to the reactions on its pins."""
+"""Reactions on pins, from the cases of a study."""
 
 from __future__ import annotations
 
@@ -64,14 +64,19 @@ from pinstress.study.schema.landing import DropCase, GroundCase
 
 @dataclass(frozen=True)
 class CaseLoads:
-    """The reactions of one case, with the dynamics behind them where a mechanism made them.
+    """The reactions of one case, with the dynamics behind them where a mechanism gives them.
 
-    note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
-    over the ranges of an impulse. impulse: of the only one in the case. leg: of a spatial leg.
-    solve: the dynamics at other times (T,) s.
-    peaks: the largest forces over the time. over: other results of the whole motion;
-    frictionless: the same if nothing rubbed, where something does. moving:
-    what acts on the pins at any time. landing: of a drop.
+    note: how the loads came about.
+    at: reactions at other times (T,) s of the same motion.
+    range: reactions over the ranges of an impulse.
+    impulse: reactions of the only impulse in the case.
+    leg: dynamics of a spatial leg.
+    solve: dynamics at other times (T,) s.
+    peaks: the largest forces over the time.
+    over: other results of the whole motion.
+    frictionless: the same without friction, where there is any.
+    moving: the loads on the pins at any time.
+    landing: course of a drop.
     """
 
     reactions: Reactions
@@ -90,8 +95,9 @@ class CaseLoads:
 
 
 def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
-    """The same case at one time (s), whether or not that is a sample; None outside its time, and
-    between the instants of a table.
+    """Return the case at one time (s), whether or not that is a sample.
+
+    None outside the case's time, and between the instants of a table.
     """
     times = case.reactions.times
     if times is None:
@@ -118,7 +124,9 @@ def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
 def case_loads(
     study: Study, name: str, mechanism: Linkage | None, extremes: bool = True
 ) -> CaseLoads:
-    """Reactions of a case. extremes: whether with those of a whole motion.
+    """Return the reactions of a case.
+
+    extremes: whether with those of a whole motion.
 
     Raises: InputError for mistakes in the study or its tables.
     """
@@ -175,8 +183,9 @@ def _without_joints(at: Callable[[Floats], Reactions], times: Floats) -> Acting:
 
 @dataclass(frozen=True)
 class _Moved:
-    """A case's dynamics at any times (T,) s of its motion. Not closures: it is sent to processes
-    that are started anew.
+    """A case's dynamics at any times (T,) s of its motion.
+
+    A class instead of closures, since it is sent to processes that are started anew.
     """
 
     name: str
@@ -211,7 +220,7 @@ def _motion(
 
 
 def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
-    """A case with its extremes."""
+    """Return the loads of a case with their extremes."""
     course = moved.course
     solved = moved.solve(np.linspace(course.first, course.last, samples))
     over = over_time(course, moved.solve, solved)
@@ -247,7 +256,9 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
 def _on_ground(
     study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
 ) -> CaseLoads:
-    """A rule's load on the leg at rest; that of a drop needs the drop, which `check` leaves out."""
+    """Return a rule's load on the leg at rest; that of a drop needs the drop, which `check`
+    leaves out.
+    """
     where, note = place(study, name, case, mechanism), ""
     drives, reference = still(where), case.reference or 0.0
     if case.drop is not None and extremes:

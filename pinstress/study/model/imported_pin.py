@@ -1,4 +1,4 @@
-"""A pin's shape read from its file, in a separate process with limits of time and memory.
+"""Shape of a pin, read from its file in a separate process with limits of time and memory.
 
 OpenCASCADE crashes on some damaged files and hangs on others; a mesh of a few bytes may request
 more memory than there is.
@@ -35,8 +35,12 @@ LONG_LIMITS = Limits(600, 6000, MAX_READER_MEMORY)
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
-    """The body in the file: a profile, with cuts, if it is one and its bands and clamps
-    (by name) are on it; otherwise a solid, with its bands measured.
+    """Return the body in a file.
+
+    It is a profile, with cuts, if the body is one and its bands and clamps are on it; otherwise a
+    solid, with its bands measured.
+
+    clamps: names of surfaces.
 
     Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
     large, or cannot be read within the limits.
@@ -51,7 +55,7 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
 
 
 def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
-    """As `geometry.imported.recognise.recognised_profile`, in another process.
+    """Return `geometry.imported.recognise.recognised_profile`, computed in another process.
 
     Raises: as that and `apart`.
     """
@@ -60,7 +64,7 @@ def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
 
 
 def require_readable(file: BodyFile) -> None:
-    """Raises: GeometryError if the file cannot be read, or is too large."""
+    """Raise GeometryError if the file cannot be read, or is too large."""
     try:
         require_regular(file.path, MAX_BODY_SIZE)
     except FileError as error:
@@ -74,7 +78,10 @@ def require_readable(file: BodyFile) -> None:
 
 
 def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
-    """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
+    """Return the recognised profile with its bands.
+
+    Raises: NotTurnedError where a band or a clamp is not one of the profile.
+    """
     start, stripes = recognised.start * file.unit, []
     for place in file.places:
         at = recognised.surfaces.get(place.surface or "")
@@ -110,9 +117,9 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
-    """The result of `work(file, ...)`, run in another process.
+    """Return the result of `work(file, ...)`, run in another process.
 
-    Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
+    Raises: the errors of the work; GeometryError if that process crashes or exceeds its limits.
     """
     quick = work is recognised_profile or arguments in ((), (MEASURING_MESH_SIZE,))
     limits = CAD_LIMITS if quick and not file.meshed else LONG_LIMITS
@@ -134,7 +141,10 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
 
 
 def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:
-    """Run `work` in the other process, whose limit of memory is so many bytes."""
+    """Run `work` in the other process.
+
+    memory: its limit, bytes.
+    """
     try:
         return work(file, *arguments)
     except (MemoryError, GeometryError, MeshError) as error:

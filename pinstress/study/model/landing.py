@@ -1,4 +1,4 @@
-"""From a study's drop to the fallen leg, and to where it touches the ground in its mechanism."""
+"""Drop of a landing leg, and the point where it touches the ground in its mechanism."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ UNSPRUNG_MASS_TOLERANCE = 0.1
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
-    """Where the ground pushes. Raises: InputError."""
+    """Return the point where the ground pushes.
+
+    Raises: InputError.
+    """
     try:
         up, aft = axes(mechanism, case.forward)
     except ArgumentError as error:
@@ -50,7 +53,10 @@ def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdo
 
 
 def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:
-    """A leg that can fall, and where it touches. Raises: InputError, LinkageError."""
+    """Return a leg that can fall, and the point where it touches the ground.
+
+    Raises: InputError, LinkageError.
+    """
     where = place(study, name, case, mechanism)
     key = "case." + name
     try:
@@ -69,7 +75,10 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
 
 
 def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
-    """That of the mechanism, kg. Raises: ArgumentError where it has none."""
+    """Return the unsprung mass of the mechanism, kg.
+
+    Raises: ArgumentError where it has none.
+    """
     if case.strut is None:
         raise ArgumentError(
             "give unsprung: without a strut nothing in the mechanism moves with the axle",
@@ -86,7 +95,7 @@ def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
 
 
 def unsprung_warnings(study: Study) -> list[str]:
-    """For every drop whose unsprung mass is not that of its mechanism, with both."""
+    """Return a warning for every drop whose unsprung mass differs from that of its mechanism."""
     drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
     warnings = []
     for name, case in drops.items():
@@ -175,7 +184,10 @@ def _wheel(case: DropCase, unsprung: float) -> Wheel | None:
 
 
 def fallen(study: Study, name: str, leg: Drop) -> Landing:
-    """The drop's course. Raises: InputError where the leg does not survive it."""
+    """Return the drop's course.
+
+    Raises: InputError where the leg does not survive it.
+    """
     try:
         return land(leg)
     except LandingError as error:
@@ -183,7 +195,7 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
 
 
 def drop_note(case: DropCase, leg: Drop) -> str:
-    """The clause of a drop, and its unsprung mass where the mechanism gives it."""
+    """Return the clause of a drop, and its unsprung mass where the mechanism gives it."""
     clause = "" if case.rule is None else f"{DROP_RULES[case.rule].clause}."
     if case.unsprung is not None:
         return clause
@@ -191,14 +203,14 @@ def drop_note(case: DropCase, leg: Drop) -> str:
 
 
 def still(where: Touchdown) -> list[Law]:
-    """Laws that keep all drives as with the strut extended."""
+    """Return laws that keep all drives as with the strut extended."""
     return [StateDrive(value) for value in where.extended]
 
 
 def ground_load(
     where: Touchdown, rule: GroundRule, reference: float, mechanism: Linkage
 ) -> Applied:
-    """What the ground does to the wheel in the plane of the mechanism, by a rule."""
+    """Return the load of the ground on the wheel in the plane of the mechanism, by a rule."""
     x, y = (
         reference * (rule.vertical * u + rule.drag * a)
         for u, a in zip(where.up, where.aft, strict=True)
@@ -207,7 +219,7 @@ def ground_load(
 
 
 def ground_note(study: Study, case: GroundCase, reference: float) -> str:
-    """Clause and components of a rule's load."""
+    """Return the clause and the components of a rule's load."""
     rule, force = GROUND_RULES[case.rule], study.system.factor("force")
     parts = {
         "vertical": rule.vertical,

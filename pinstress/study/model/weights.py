@@ -13,8 +13,10 @@ STATED_WEIGHT_TOLERANCE = 0.02  # of the profile's weight
 
 
 def weight_warnings(study: Study) -> list[str]:
-    """For every joint whose weight is not that of its pin's shape both, with the one that is used;
-    and weights that are not used at all.
+    """Return a warning for every joint whose stated weight is not that of its pin's shape.
+
+    It gives both weights, and the one that is used. Weights that are not used at all have a warning
+    too.
     """
     mechanism = study.table.mechanism
     if mechanism is None:

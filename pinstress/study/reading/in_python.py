@@ -1,4 +1,4 @@
-"""Studies made in Python: from tables as a study file has them, and from another study."""
+"""Studies built in Python: from tables as a study file has them, and from another study."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ INDEX_PATTERN = re.compile(r"\[(\d+)\]")
 def study_from(
     tables: Mapping[str, Any] | str, folder: str | os.PathLike[str] = ".", name: str = "study"
 ) -> Study:
-    """A study from a dict with the keys of a study file (docs/study-file.md), in which None means
-    that the key is absent, or from the text of such a file.
+    """Return a study from a dict with the keys of a study file (docs/study-file.md), or from its
+    text.
 
-    folder: folder of the files that the study refers to. name: name of the study in messages and
-    results.
+    tables: None for a value means that the key is absent.
+    folder: folder of the files that the study refers to.
+    name: name of the study in messages and results.
 
     Raises: InputError as load_study.
     """
@@ -41,9 +42,11 @@ def study_from(
 
 
 def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
-    """The study with other values, by key as in messages: {"pin.E.profile[2].diameter":
-    "1.5 in", "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced
-    values is removed; comments are kept.
+    """Return the study with other values.
+
+    changes: values by key as in messages: {"pin.E.profile[2].diameter": "1.5 in",
+    "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced values is
+    removed; comments are kept.
 
     Raises: InputError as load_study, and for a key that does not exist in the study.
     """
@@ -62,7 +65,10 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:
-    """The parts of a key: names, and indices from 0. Raises: InputError."""
+    """Return the parts of a key: names, and indices from 0.
+
+    Raises: InputError.
+    """
     parts: list[str | int] = []
     at = 0
     while at < len(key):
@@ -95,7 +101,10 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
 
 
 def _plain(value: Any, key: str) -> Any:
-    """As TOML has it: numbers of numpy, tuples and paths too. Raises: InputError for others."""
+    """Return a value as TOML has it; numbers of numpy, tuples and paths are accepted.
+
+    Raises: InputError for others.
+    """
     if isinstance(value, Mapping):
         return {str(k): _plain(v, f"{key}.{k}") for k, v in value.items() if v is not None}
     if isinstance(value, bool | int | float | str):

@@ -1,4 +1,6 @@
-"""Limits on the size of a study: more would take hours, or more memory than machines have."""
+"""Limits on the size of a study; larger ones would take hours, or more memory than machines
+have.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ MAX_BODIES = 500  # and joints: three unknowns each, in dense equations
 
 
 def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
-    """The texts of a study, each with its key."""
+    """Yield the texts of a study, each with its key."""
     if isinstance(node, str):
         yield key, node
     elif isinstance(node, list):
@@ -33,7 +35,9 @@ def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
 
 
 def control_characters(named_texts: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
-    """Errors for texts with characters that command terminals and that PDF and XML cannot show."""
+    """Yield errors for texts with characters that command terminals or that PDF and XML cannot
+    show.
+    """
     for key, text in named_texts:
         if bad := CONTROL_CHARACTER_PATTERN.search(text):
             what = f"has the control character U+{ord(bad[0]):04X}"
@@ -41,7 +45,7 @@ def control_characters(named_texts: Iterable[tuple[str, str]]) -> Iterator[Wrong
 
 
 def too_many(table: StudyTable) -> Iterator[str]:
-    """Errors for whatever exceeds a limit."""
+    """Yield errors for whatever exceeds a limit."""
     for key, what, items, most in _counted(table):
         if len(items) > most:
             yield f"{key}: {len(items):,} {what}; the limit is {most:,}"

@@ -17,7 +17,12 @@ class LayoutError(CodedError, ValueError):
 
 
 def places(mechanism: MechanismTable, show: Show) -> dict[str, Point]:
-    """Every joint's position as drawn, m; `show` formats a length. Raises: LayoutError."""
+    """Return every joint's position as drawn, m.
+
+    show: formats a length.
+
+    Raises: LayoutError.
+    """
     positions: dict[str, Point] = {}
     waiting = dict(mechanism.joint)
     while waiting:

@@ -1,4 +1,4 @@
-"""From a study's spatial leg to its dynamics and the loads on the pin at its hinge."""
+"""Dynamics of a study's spatial leg, and the loads on the pin at its hinge."""
 
 from __future__ import annotations
 
@@ -14,13 +14,16 @@ LEG_AXES = "x = z'' (up), y = x'' (right), z = y'' (ahead, along the hinge)"
 
 
 def instants(study: Study, case: LegCase) -> Floats:
-    """The samples of a case, (T,) s."""
+    """Return the samples of a case, (T,) s."""
     assert study.table.spatial_leg is not None
     return np.linspace(0.0, study.table.spatial_leg.fold.duration, case.samples)
 
 
 def dynamics(study: Study, times: Floats) -> LegDynamics:
-    """The leg's dynamics at times (T,) s. Raises: InputError."""
+    """Return the leg's dynamics at times (T,) s.
+
+    Raises: InputError.
+    """
     table = study.table.spatial_leg
     assert table is not None
     if len(table.leg_inertia) not in (3, 6):
@@ -67,8 +70,10 @@ def dynamics(study: Study, times: Floats) -> LegDynamics:
 
 
 def hinge_reactions(study: Study, case: str, times: Floats, leg: LegDynamics) -> Reactions:
-    """What the leg does to the pin at its hinge, which is fixed in the aircraft with its axis along
-    y'': force, and moment across the axis; the moment about the axis is the actuator's.
+    """Return the load of the leg on the pin at its hinge: force, and moment across the axis.
+
+    The pin is fixed in the aircraft with its axis along y''; the moment about the axis is the
+    actuator's.
     """
     table = study.table.spatial_leg
     assert table is not None
