@@ -102,8 +102,8 @@ class Cache:
     def trim(self) -> None:
         """Remove the least recently used files until the rest is within the limit.
 
-        Partial files, which killed runs leave, are removed too; files with other names than ours
-        never are.
+        Partial files, which killed runs leave, count too; files with other names than ours are
+        kept.
         """
         files, room = [], self.limit
         with suppress(OSError):  # it is not there, or not ours

@@ -46,7 +46,7 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 
 @dataclass(frozen=True)
 class Plan:
-    """All that is known before anything is solved; every input has been read and checked.
+    """The inputs of an analysis before anything is solved; all have been read and checked.
 
     checked: the task whose pin the beam check compares, if any.
     also: the fields that are wanted in addition to those of the model at the governing instant.

@@ -273,7 +273,7 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
 
 
 def _meets(peak: Maximum, strength: float | None, required: float | None) -> bool | None:
-    """Return whether the required factor, or yield, is reached; None where that is undecided."""
+    """Return whether the required factor, or yield, is reached; None where that is not decided."""
     return None if strength is None else meets_limit(peak, strength / (required or 1.0))
 
 

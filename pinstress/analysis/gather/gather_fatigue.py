@@ -36,7 +36,7 @@ GRADIENT_SUPPORT_NOTE = (
 
 @dataclass(frozen=True)
 class _Open:
-    """The reason why a pin's fatigue is undecided, and what would decide it."""
+    """The reason why a pin's fatigue is not decided, and what would decide it."""
 
     reason: str
     needs: str
@@ -46,7 +46,7 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
     """Return the fatigue of all critical points, the worst first, and the margins; None and no
     margins without a spectrum.
 
-    A failure here leaves the fatigue of its pin undecided; other results are unaffected.
+    A failure here leaves the fatigue of its pin open; other results are unaffected.
     """
     table = plan.study.table.fatigue
     if table is None:
@@ -88,7 +88,7 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
 def _margins(plan: Plan, result: Fatigue, needs: dict[str, str]) -> list[PinMargin]:
     """Return the margins of checks over all cases of a pin, the worst pin first.
 
-    needs: by pin whose damage is undecided, what is missing.
+    needs: by pin whose damage is not decided, what is missing.
     """
     tasks = {task.pin.name: task for task in plan.tasks}
     damaged = dict.fromkeys(p.pin for p in result.points if p.pin not in needs)
@@ -122,7 +122,7 @@ def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
 def _points(
     plan: Plan, histories: list[PointHistory], table: FatigueTable
 ) -> tuple[list[PointFatigue], _Open | None]:
-    """Return the fatigue of the points of one pin, and what is undecided at any of them."""
+    """Return the fatigue of the points of one pin, and what is not decided at any of them."""
     points, failed = [], None
     for history in histories:
         at = f"at point {history.point}"

@@ -134,8 +134,8 @@ def _case(
 def _unread(
     case: CaseLoads, solution: Solution, points: Ints, at: tuple[float, ...] | None
 ) -> Mask | None:
-    """Return the points (J,) of a meridian, counted from the angle of a location, that are not
-    read.
+    """Return where points (J,) of a meridian are not read, by instant and by angle from a
+    location.
     """
     assert solution.answer is not None
     start = 0.0 if at is None else atan2(at[1], at[0])
