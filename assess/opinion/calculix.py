@@ -79,16 +79,16 @@ def solved(folder: Path, printed: str) -> CalculixSolution:
     """
     seconds_of(printed)
     try:
-        found = CalculixSolution(
+        results = CalculixSolution(
             displacements(folder / f"{JOB_NAME}.dat"), stresses(folder / f"{JOB_NAME}.frd")
         )
     except (OSError, ValueError, IndexError, StopIteration) as error:
         raise CalculixError(
             f"{CALCULIX_COMMAND} wrote no readable results ({error})", "unreadable-results"
         ) from None
-    if not (np.isfinite(found.displacement).all() and np.isfinite(found.stress).all()):
+    if not (np.isfinite(results.displacement).all() and np.isfinite(results.stress).all()):
         raise CalculixError(f"the results of {CALCULIX_COMMAND} are not finite", "not-finite")
-    return found
+    return results
 
 
 def seconds_of(printed: str) -> float:

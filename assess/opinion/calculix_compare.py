@@ -82,20 +82,20 @@ def _compared(
         folder = Path(name)
         deck = folder / f"{calculix.JOB_NAME}.inp"
         write_deck(deck, space.nodes, space.elements, material, fields.fixed, forces)
-        found = calculix.solved(folder, calculix.run(folder))
+        results = calculix.solved(folder, calculix.run(folder))
     u = fields.displacement @ loads
-    if found.displacement.shape != u.shape or len(found.stress) != len(u):
+    if results.displacement.shape != u.shape or len(results.stress) != len(u):
         raise calculix.CalculixError(
             f"{calculix.CALCULIX_COMMAND} did not write results for all {len(u)} nodes",
             "missing-nodes",
         )
     ours = von_mises(nodal_stress(space, material, u[..., None])[..., 0])
-    theirs = von_mises(found.stress)
+    theirs = von_mises(results.stress)
     outside = _outside(solution)
     return replace(
         answer,
         unknowns=space.unknowns,
-        displacement=_difference(u, found.displacement),
+        displacement=_difference(u, results.displacement),
         stress=_difference(ours, theirs),
         ours=float(ours[outside].max()),
         theirs=float(theirs[outside].max()),

@@ -285,23 +285,23 @@ def _read(
     seconds = calculix.seconds_of(printed)
     mesh = deck.pin.mesh
     try:
-        found = contact_forces(folder / f"{calculix.JOB_NAME}.dat")
+        forces = contact_forces(folder / f"{calculix.JOB_NAME}.dat")
         stress = calculix.stresses(folder / f"{calculix.JOB_NAME}.frd")
         names = [slave(eye.part.name, k) for eye in deck.eyes for k in range(len(eye.rings))]
-        each = np.array([found[name] for name in names])
+        ring_forces = np.array([forces[name] for name in names])
     except (OSError, ValueError, IndexError, KeyError, StopIteration) as error:
         raise calculix.CalculixError(
             f"{calculix.CALCULIX_COMMAND} wrote no readable results ({error})", "unreadable-results"
         ) from None
-    if len(stress) != len(mesh.nodes) or not np.isfinite(each).all():
+    if len(stress) != len(mesh.nodes) or not np.isfinite(ring_forces).all():
         raise calculix.CalculixError(
             f"{calculix.CALCULIX_COMMAND} did not write finite results for the whole pin",
             "missing-nodes",
         )
     c, s = np.cos(angle), np.sin(angle)
     back = np.array([[c, s], [-s, c]])
-    each = each / scale
-    force, first = each[:, :2], np.stack([each[:, 4], -each[:, 3]], axis=1)
+    ring_forces = ring_forces / scale
+    force, first = ring_forces[:, :2], np.stack([ring_forces[:, 4], -ring_forces[:, 3]], axis=1)
     if deck.half:
         force, first = (2.0 * x * [1.0, 0.0] for x in (force, first))
     return JointOpinion(

@@ -226,9 +226,11 @@ def _body(part: Part, node: int, element: int) -> Iterator[str]:
     yield f"*NODE, NSET={part.name}"
     for number, (x, y, z) in enumerate(part.mesh.nodes, node):
         yield f"{number}, {real(x)}, {real(y)}, {real(z)}"
-    for name, material, own in part.materials:
+    for name, material, elements in part.materials:
         yield f"*ELEMENT, TYPE=C3D20R, ELSET={name}"
-        for number, row in zip(own + element, part.mesh.elements[own] + node, strict=True):
+        for number, row in zip(
+            elements + element, part.mesh.elements[elements] + node, strict=True
+        ):
             text = [str(n) for n in row]
             yield f"{number}, " + ", ".join(text[:10]) + ","
             yield ", ".join(text[10:])

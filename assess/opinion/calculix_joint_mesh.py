@@ -153,14 +153,14 @@ def _section(radii: Floats, solid: bool, sectors: int, half: bool) -> _Section:
         cells.append(np.stack([low, high, np.roll(high, -1), np.roll(low, -1)], axis=1))
     inner, outer = (np.repeat(r, sectors) for r in (radii[:-1], radii[1:]))
     none = np.zeros(len(core))
-    made = _Section(
+    section = _Section(
         points,
         np.concatenate([core, *cells]),
         on,
         np.concatenate([none, inner]),
         np.concatenate([none, outer]),
     )
-    return _upper(made) if half else made
+    return _upper(section) if half else section
 
 
 def _upper(section: _Section) -> _Section:
@@ -199,12 +199,12 @@ def _drawn(section: _Section, z: Floats, bore: Floats, outer: Floats) -> Hexahed
     count, elements, layer, inner, out = len(section.points), [], [], [], []
     for k in range(len(z) - 1):
         ring = (section.inner > bore[k] - tiny) & (section.outer < outer[k] + tiny)
-        there = np.where(section.outer == 0.0, bore[k] == 0.0, ring)
-        cells = section.cells[there] + k * count
+        present = np.where(section.outer == 0.0, bore[k] == 0.0, ring)
+        cells = section.cells[present] + k * count
         elements.append(np.concatenate([cells, cells + count], axis=1))
         layer.append(np.full(len(cells), k))
-        inner.append(section.inner[there])
-        out.append(section.outer[there])
+        inner.append(section.inner[present])
+        out.append(section.outer[present])
     corners = np.concatenate([np.column_stack([section.points, np.full(count, h)]) for h in z])
     nodes, quadratic = _quadratic(corners, np.concatenate(elements), np.tile(section.on, len(z)))
     return Hexahedra(

@@ -105,5 +105,5 @@ class BeamCheck:
 
     @property
     def rms_axis_load_beyond_offset(self) -> float:
-        found = self.fea_axial_stress_axis_load - self.expected_offset_axis_load
-        return self.difference(found).rms
+        stress = self.fea_axial_stress_axis_load - self.expected_offset_axis_load
+        return self.difference(stress).rms

@@ -148,8 +148,8 @@ def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     stress = contact_stress(s.across[:, loose], at)
     allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
     names = tuple(s.loads.surfaces[k] for k in loose)
-    found = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
-    return [replace(found, factor=math.sqrt(found.factor))]
+    margin = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
+    return [replace(margin, factor=math.sqrt(margin.factor))]
 
 
 def _sheared(forces: SectionForces, ultimate: float) -> Floats:
@@ -172,13 +172,13 @@ def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
     """The lower yield strength of pin and lug at each band, and the keys that are missing."""
-    found, lacking = [], []
+    strengths, lacking = [], []
     for name in s.loads.surfaces:
         lug = s.lug(name)
         both = [s.material] if lug is None else [s.material, lug.bearing]
         lacking += [strength_key(m.name, "yield") for m in both if m.yield_strength is None]
-        found.append(min((m.yield_strength for m in both if m.yield_strength), default=0.0))
-    return found, list(dict.fromkeys(lacking))
+        strengths.append(min((m.yield_strength for m in both if m.yield_strength), default=0.0))
+    return strengths, list(dict.fromkeys(lacking))
 
 
 def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> list[Margin]:

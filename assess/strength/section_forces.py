@@ -76,9 +76,9 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     at_bands = _at_middles(s, forces, c)
     middles = np.repeat([b.middle for b in bands], 2)
     where = np.concatenate([z[~inside], middles])
-    there = np.concatenate([cells[~inside], _cells(forces, middles)])
+    station_cells = np.concatenate([cells[~inside], _cells(forces, middles)])
     both = np.concatenate([outside, at_bands], axis=1)
-    at_middles = _sized(s, forces, there, where, both)
+    at_middles = _sized(s, forces, station_cells, where, both)
     middles_of = "forces at the middles of bands"
     basis = even.basis.replace(EVEN_LOAD_BASIS, middles_of)
     return even, replace(at_middles, basis=basis, kind="concentrated")

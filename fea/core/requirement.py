@@ -54,33 +54,33 @@ class Requirement:
         )
 
 
-def decided(asked: Requirement, material: Material, low: float, high: float) -> bool:
+def decided(requirement: Requirement, material: Material, low: float, high: float) -> bool:
     """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
-    limit = _limit(asked, material)
+    limit = _limit(requirement, material)
     return limit is not None and (high < limit or low > limit)
 
 
-def _limit(asked: Requirement, material: Material) -> float | None:
+def _limit(requirement: Requirement, material: Material) -> float | None:
     """Maximum (Pa) with the required factor, if that is to be decided."""
-    strength, required = material.yield_strength, asked.required
-    if asked.goal != "decide" or strength is None or required is None:
+    strength, required = material.yield_strength, requirement.required
+    if requirement.goal != "decide" or strength is None or required is None:
         return None
     return strength / required
 
 
-def accurate_enough(asked: Requirement, material: Material, seen: MeshHistory) -> bool:
+def accurate_enough(requirement: Requirement, material: Material, seen: MeshHistory) -> bool:
     """Whether these meshes are accurate enough, or decide the required factor. Fewer never tell
     how large a maximum is, for they can agree by chance.
     """
     if len(seen.results) < seen.meshes.min_meshes:
         return False
     return (
-        seen.known(asked.left(seen.case))
-        or decided(asked, material, *seen.range)
-        or below_sections(asked, seen)
+        seen.known(requirement.left(seen.case))
+        or decided(requirement, material, *seen.range)
+        or below_sections(requirement, seen)
     )
 
 
-def below_sections(asked: Requirement, seen: MeshHistory) -> bool:
+def below_sections(requirement: Requirement, seen: MeshHistory) -> bool:
     """Whether sections have more stress than the surface may have."""
-    return bool(seen.range[1] <= asked.elsewhere.get(seen.case, 0.0))
+    return bool(seen.range[1] <= requirement.elsewhere.get(seen.case, 0.0))

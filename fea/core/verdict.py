@@ -141,15 +141,15 @@ def judge(
         raise SolveError(
             f"pin {seen.pin}, case {seen.case}: the stress is not finite", "not-finite"
         )
-    found = zones(last, singularities)
-    governing = [zone for zone in found if zone.governs]
+    reported = zones(last, singularities)
+    governing = [zone for zone in reported if zone.governs]
     known = seen.known(tolerance)
     verdict: Verdict = "converged" if known else "unconverged"
-    own = accuracy(seen.relative, tolerance, known)
+    verdict_reason = accuracy(seen.relative, tolerance, known)
     if len(seen.results) < seen.meshes.min_meshes and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
-        own = Reason(text, ("too-few-meshes",))
+        verdict_reason = Reason(text, ("too-few-meshes",))
     error, interval = seen.error, None
     if governing:
         verdict = "singular"
@@ -157,24 +157,24 @@ def judge(
         interval = seen.range
         error = max(last.maximum - interval[0], interval[1] - last.maximum)
         ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
-        outside = "" if known else f"; outside, {own.text}"
+        outside = "" if known else f"; outside, {verdict_reason.text}"
         text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
-        own = Reason(text, own.codes)
-    own = own + note
+        verdict_reason = Reason(text, verdict_reason.codes)
+    verdict_reason = verdict_reason + note
     return Maximum(
         pin=seen.pin,
         case=seen.case,
         model=seen.model,
         verdict=verdict,
-        note=own.text,
+        note=verdict_reason.text,
         max_von_mises=last.maximum,
         error_estimate=error,
         location=last.location,
         history=seen.history,
-        singular_at=found,
+        singular_at=reported,
         interval=interval,
         parts=seen.parts,
-        reasons=own.codes,
+        reasons=verdict_reason.codes,
     )
 
 
@@ -184,7 +184,7 @@ def _nowhere(zone: SingularZone) -> str:
     if zone.exponent_theory == 0.0:
         return f"no maximum exists: at {where} stress grows as log(1/distance)"
     exponents = ((zone.exponent, "measured"), (zone.exponent_theory, "theoretical"))
-    found = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
-    if not found:
+    listed = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
+    if not listed:
         return f"no maximum exists: at {where} stress grows without bound"
-    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}"
+    return f"no maximum exists: at {where} stress grows as distance^-s, s = {listed}"

@@ -103,7 +103,7 @@ def cut_solution(
     bands: Sequence[tuple[float, float]] = (),
     distance: float = 0.1,
     finer: LocalFineness | None = None,
-    kept: Sequence[LocalFields] = (),
+    reused: Sequence[LocalFields] = (),
 ) -> CutSolution:
     """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
     bands: loaded ones with cuts in them (fea.cut.region.loaded_bands); distance: as
@@ -115,11 +115,11 @@ def cut_solution(
     material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
     finer = finer or LocalFineness.of(level)
-    known = [next((k for k in kept if k.piece == piece), None) for piece in pieces]
+    known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
     models = [
         mesh_of(piece, material, clamps, finer, high, bands)
-        for piece, there in zip(pieces, known, strict=True)
-        if there is None
+        for piece, reused_piece in zip(pieces, known, strict=True)
+        if reused_piece is None
     ]
     points = [section_points(model) for model in models]
     supports = _supports(problem)
@@ -137,19 +137,19 @@ def cut_solution(
         local_fields(model, section.fields, stress, units, problem.singularities, distance, weight)
         for model, stress in zip(models, at[:-1], strict=True)
     )
-    found = tuple(there or next(new) for there in known)
+    local = tuple(reused_piece or next(new) for reused_piece in known)
     uncut = section.fields
     fields = _without(uncut, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NO_POINTS)
     held = next(iter(supports), None)
-    return CutSolution(section, found, uncut, reactions(supports, found), held)
+    return CutSolution(section, local, uncut, reactions(supports, local), held)
 
 
 def _supports(problem: SectionProblem) -> list[ClampReaction]:
     """The clamps of a section in the order of z."""
     cut = CutPin(problem.pin)
-    found = [ClampReaction(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
-    return sorted(found, key=lambda support: support.z)
+    reactions = [ClampReaction(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
+    return sorted(reactions, key=lambda support: support.z)
 
 
 def _fine(piece: Piece, level: int) -> Grade:
@@ -168,28 +168,28 @@ def _fine(piece: Piece, level: int) -> Grade:
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
     """Unit loads in the phases in which they ever act, of a motion in all."""
-    found: dict[Unit, None] = {}
+    units: dict[Unit, None] = {}
     for case in cases:
         for load, amounts in case.coefficients().items():
-            found |= {
+            units |= {
                 (load, p): None
                 for p in load.phases
                 if case.times is not None or amounts[:, p].any()
             }
-    return tuple(found)
+    return tuple(units)
 
 
 def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: MeridianFields) -> Floats:
     """How much of the stress in any case a unit load brings, (L,): 1 the most; of one whose amount
     is not known here, 1, too.
     """
-    own = [fields.loads.index(load) for load, _ in units]
-    stress, out = np.abs(fields.stress).max(axis=(0, 1))[own], np.zeros(len(units))
+    columns = [fields.loads.index(load) for load, _ in units]
+    stress, out = np.abs(fields.stress).max(axis=(0, 1))[columns], np.zeros(len(units))
     for case in cases:
         amounts = case.coefficients()
         most = np.array([np.abs(amounts[u][:, p]).max() if u in amounts else 0.0 for u, p in units])
-        each = most * stress
-        out = np.maximum(out, each / (each.max() or 1.0))
+        shares = most * stress
+        out = np.maximum(out, shares / (shares.max() or 1.0))
     known = {load for case in cases for load in case.coefficients()}
     return np.where([u in known for u, _ in units], np.maximum(out, MIN_UNIT_WEIGHT), 1.0)
 
@@ -249,13 +249,13 @@ class LocalSolids:
         on the mesh before, and those whose stress matters in no case are taken from it.
         """
         reach, spacing = PIECE_REACH, 1.0
-        kept: tuple[LocalFields, ...] = ()
+        reused: tuple[LocalFields, ...] = ()
         results = () if before is None else tuple(before.results)
         below = None if before is None else before.solution
         if isinstance(below, CutMesh) and before is not None:
             reach, spacing = below.reach, below.spacing
             cases = [(case, before.maxima[case.case]) for case in problem.cases]
-            kept = below.solution.idle(cases)
+            reused = below.solution.idle(cases)
             most = TRUNCATION_SHARE * problem.tolerance
             if any(r.beside > most * r.maximum for r in results):
                 spacing *= PIECE_SPACING_FACTOR
@@ -264,7 +264,7 @@ class LocalSolids:
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
         posed = section_problem(problem, self._first)
         solution = cut_solution(
-            posed, local, level, results, self._bands, problem.distance, kept=kept
+            posed, local, level, results, self._bands, problem.distance, reused=reused
         )
         return CutMesh(problem, solution, reach, spacing)
 
@@ -298,23 +298,23 @@ class CutField:
         cut, too, and at the surface about these.
         """
         assert loads.pressed is not None
-        found = beneath(self.solution.uncut, loads, self.singularities)
+        deepest = beneath(self.solution.uncut, loads, self.singularities)
         for piece in self.solution.pieces:
             value, point = piece.beneath(loads, loads.pressed)
             t = int(value.argmax())
-            if value[t] > found.value:
+            if value[t] > deepest.value:
                 x, y, z = piece.points[point[t]].tolist()
-                found = Beneath(float(value[t]), (x, y, z), t)
-        return found
+                deepest = Beneath(float(value[t]), (x, y, z), t)
+        return deepest
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
         """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
         pressed = loads.pressed
         assert pressed is not None
-        found = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
+        steps = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
         for piece in self.solution.pieces:
-            found += piece.depths(loads, pressed, instant, least)
-        return stairs(*np.array(found).reshape(-1, 2).T)
+            steps += piece.depths(loads, pressed, instant, least)
+        return stairs(*np.array(steps).reshape(-1, 2).T)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
         """The surface at one instant, with its envelope over all."""
@@ -326,9 +326,9 @@ class CutField:
                 surface.points, surface.triangles, "triangle", moved, stress, envelope, pressed
             )
         largest = np.zeros(len(surface.points))
-        found = squares(surface.stress)
+        envelope_squared = squares(surface.stress)
         for k in range(0, len(c), 64):
-            np.maximum(largest, found(c[k : k + 64]).max(axis=1), out=largest)
+            np.maximum(largest, envelope_squared(c[k : k + 64]).max(axis=1), out=largest)
         return Picture(
             points=surface.points,
             cells=surface.triangles,
@@ -352,13 +352,13 @@ def cut_result(
     solution: CutSolution,
     singularities: tuple[Zone, ...],
     loads: PinLoads,
-    own: Collection[Zone] | None = None,
+    case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
     """Maximum outside the singularities, of the uncut pin away from its cuts and about these."""
     held = solution.reactions.held(loads)
     assert isinstance(held, PinLoads)
     loads = held
-    result = harmonic_result(solution.section, singularities, loads, own)
+    result = harmonic_result(solution.section, singularities, loads, case_zones)
     high: list[tuple[float, float, float]] = []
     highest, whole = None, result.maximum
     for piece in solution.pieces:

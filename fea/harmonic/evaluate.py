@@ -169,8 +169,8 @@ def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
     first = len(fields.displacement)
     here, rest = slice(first, first + count), np.r_[:first, first + count : len(fields.points)]
     unread = np.flatnonzero(np.isin(rest, fields.unread))
-    kept = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
-    return kept, fields.stress[here]
+    body = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
+    return body, fields.stress[here]
 
 
 def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
@@ -348,15 +348,15 @@ def harmonic_result(
     solution: HarmonicSolution,
     singularities: tuple[Zone, ...],
     loads: PinLoads,
-    own: Collection[Zone] | None = None,
+    case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
     """Maximum outside the singularities, and what is inside them. own: those of this case, where
     others have more; all by default.
     """
     around = reader(solution.fields, loads, solution.nu)
     fields = around.fields
-    mine = singularities if own is None else own
-    among = fields.outside(mine)
+    excluded = singularities if case_zones is None else case_zones
+    among = fields.outside(excluded)
     top = around.top(among)
     result = MeshMaximum(
         unknowns=fields.unknowns,
@@ -364,7 +364,7 @@ def harmonic_result(
         instant=top.instant,
         location=_location(fields.points[top.point], top.angle),
         singularities=tuple(
-            replace(inside(fields, around, p, close, solution.nu), acts=p in mine)
+            replace(inside(fields, around, p, close, solution.nu), acts=p in excluded)
             for p, close in zip(singularities, solution.close, strict=True)
         ),
         left_out=_left_out(around, loads, top),
@@ -372,7 +372,9 @@ def harmonic_result(
         quiet=solution.quiet,
         energy=fields.energy,
     )
-    return replace(result, interval=interval(fields, around, mine)) if result.governed else result
+    return (
+        replace(result, interval=interval(fields, around, excluded)) if result.governed else result
+    )
 
 
 def around_governing(
@@ -399,14 +401,14 @@ def high_places(
     for bound in (around.reach, around.bound):
         rows = rows[bound(rows, now)[:, 0] >= least * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
-    found: list[Floats] = []
+    places: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
-        if value[k] < least * top.value or len(found) == MAX_PLACES:
+        if value[k] < least * top.value or len(places) == MAX_PLACES:
             break
         at = points[rows[k]]
-        if all(np.hypot(*(at - other)) > MIN_SPACING * at[0] for other in found):
-            found.append(at)
-    return tuple((float(r), float(z)) for r, z in found)
+        if all(np.hypot(*(at - other)) > MIN_SPACING * at[0] for other in places):
+            places.append(at)
+    return tuple((float(r), float(z)) for r, z in places)
 
 
 def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:

@@ -88,11 +88,11 @@ def _by_section(
 ) -> Maximum:
     at, relative = section.at, section.parts.total / section.at.value
     known = section.known(tolerance)
-    own = accuracy(relative, tolerance, known)
+    verdict_reason = accuracy(relative, tolerance, known)
     singular = surface.verdict == "singular"
     _, more, rest = surface.note.partition("; ")
     others = tuple(code for code in surface.reasons if code not in SURFACE_CODES)
-    note = Reason("", SECTION_CODES) + own + Reason(more + rest, others)
+    note = Reason("", SECTION_CODES) + verdict_reason + Reason(more + rest, others)
     row = replace(
         surface,
         max_von_mises=at.value,

@@ -89,9 +89,9 @@ class SectionField:
         """Stress of each unit load at points of the sections, section by section."""
         inside = self.forces.inside(self._cells, self._z)
         sections = sections_at(self.pin, self.forces, self._cells, self._z)
-        each = {s: _at_radii(s, WALL_FRACTIONS, self.nu) for s in set(sections)}
-        radii = np.array([each[s][0] for s in sections])
-        per_force = np.array([each[s][1] for s in sections])
+        by_section = {s: _at_radii(s, WALL_FRACTIONS, self.nu) for s in set(sections)}
+        radii = np.array([by_section[s][0] for s in sections])
+        per_force = np.array([by_section[s][1] for s in sections])
         stress = np.einsum("srcq,sqk->srck", per_force, inside)
         z = np.broadcast_to(self._z[:, None], radii.shape)
         points = np.stack([radii, z], axis=2).reshape(-1, 2)
@@ -108,8 +108,8 @@ class SectionField:
     def _felt(self, loads: Loads) -> LoadAmounts:
         """Loads without what no section notices."""
         known = set(self.forces.loads)
-        found = {load: x for load, x in loads.coefficients().items() if load in known}
-        return LoadAmounts(loads.case, found, len(loads))
+        amounts = {load: x for load, x in loads.coefficients().items() if load in known}
+        return LoadAmounts(loads.case, amounts, len(loads))
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
         """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
@@ -147,11 +147,11 @@ class SectionField:
         inside = self.forces.inside(cells, z)
         forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
         both = zip(sections, forces, strict=True)
-        found = [self._closer(section, tuple(x), top) for section, x in both]
-        values = np.array([value for value, _, _ in found])
+        crests = [self._closer(section, tuple(x), top) for section, x in both]
+        values = np.array([value for value, _, _ in crests])
         k = int(values.argmax()) if values.max() > (1.0 + MIN_SECTION_GAIN) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
-        value, r, angle = found[k]
+        value, r, angle = crests[k]
         return AtSection(
             value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
             float(np.hypot(*M)), float(T[1]), sections[k],
@@ -213,5 +213,5 @@ def sections_at(
     starts, stations = np.array(pin.stations), forces.stations
     middle = 0.5 * (stations[cells] + stations[cells + 1])
     which = np.clip(np.searchsorted(starts, middle) - 1, 0, len(pin.segments) - 1)
-    each = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
-    return [thinnest_section(pin.segments[i], x, x) for i, x in each]
+    positions = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
+    return [thinnest_section(pin.segments[i], x, x) for i, x in positions]

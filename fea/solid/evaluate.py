@@ -93,7 +93,7 @@ def solid_solution(
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
         r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
         within, *varied = ([~outside((p,), r, z) for p in here] for here in near)
-        found = list(singularities)
+        zones = list(singularities)
     else:
         fields = model.solve(units)
         limit = partial(free_of_arcs, profile) if isinstance(profile, Pin) else None
@@ -103,10 +103,10 @@ def solid_solution(
             for times in (1.0, *DISTANCE_VARIATIONS)
         ]
         within, *varied = ([mask for _, mask in here] for here in at)
-        found = [singularity for singularity, _ in at[0]]
+        zones = [singularity for singularity, _ in at[0]]
     count = len(fields.points)
     return SolidSolution(
-        fields, tuple(found), tuple(within), tuple(_in_none(masks, count) for masks in varied)
+        fields, tuple(zones), tuple(within), tuple(_in_none(masks, count) for masks in varied)
     )
 
 

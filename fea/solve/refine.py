@@ -60,9 +60,10 @@ def zones_of(
     turned, openings = pin, tuple[tuple[float, float], ...]()
     if isinstance(pin, CutPin) and not pin.revolved:
         turned, openings = pin.profile, tuple(c.opens for c in unringed(pin).cuts.values())
-    found = singularities_of(turned, material, clamps, cases, requirement.distance)
+    profile_zones = singularities_of(turned, material, clamps, cases, requirement.distance)
     return tuple(
-        p.up_to(*(begins(max(a - p.z, p.z - b), (b - a) / 2.0) for a, b in openings)) for p in found
+        zone.up_to(*(begins(max(a - zone.z, zone.z - b), (b - a) / 2.0) for a, b in openings))
+        for zone in profile_zones
     )
 
 

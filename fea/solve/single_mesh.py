@@ -88,6 +88,6 @@ def _posed(problem: Problem, rung: ModelMesh) -> tuple[Model, MeshProblem]:
         return Harmonic(), posed
     if not isinstance(pin, CutPin):
         raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
-    found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
+    zones = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
     bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
-    return LocalSolids(pin, bands), replace(posed, pin=pin.profile, zones=found)
+    return LocalSolids(pin, bands), replace(posed, pin=pin.profile, zones=zones)

@@ -123,8 +123,8 @@ def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
         return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
     assert isinstance(answer, HarmonicField)
     skin = np.arange(answer.fields.skin)
-    found, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
-    return found
+    largest, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
+    return largest
 
 
 def largest_at(

@@ -104,7 +104,7 @@ class AdjointContact:
     force: Floats
     motion: Floats
     by_gap: Floats
-    by_asked: Floats
+    by_required: Floats
 
 
 @dataclass(frozen=True)
@@ -122,14 +122,14 @@ class _Answer:
     right: Floats
     motions: Floats
 
-    def under(self, asked: Floats) -> tuple[Floats, Floats, Floats]:
+    def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
         """Forces, gaps and rigid motions."""
-        motion, lost = np.zeros(len(asked)), self.right - asked
+        motion, lost = np.zeros(len(required)), self.right - required
         for _ in range(2):  # once more for round-off: forces are small where gaps are large
             # what moves nothing is zero
             motion += np.asarray(np.linalg.lstsq(self.system, lost)[0], dtype=np.float64)
             force = self.force - self.yielding @ motion
-            lost = self.motions.T @ force - asked
+            lost = self.motions.T @ force - required
         return force, self.gap + self.moving @ motion, motion
 
 
@@ -189,8 +189,8 @@ class ContactProblem:
     def tail_weights(self, first: int) -> Floats:
         """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
         n = np.arange(first, TAIL_HARMONICS_PER_SECTOR * self.sectors)
-        each = self.factors(n) / n
-        return np.asarray(np.bincount(n % self.sectors, each, self.sectors), dtype=np.float64)
+        terms = self.factors(n) / n
+        return np.asarray(np.bincount(n % self.sectors, terms, self.sectors), dtype=np.float64)
 
     def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
         """Mean displacement of cells under forces on cells, (U, U) m/N."""
@@ -234,27 +234,27 @@ class ContactProblem:
 
         Raises: SolveError where the active set does not settle.
         """
-        asked = self.asked(forces, couple)
+        required = self.required_resultants(forces, couple)
         facing = self._facing(forces)
-        found = self._settled(asked, facing if start is None else start.ravel().copy())
-        found = found or self._from_larger(asked, facing)
-        if found is None:
+        state = self._settled(required, facing if start is None else start.ravel().copy())
+        state = state or self._from_larger(required, facing)
+        if state is None:
             raise SolveError(
                 f"contact does not settle in {MAX_ACTIVE_SET_STEPS} steps", "contact-unsettled"
             )
-        return found
+        return state
 
-    def _settled(self, asked: Floats, active: Mask) -> ContactState | None:
+    def _settled(self, required: Floats, active: Mask) -> ContactState | None:
         """From a set of cells in contact; None where the sets do not settle."""
         seen: set[bytes] = set()
         for step in range(1, MAX_ACTIVE_SET_STEPS + 1):
             answer = self._answer(active)
-            force, gap, motion = answer.under(asked)
+            force, gap, motion = answer.under(required)
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                self._require_balance(force, asked, answer)
-                return self._found(force, gap, motion, step)
+                self._require_balance(force, required, answer)
+                return self._state(force, gap, motion, step)
             key = active.tobytes()
             if key in seen:  # it goes in circles: one cell at a time, the first that is wrong
                 first = int(np.flatnonzero(wrong_force | wrong_gap)[0])
@@ -264,23 +264,23 @@ class ContactProblem:
             seen.add(key)
         return None
 
-    def _from_larger(self, asked: Floats, facing: Mask) -> ContactState | None:
+    def _from_larger(self, required: Floats, facing: Mask) -> ContactState | None:
         """From loads so many times larger that contact settles, down to the given ones: with small
         loads and large gaps few cells touch, far from the first guess.
         """
-        times, found = 1.0, None
-        while found is None and times < MAX_LOAD_FACTOR:
+        times, state = 1.0, None
+        while state is None and times < MAX_LOAD_FACTOR:
             times *= LOAD_GROWTH
-            found = self._settled(times * asked, facing.copy())
+            state = self._settled(times * required, facing.copy())
         factor = LOAD_REDUCTION
-        while found is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
-            less = max(1.0, times / factor)
-            closer = self._settled(less * asked, found.active.ravel().copy())
-            if closer is None:
+        while state is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
+            smaller = max(1.0, times / factor)
+            next_state = self._settled(smaller * required, state.active.ravel().copy())
+            if next_state is None:
                 factor = math.sqrt(factor)
             else:
-                times, found = less, closer
-        return found if times == 1.0 else None
+                times, state = smaller, next_state
+        return state if times == 1.0 else None
 
     def _answer(self, active: Mask) -> _Answer:
         """Of given cells in contact."""
@@ -288,10 +288,10 @@ class ContactProblem:
         if key not in self._answers:
             if len(self._answers) * self._motions.size > MAX_KEPT_NUMBERS:
                 self._answers.clear()
-            self._answers[key] = self._found_answer(active)
+            self._answers[key] = self._compute_answer(active)
         return self._answers[key]
 
-    def _found_answer(self, active: Mask) -> _Answer:
+    def _compute_answer(self, active: Mask) -> _Answer:
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
@@ -308,7 +308,9 @@ class ContactProblem:
         gap[rows], moving[rows] = 0.0, 0.0
         return _Answer(force, yielding, gap, moving, system, right, G)
 
-    def asked(self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)) -> Floats:
+    def required_resultants(
+        self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)
+    ) -> Floats:
         """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
         pin against e_r.
         """
@@ -319,12 +321,12 @@ class ContactProblem:
         out[2 * count : 2 * count + 2] = my, -mx
         return out
 
-    def _require_balance(self, force: Floats, asked: Floats, answer: _Answer) -> None:
+    def _require_balance(self, force: Floats, required: Floats, answer: _Answer) -> None:
         """Raises: SolveError where the cells' forces are not what equilibrium asks."""
         arm = np.sqrt(np.diag(self._scale))  # of each motion
-        each = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
-        lost = each.max(initial=0.0)
-        if lost <= BALANCE_TOLERANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+        residual = np.abs(self._motions.T @ force - required) / np.where(arm > 0.0, arm, 1.0)
+        lost = residual.max(initial=0.0)
+        if lost <= BALANCE_TOLERANCE * np.abs(required).max(initial=force.max(initial=0.0)):
             return
         if lost <= CLOSING_FORCE_ROUND_OFF * np.abs(answer.force).max():
             raise SolveError(
@@ -335,21 +337,21 @@ class ContactProblem:
             "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
         )
 
-    def adjoint(self, active: Mask, wanted: Floats, asked: Floats) -> AdjointContact:
+    def adjoint(self, active: Mask, wanted: Floats, required: Floats) -> AdjointContact:
         """Of contact under what is asked of the rigid motions, with these cells (R, M) in contact:
         how a sum of their forces, each (U,) times `wanted`, goes with gaps, motions and loads.
         """
         rows = np.flatnonzero(active)
         answer = self._answer(active.ravel())
-        force, _, motion = answer.under(asked)
+        force, _, motion = answer.under(required)
         C, G = self._compliance[np.ix_(rows, rows)], self._motions[rows]
-        own = np.zeros(len(force))
-        own[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
-        of_motion, lost = np.zeros(len(asked)), G.T @ own[rows]
+        dual = np.zeros(len(force))
+        dual[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
+        of_motion, lost = np.zeros(len(required)), G.T @ dual[rows]
         for _ in range(2):  # once more for round-off, as contact itself
             of_motion += np.asarray(np.linalg.lstsq(answer.system, lost)[0], dtype=np.float64)
-            lost = G.T @ (own[rows] - answer.yielding[rows] @ of_motion)
-        return AdjointContact(force, motion, own - answer.yielding @ of_motion, of_motion)
+            lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
+        return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
     def _facing(self, forces: Floats) -> Mask:
         """The cells that face the load of their band."""
@@ -357,7 +359,7 @@ class ContactProblem:
         size = np.linalg.norm(forces, axis=1)[self._link]
         return np.asarray((towards > 0.3 * size) & (size > 0.0))
 
-    def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
+    def _state(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
         shape = (len(self.bands.z), self.sectors)
         count = self._count
         return ContactState(

@@ -89,12 +89,12 @@ def neglected(
             points, area = _mouth(cut, one, lug.connection)
             if not len(points):
                 continue
-            found = pressure.at(points)
+            at_mouth = pressure.at(points)
             bands[name] = lug.connection
-            pressed = max(pressed, float(found.max()))
-            lost[band] = lost.get(band, 0.0) + float(found.sum()) * area
-    own, forces = contact.bands.band, contact.loads.forces[0, :, :2]
-    force = {b: float(np.linalg.norm(forces[own == b].sum(axis=0))) for b in lost}
+            pressed = max(pressed, float(at_mouth.max()))
+            lost[band] = lost.get(band, 0.0) + float(at_mouth.sum()) * area
+    ring_band, forces = contact.bands.band, contact.loads.forces[0, :, :2]
+    force = {b: float(np.linalg.norm(forces[ring_band == b].sum(axis=0))) for b in lost}
     share = max((part / force[b] for b, part in lost.items() if force[b] > 0.0), default=0.0)
     softer, moved = _softer(cut, material, contact, of), _moved(cut, contact)
     return NeglectedCuts(softer, pressed, share, moved, bands)
@@ -109,12 +109,12 @@ def _moved(cut: CutPin, contact: JointContact) -> float:
     low, high = bands.z - 0.5 * bands.length, bands.z + 0.5 * bands.length
     for hole in cut.holes:
         start, end = hole.opens
-        there = np.maximum(np.minimum(high, end) - np.maximum(low, start), 0.0) / bands.length
+        overlap = np.maximum(np.minimum(high, end) - np.maximum(low, start), 0.0) / bands.length
         across = np.minimum(0.5 * hole.diameter / bands.radius, 1.0)
         for b in range(len(contact.lugs)):
-            own = bands.band == b
-            if whole := float(force[own].sum()):
-                most = max(most, float((force * there * across)[own].sum()) / whole)
+            on_band = bands.band == b
+            if whole := float(force[on_band].sum()):
+                most = max(most, float((force * overlap * across)[on_band].sum()) / whole)
     return most
 
 
@@ -128,8 +128,8 @@ def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
     angle = (np.arange(ANGULAR_POINTS) + 0.5) * 2.0 * math.pi / ANGULAR_POINTS
     angle, z = (x.ravel() for x in np.meshgrid(angle, z))
     points = np.stack([on.radius * np.cos(angle), on.radius * np.sin(angle), z], axis=1)
-    each = (high - low) / AXIAL_POINTS * on.radius * 2.0 * math.pi / ANGULAR_POINTS
-    return points[one.takes(points, on.radius)], each
+    point_area = (high - low) / AXIAL_POINTS * on.radius * 2.0 * math.pi / ANGULAR_POINTS
+    return points[one.takes(points, on.radius)], point_area
 
 
 def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutField) -> float:
@@ -174,12 +174,12 @@ def with_neglected(
     left: NeglectedCuts,
     of: CutField,
     over: tuple[Variation, ...],
-    asked: Requirement,
+    requirement: Requirement,
 ) -> Maximum:
     """With what is neglected among the parts of its error, and a note about it."""
     if not peak.max_von_mises or peak.parts is None:
         return peak
     more = left.error(peak.max_von_mises, at_a_cut(peak, of), over)
-    found = with_parts(peak, replace(peak.parts, model=more), asked)
+    widened = with_parts(peak, replace(peak.parts, model=more), requirement)
     note = left.note
-    return replace(found, note=found.note + note.text, reasons=found.reasons + note.codes)
+    return replace(widened, note=widened.note + note.text, reasons=widened.reasons + note.codes)

@@ -79,11 +79,11 @@ def contact_edges(contact: JointContact, material: Material) -> tuple[ContactEdg
     """
     out = []
     for b, lug in enumerate(contact.lugs):
-        own = contact.bands.band == b
-        pressure, length = contact.contact[0].pressure[own], contact.bands.length[own]
+        on_band = contact.bands.band == b
+        pressure, length = contact.contact[0].pressure[on_band], contact.bands.length[on_band]
         exponent = lug_edge_exponent(material, lug.bearing)
         powers = exponent, next_power(material, lug.bearing)
-        diameter = 2.0 * float(contact.bands.radius[own][0])
+        diameter = 2.0 * float(contact.bands.radius[on_band][0])
         ends: tuple[tuple[End, slice], ...] = ("start", slice(None)), ("end", slice(None, None, -1))
         for end, way in ends:
             rings = pressure[way], length[way]

@@ -209,21 +209,23 @@ class HeldContact:
         """With the error of cells and of what contact leaves out, sections, contact, and the range
         over what is not known of the joint.
         """
-        model, material, asked = self.model, self.problem.material, requirement
+        model, material = self.model, self.problem.material
         (case,) = (c for c in self.problem.cases if c.case == solution.peak.case)
         answer = solution.answer
         assert isinstance(answer, HarmonicField | CutField)
         assert self.contact.patterns is not None
         at_surface = self.contact.joined(solution.loads.links, solution.instant)
-        known = self.compared[case.case].near(at_surface, case, self._compared_anew(asked))
+        known = self.compared[case.case].near(at_surface, case, self._compared_anew(requirement))
         missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
-        peak = with_cells(_named(model, solution.peak), known.surface.cells.surface + missed, asked)
+        peak = with_cells(
+            _named(model, solution.peak), known.surface.cells.surface + missed, requirement
+        )
         peak = replace(peak, governing=at_surface.loads.links, imbalance=_imbalance(model, case))
         section = None
         if self.cut is None:
-            section = self._section(case, known.section.cells.section, asked)
+            section = self._section(case, known.section.cells.section, requirement)
         links = None if section is None else links_at(self.problem, case, section)
-        peak = row_of(peak, section, material, asked.tolerance, links)
+        peak = row_of(peak, section, material, requirement.tolerance, links)
         solved = solution.loads
         solution = self._at_row(solution, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
@@ -233,12 +235,12 @@ class HeldContact:
         error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
         if self.cut is not None and isinstance(answer, CutField):
             left = neglected(self.cut, material, contact, pressure, answer)
-            peak = with_neglected(peak, left, answer, over.variations, asked)
-            peak = row_of(peak, None, material, asked.tolerance)
+            peak = with_neglected(peak, left, answer, over.variations, requirement)
+            peak = row_of(peak, None, material, requirement.tolerance)
             largest = peak.max_von_mises or 1.0
             error += left.error(largest, False, over.variations) / largest
         row = peak.max_von_mises or 0.0
-        place = contact_place(contact, material, answer, solved, asked.required, error, row)
+        place = contact_place(contact, material, answer, solved, requirement.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
         over = known.row.range(row, place.beneath)
         joint = contact_result(contact, over, solution.loads, known.row.left_out)
@@ -247,14 +249,16 @@ class HeldContact:
     def _by_mesh(self, answer: HarmonicField | CutField, known: ResolutionComparison) -> float:
         """By how much what lies beneath contact differs from that on the first mesh, relative."""
         fields = answer.solution.uncut if isinstance(answer, CutField) else answer.fields
-        there = beneath(fields, self.contact.press(known.links), answer.singularities).value
-        return abs(known.stress.beneath / there - 1.0) if there else 0.0
+        finer = beneath(fields, self.contact.press(known.links), answer.singularities).value
+        return abs(known.stress.beneath / finer - 1.0) if finer else 0.0
 
-    def _compared_anew(self, asked: Requirement) -> Callable[[JointContact], ResolutionComparison]:
+    def _compared_anew(
+        self, requirement: Requirement
+    ) -> Callable[[JointContact], ResolutionComparison]:
         of = self.contact
-        return lambda contact: compare(of.model, [contact], asked, of.patterns)[0]
+        return lambda contact: compare(of.model, [contact], requirement, of.patterns)[0]
 
-    def _section(self, case: PinLoads, cells: float, asked: Requirement) -> FoundSection:
+    def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:
         """The largest stress of sections of a case; cells: its error by these, relative."""
         between, loads = self.problem.between.get(case.case), self.contact.instants[case.case]
         on_rings = None if between is None else lambda times: self.contact.on_rings(between(times))
@@ -262,7 +266,7 @@ class HeldContact:
             self.contact.sections[case.case],
             self.contact.on_rings(loads),
             on_rings,
-            asked.tolerance,
+            requirement.tolerance,
             cells,
         )
 

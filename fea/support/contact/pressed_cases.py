@@ -62,7 +62,7 @@ class Compared:
         """That of the larger one, of which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    def fine(self, material: Material, asked: Requirement) -> bool:
+    def fine(self, material: Material, requirement: Requirement) -> bool:
         """Whether finer cells would not help: they take little of the tolerance, or the required
         factor is decided whatever they do, for what lies beneath the contact, too.
         """
@@ -70,16 +70,16 @@ class Compared:
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
         cells = {name: float(getattr(x.cells, name)) for x, name in both}
         largest = max(stress.values()) or 1.0
-        own = cells[max(stress, key=lambda name: stress[name])]
-        most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        off = max(own, most)
-        if off <= CELL_ERROR_SHARE * asked.tolerance:
+        row_error = cells[max(stress, key=lambda name: stress[name])]
+        worst_growth = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
+        error = max(row_error, worst_growth)
+        if error <= CELL_ERROR_SHARE * requirement.tolerance:
             return True
-        low, high = largest / (1.0 + off), largest * (1.0 + off)
-        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
-        return decided(asked, material, low, high) and (
-            decided(asked, material, below / error, below * error)
-            or decided(asked, material, low, math.inf)
+        low, high = largest / (1.0 + error), largest * (1.0 + error)
+        below, beneath_factor = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(requirement, material, low, high) and (
+            decided(requirement, material, below / beneath_factor, below * beneath_factor)
+            or decided(requirement, material, low, math.inf)
         )
 
     def near(
@@ -120,8 +120,8 @@ class PressedCases:
             try:
                 self._at(instants)
                 if case.case in besides:
-                    found = model.pressed(besides[case.case])
-                    self._besides[case.case] = model.waves(found)
+                    states = model.pressed(besides[case.case])
+                    self._besides[case.case] = model.waves(states)
             except SolveError as error:
                 self.failed[case.case] = str(error)
                 continue
@@ -129,7 +129,7 @@ class PressedCases:
             rings = [self.on_rings(instants)]
             self.sections[case.case] = SectionField(model.pin, model.material, (), rings)
 
-    def near(self, asked: Requirement) -> dict[str, Candidates]:
+    def near(self, requirement: Requirement) -> dict[str, Candidates]:
         """By the stress of all instants, roughly, on the first mesh."""
         if all(len(links) == 1 for links in self.instants.values()):
             return {case: Candidates(0, np.ones(1, dtype=bool)) for case in self.instants}
@@ -138,11 +138,14 @@ class PressedCases:
         )
         loads = [self.press(links) for links in self.instants.values()]
         model, out = self.model, {}
-        own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
-        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
+        zones_by_case = [
+            singularities_of(model.pin, model.material, (), (x,), requirement.distance)
+            for x in loads
+        ]
+        both = tuple(dict.fromkeys(zone for zones in zones_by_case for zone in zones))
         problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
         section = harmonic_solution(problem, 0, 1.0)
-        for x, zones in zip(loads, own, strict=True):
+        for x, zones in zip(loads, zones_by_case, strict=True):
             answer = HarmonicField(section, zones)
             largest, instant = answer.largest(x)
             may = answer.maxima(x, CANDIDATE_FRACTION * largest) > CANDIDATE_FRACTION * largest
@@ -167,26 +170,28 @@ class PressedCases:
         keys = [(links.case, t) for t in links.times.tolist()]
         new = [i for i, key in enumerate(keys) if key not in self._known]
         if new:
-            found = self.model.pressed(links.at(np.array(new)))
-            self._known |= {keys[i]: x for i, x in zip(new, found, strict=True)}
+            states = self.model.pressed(links.at(np.array(new)))
+            self._known |= {keys[i]: x for i, x in zip(new, states, strict=True)}
         return [self._known[key] for key in keys]
 
     def press(self, links: PinLoads) -> PressureLoads:
         """What presses on the pin under loads of its links."""
         assert self.patterns is not None
-        found = self._at(links)
-        return self.patterns.loads(self.model.waves(found), links, self.model.arcs(found))
+        states = self._at(links)
+        return self.patterns.loads(self.model.waves(states), links, self.model.arcs(states))
 
     def on_rings(self, links: PinLoads) -> PinLoads:
         """The resultants of what presses on the rings under loads of the links."""
-        found = self._at(links)
-        return resultants(self.model.pin, self.model.rings, self.model.waves(found), links)
+        states = self._at(links)
+        return resultants(self.model.pin, self.model.rings, self.model.waves(states), links)
 
     def joined(self, links: PinLoads, instant: int) -> JointContact:
         here = links.at(np.array([instant]))
         return self.model.joined(self._at(here), self.press(here))
 
-    def compared(self, near: Mapping[str, Candidates], asked: Requirement) -> dict[str, Compared]:
+    def compared(
+        self, near: Mapping[str, Candidates], requirement: Requirement
+    ) -> dict[str, Compared]:
         """By case, at the instants of the largest stress of the surface on the first mesh and of
         sections.
         """
@@ -194,14 +199,14 @@ class PressedCases:
         for case, links in self.instants.items():
             stress, instant = self.sections[case].largest(self.on_rings(links))
             both = near[case].instant, instant
-            each = dict.fromkeys(both)
-            first, second = (len(at) + list(each).index(t) for t in both)
+            distinct = dict.fromkeys(both)
+            first, second = (len(at) + list(distinct).index(t) for t in both)
             which[case] = first, second
-            at += [self.joined(links, t) for t in each]
+            at += [self.joined(links, t) for t in distinct]
             governs = both[stress > near[case].largest]
-            vary += [t == governs for t in each]
-        found = compare(self.model, at, asked, self.patterns, vary)
-        return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
+            vary += [t == governs for t in distinct]
+        comparisons = compare(self.model, at, requirement, self.patterns, vary)
+        return {case: Compared(comparisons[a], comparisons[b]) for case, (a, b) in which.items()}
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:

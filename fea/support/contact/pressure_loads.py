@@ -84,7 +84,7 @@ class PressureModes:
         forces along the axis and torques, even over a band's rings, and the body force. pressed:
         where the pressures are.
         """
-        made = resultants(self.pin, self.rings, waves, links)
+        ring_loads = resultants(self.pin, self.rings, waves, links)
         acting = dict(others_along(self.pin, self.rings, links).coefficients())
         for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
             amounts = np.einsum("trp,kr->ktp", wave, patterns)
@@ -94,8 +94,8 @@ class PressureModes:
         return PressureLoads(
             links.case,
             self.rings,
-            made.forces,
-            made.moments,
+            ring_loads.forces,
+            ring_loads.moments,
             body=links.body,
             times=links.times,
             acting=acting,
@@ -114,11 +114,11 @@ class PressureModes:
 
 def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads) -> PinLoads:
     """Of pressures with harmonics (N + 1, T, R, 2) Pa, and what links do along the axis."""
-    made = others_along(pin, rings, links)
+    axial = others_along(pin, rings, links)
     area = np.array([pin.band(name).area for name in rings])
     if len(waves) > 1:
-        made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
-    return made
+        axial.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
+    return axial
 
 
 def pressure_modes(
@@ -134,15 +134,15 @@ def pressure_modes(
     scaled = [x / (negligible * (np.abs(x).max(initial=0.0) or 1.0)) for x, negligible in parts]
     waves = np.concatenate(scaled, axis=1)
     before = [np.zeros((0, len(rings)))] * len(waves) if known is None else known.by_harmonic
-    found = []
+    modes = []
     for wave, old in zip(waves, before, strict=True):
         amplitude = wave.transpose(0, 2, 1).reshape(-1, len(rings))
         for _ in range(2):  # once more for round-off
             amplitude = amplitude - amplitude @ old.T @ old
         instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
         most = np.abs(instants * size).max(axis=0)
-        found.append(np.concatenate([old, patterns[most > 1.0]]))
-    return PressureModes(pin, rings, tuple(found))
+        modes.append(np.concatenate([old, patterns[most > 1.0]]))
+    return PressureModes(pin, rings, tuple(modes))
 
 
 def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:
@@ -196,6 +196,6 @@ def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
 
 def ring_shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
     """Of each band's load what each ring takes by its length, (C, R)."""
-    own = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
-    part = own * np.array([pin.band(name).length for name in rings])
+    on_band = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
+    part = on_band * np.array([pin.band(name).length for name in rings])
     return np.asarray(part / part.sum(axis=1, keepdims=True))

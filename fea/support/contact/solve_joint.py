@@ -103,7 +103,7 @@ class JointContact:
     def contact_angle(self) -> Floats:
         """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
         sector = self.angles[1] - self.angles[0]
-        cells = np.stack([(found.pressure > 0.0).sum(axis=1) for found in self.contact])
+        cells = np.stack([(state.pressure > 0.0).sum(axis=1) for state in self.contact])
         half = 0.5 * sector * cells
         return np.stack(
             [half[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
@@ -112,9 +112,9 @@ class JointContact:
     @property
     def largest_pressure(self) -> Floats:
         """By band, (T, B) Pa, on any cell: at edges a matter of how fine these are."""
-        each = np.stack([found.pressure.max(axis=1) for found in self.contact])
+        by_ring = np.stack([state.pressure.max(axis=1) for state in self.contact])
         return np.stack(
-            [each[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
+            [by_ring[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
         )
 
 
@@ -140,8 +140,8 @@ class ContactModel:
             self.on_lugs[key] = lug_rings(self.eye(lug, ends), lug, cells.across)
             low = self.on_lugs[key].flexibility(cells.highest)
             wavy = self.wavy_of(lug, ends)
-            for own, *_ in equal:
-                self.of_lugs[:, own, own], self.wavy[:, :, own, own] = low, wavy
+            for rows, *_ in equal:
+                self.of_lugs[:, rows, rows], self.wavy[:, :, rows, rows] = low, wavy
 
     def _shape(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> None:
         cells, before = self.cells, self.__dict__.get("_cut")
@@ -196,18 +196,18 @@ class ContactModel:
 
     def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
         """The lugs, as `by_lug`, by this."""
-        found: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
-        for own, lug, ends in self.by_lug():
-            found.setdefault(self.likeness(lug, ends), []).append((own, lug, ends))
-        return found
+        groups: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
+        for rows, lug, ends in self.by_lug():
+            groups.setdefault(self.likeness(lug, ends), []).append((rows, lug, ends))
+        return groups
 
     def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
         """Which rings are its, each lug, and their ends along its band."""
         first = 0
         for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
-            own = slice(first, first + len(ends) - 1)
-            yield own, lug, ends
-            first = own.stop
+            rows = slice(first, first + len(ends) - 1)
+            yield rows, lug, ends
+            first = rows.stop
 
     @cached_property
     def flexibility(self) -> Floats:
@@ -264,26 +264,26 @@ class ContactModel:
     @property
     def tail(self) -> Floats:
         """n u_n / p_n of pin and lug together for high harmonics, m/Pa, by ring."""
-        each = []
+        by_lug = []
         for _, lug, ends in self.by_lug():
             r = self.whole.band(lug.connection).radius
             both = half_plane(self.material, r) + half_plane(lug.bearing, r)
-            each.append(np.full(len(ends) - 1, both))
-        return np.concatenate(each)
+            by_lug.append(np.full(len(ends) - 1, both))
+        return np.concatenate(by_lug)
 
     def solve(self, loads: PinLoads) -> JointContact:
         """All instants of a case. loads: of links on all the lugs' bands or on some.
 
         Raises: SolveError where contact does not settle, or forces are not in balance.
         """
-        found = self.pressed(loads)
-        waves = self.waves(found)
+        states = self.pressed(loads)
+        waves = self.waves(states)
         patterns = self.patterns([(waves, MODE_TOLERANCE)])
-        return self.joined(found, patterns.loads(waves, loads, self.arcs(found)))
+        return self.joined(states, patterns.loads(waves, loads, self.arcs(states)))
 
-    def waves(self, found: Sequence[ContactState]) -> Floats:
+    def waves(self, states: Sequence[ContactState]) -> Floats:
         """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
-        return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
+        return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in states], 1)
 
     def patterns(
         self, parts: Sequence[tuple[Floats, float]], known: PressureModes | None = None
@@ -307,16 +307,16 @@ class ContactModel:
             np.concatenate(edge), np.concatenate(exponent),
         )  # fmt: skip
 
-    def arcs(self, found: Sequence[ContactState], rings: Rings | None = None) -> PressedArcs:
+    def arcs(self, states: Sequence[ContactState], rings: Rings | None = None) -> PressedArcs:
         """Where contact presses at some instants. rings: of the cells, where they are others."""
-        cells, angles = [x.pressure > 0.0 for x in found], [x.angle for x in found]
+        cells, angles = [x.pressure > 0.0 for x in states], [x.angle for x in states]
         return PressedArcs.of(rings or self.on_shaft, cells, angles)
 
-    def joined(self, found: Sequence[ContactState], loads: PressureLoads) -> JointContact:
+    def joined(self, states: Sequence[ContactState], loads: PressureLoads) -> JointContact:
         """Contact at the instants of some loads, with them."""
         contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
         cut, angles = contact.bands, contact.angles
-        return JointContact(self.pin, self.lugs, cut, angles, tuple(found), loads, mass)
+        return JointContact(self.pin, self.lugs, cut, angles, tuple(states), loads, mass)
 
     def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[ContactState]:
         """Contact at each of their instants, on cells that turn with the largest force of a link:
@@ -336,16 +336,16 @@ class ContactModel:
         scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
         arm = couples / self.pin.length
         like = np.concatenate([forces.reshape(len(forces), -1), arm], axis=1) / scale[:, None]
-        found: list[ContactState] = []
+        states: list[ContactState] = []
         for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
             apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
             near = int(apart.argmin()) if t else None
             if near is not None and apart[near] <= EQUAL_LOAD_TOLERANCE:
-                found.append(found[near].times(float(scale[t] / scale[near])))
+                states.append(states[near].times(float(scale[t] / scale[near])))
                 continue
-            start = None if near is None else found[near].active
-            found.append(contact.solve(force, (couple[0], couple[1]), start))
-        return [x.turned(angle) for x, angle in zip(found, angles, strict=True)]
+            start = None if near is None else states[near].active
+            states.append(contact.solve(force, (couple[0], couple[1]), start))
+        return [x.turned(angle) for x, angle in zip(states, angles, strict=True)]
 
     def forces(self, loads: PinLoads) -> Floats:
         """Of the links along x and y, last of the structure, (T, L, 2) N."""

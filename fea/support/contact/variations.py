@@ -97,13 +97,13 @@ class _Joint:
     """
 
     waves: Floats
-    found: list[ContactState]
+    states: list[ContactState]
 
 
 def compare(
     model: ContactModel,
     at: Sequence[JointContact],
-    asked: Requirement,
+    requirement: Requirement,
     known: PressureModes | None = None,
     vary: Sequence[bool] | None = None,
 ) -> tuple[ResolutionComparison, ...]:
@@ -126,7 +126,7 @@ def compare(
         [_loads(model, patterns, one, contact) for one in (*both, *others)]
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
-    stress = _at_places(model, asked, every)
+    stress = _at_places(model, requirement, every)
     for contact, names, loads, why in zip(at, over, every, missing, strict=True):
         first, twice, *others = (stress.pop(0) for _ in loads)
         like = first if few else twice  # on the same cells as the others
@@ -144,39 +144,39 @@ def compare(
     return tuple(out)
 
 
-def _by_cells(own: AtPlaces, twice: AtPlaces, rings: int) -> AtPlaces:
+def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:
     """The error of cells, relative, by the stress on them and on cells twice as large."""
-    chance = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
-    beside = max(RING_SCATTER * USUAL_RING_COUNT / rings, chance)
+    agreement_floor = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
+    surface_floor = max(RING_SCATTER * USUAL_RING_COUNT / rings, agreement_floor)
 
     def error(name: str, order: float, least: float) -> float:
-        x, y = getattr(own, name), getattr(twice, name)
+        x, y = getattr(stress, name), getattr(coarse, name)
         return max(abs(y / x - 1.0) / (2.0**order - 1.0), least) if x and y else 0.0
 
     return AtPlaces(
-        error("surface", SURFACE_CELL_ORDER, beside),
-        error("section", SECTION_CELL_ORDER, chance),
-        error("beneath", SURFACE_CELL_ORDER, beside),
+        error("surface", SURFACE_CELL_ORDER, surface_floor),
+        error("section", SECTION_CELL_ORDER, agreement_floor),
+        error("beneath", SURFACE_CELL_ORDER, surface_floor),
     )
 
 
 def _loads(
     model: ContactModel, patterns: PressureModes, one: _Joint, contact: JointContact
 ) -> PressureLoads:
-    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.found))
+    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.states))
 
 
 def _at_places(
-    model: ContactModel, asked: Requirement, every: Sequence[Sequence[PressureLoads]]
+    model: ContactModel, requirement: Requirement, every: Sequence[Sequence[PressureLoads]]
 ) -> list[AtPlaces]:
     """On the first mesh, of loads of one instant each."""
-    each = list(itertools.chain(*every))
-    whole = stacked(each)
-    singular = singularities_of(model.pin, model.material, (), (whole,), asked.distance)
+    loads = list(itertools.chain(*every))
+    whole = stacked(loads)
+    singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
     answer = HarmonicField(section, singular)
-    on_rings = [one.on_rings for one in each]
+    on_rings = [one.on_rings for one in loads]
     sections = SectionField(model.pin, model.material, (), on_rings)
     return [
         AtPlaces(
@@ -184,7 +184,7 @@ def _at_places(
             sections.largest(other)[0],
             beneath(section.fields, one, singular).value,
         )
-        for one, other in zip(each, on_rings, strict=True)
+        for one, other in zip(loads, on_rings, strict=True)
     ]
 
 
@@ -203,9 +203,9 @@ def _on_both_cells(model: ContactModel, at: Sequence[JointContact]) -> list[tupl
 def _coarse(
     model: ContactModel, links: PinLoads, problem: ContactProblem, belongs: Floats
 ) -> _Joint:
-    found = model.pressed(links, problem)
-    found = [replace(x, pressure=belongs @ x.pressure) for x in found]
-    return _Joint(model.waves(found), found)
+    states = model.pressed(links, problem)
+    states = [replace(x, pressure=belongs @ x.pressure) for x in states]
+    return _Joint(model.waves(states), states)
 
 
 def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
@@ -213,19 +213,19 @@ def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
 
 
 def _varied(
-    model: ContactModel, at: Sequence[JointContact], own: bool, vary: Sequence[bool]
+    model: ContactModel, at: Sequence[JointContact], own_cells: bool, vary: Sequence[bool]
 ) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
     """Of each contact, what is changed of the joint, contact then, and what could not be changed:
     lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
     clearance. own: on the model's own cells, instead of cells twice as large; vary: which.
     """
     names: list[list[Variation]] = [[] for _ in at]
-    found: list[list[_Joint]] = [[] for _ in at]
+    varied: list[list[_Joint]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
     for change in joint_variations(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
-        cells = _own_cells(other) if own else on_coarser_cells(other)
-        for contact, over, changed, why, so in zip(at, names, found, missing, vary, strict=True):
+        cells = _own_cells(other) if own_cells else on_coarser_cells(other)
+        for contact, over, changed, why, so in zip(at, names, varied, missing, vary, strict=True):
             if not so:
                 continue
             try:
@@ -234,4 +234,4 @@ def _varied(
                 why.append(f"{change.what} {change.value} ({error})")
                 continue
             over.append(Variation(change.what, change.value, 1.0, change.length))
-    return names, found, missing
+    return names, varied, missing

@@ -142,8 +142,8 @@ class FoundationModel:
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(rings))
         self.bands = _bands(self.pin, self.rings, rings)
         self.mass = mass_per_length(self.pin, material.density)
-        own = [pin.segments[pin.labels.index(lug.connection)] for lug in self.lugs]
-        soft = [stiffness(s, material, lug) for s, lug in zip(own, self.lugs, strict=True)]
+        segments = [pin.segments[pin.labels.index(lug.connection)] for lug in self.lugs]
+        soft = [stiffness(s, material, lug) for s, lug in zip(segments, self.lugs, strict=True)]
         self._unit = self._of_rings(np.array(soft))
 
     def solve(self, loads: PinLoads, whole: bool = True) -> JointFoundation:
@@ -153,22 +153,22 @@ class FoundationModel:
         Raises: SolveError where forces are not in balance, no lug reacts a couple, or links exert
         moments across the axis.
         """
-        asked = link_forces(self.given, self._weight, loads, any(self.structure), whole)
+        link_force = link_forces(self.given, self._weight, loads, any(self.structure), whole)
         on = np.zeros((len(loads), len(self.lugs), 2))
-        on[:, np.logical_not(self.structure)] = asked[:, : len(self.given.connections)]
+        on[:, np.logical_not(self.structure)] = link_force[:, : len(self.given.connections)]
         acting = np.concatenate([on, loads.body[:, None, :2]], axis=1)
         force = np.einsum("rp,tpa->tra", self._unit.force, acting)
         moment = np.einsum("rp,tpa->tra", self._unit.moment, acting)
         if whole:
-            self._require_couples(loads.case, moment, force, asked)
+            self._require_couples(loads.case, moment, force, link_force)
         pull = loads.body[:, 2] * self._weight
         forces = np.dstack([force, self._along(loads, loads.forces[:, :, 2], pull)])
         torque = self._along(loads, loads.moments[:, :, 2], 0.0 * pull)
         about = np.dstack([-moment[..., 1], moment[..., 0], torque])
-        made = replace(
+        ring_loads = replace(
             loads, surfaces=self.rings, forces=forces, moments=about, distribution="cosine"
         )
-        return JointFoundation(self.pin, self.lugs, self.bands, made, self.mass)
+        return JointFoundation(self.pin, self.lugs, self.bands, ring_loads, self.mass)
 
     def with_clearances(self, lugs: Sequence[Lug]) -> FoundationModel:
         """The same, of which only the error depends on them; lugs: in the order of the bands."""
@@ -195,11 +195,11 @@ class FoundationModel:
         """Of the rings, what the lugs do under unit loads."""
         beam, number = self._beam(stiffness)
         still = np.flatnonzero(self.structure).tolist() or [0]
-        found = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
-        own = (number == np.arange(len(self.rings))[:, None]).astype(float)
+        response = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
+        belongs = (number == np.arange(len(self.rings))[:, None]).astype(float)
         middles = 0.5 * (beam.stations[1:] + beam.stations[:-1])
-        arms = own * (middles - self.bands.z[:, None])
-        return Response(own @ found.force, own @ found.moment + arms @ found.force)
+        arms = belongs * (middles - self.bands.z[:, None])
+        return Response(belongs @ response.force, belongs @ response.moment + arms @ response.force)
 
     def _beam(self, stiffness: Floats) -> tuple[SupportedBeam, Ints]:
         """Pieces, and the number of the ring that each is in, -1 outside."""
@@ -224,14 +224,16 @@ class FoundationModel:
         parts = soft[at, MOMENT], soft[at, SHEAR], foundation(number), self.mass[at], lug
         return SupportedBeam(z, *parts), number
 
-    def _require_couples(self, case: str, moment: Floats, force: Floats, asked: Floats) -> None:
+    def _require_couples(
+        self, case: str, moment: Floats, force: Floats, link_force: Floats
+    ) -> None:
         """Raises: SolveError where a couple is left over, which a lug that is free would react."""
         bands = self.bands
         arm = (bands.z - bands.middles[bands.band])[:, None]
-        least = COUPLE_TOLERANCE * self.pin.length * np.abs(asked).max(initial=0.0)
+        least = COUPLE_TOLERANCE * self.pin.length * np.abs(link_force).max(initial=0.0)
         for b, lug in enumerate(self.lugs):
-            own = bands.band == b
-            left = np.abs((moment + arm * force)[:, own].sum(axis=1)).max(initial=0.0)
+            on_band = bands.band == b
+            left = np.abs((moment + arm * force)[:, on_band].sum(axis=1)).max(initial=0.0)
             if lug.tilt == 0.0 and left > least:
                 raise SolveError(
                     f"pin {self.whole.name}, case {case}: its links leave a couple of {left:.3g} "
@@ -272,8 +274,8 @@ def _within(values: Sequence[float], limits: tuple[float, float]) -> bool:
     return all(low * (1.0 - LIMIT_ROUND_OFF) <= x <= high * (1.0 + LIMIT_ROUND_OFF) for x in values)
 
 
-def _bands(pin: Pin, rings: Sequence[str], each: int) -> Bands:
+def _bands(pin: Pin, rings: Sequence[str], rings_per_band: int) -> Bands:
     cut = [pin.band(name) for name in rings]
     z, length, radius = np.array([(b.middle, b.length, b.radius) for b in cut]).T
-    number = np.arange(len(cut)) // each
+    number = np.arange(len(cut)) // rings_per_band
     return Bands(z, length, radius, number, np.zeros(len(cut)))

@@ -200,8 +200,8 @@ class FoundationField:
     def largest_load(self, solution: Solution) -> float:
         """Largest load per length over the diameter at the governing instant, Pa."""
         here = solution.loads.at(np.array([solution.instant]))
-        made = self.stress.model.solve(here)
-        return float((np.linalg.norm(made.line_load, axis=2) / (2.0 * made.bands.radius)).max())
+        joint = self.stress.model.solve(here)
+        return float((np.linalg.norm(joint.line_load, axis=2) / (2.0 * joint.bands.radius)).max())
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
@@ -281,41 +281,43 @@ def _time(case: PinLoads, instant: int) -> float | None:
 def _peak(
     over: FoundationRange,
     case: str,
-    found: StressBounds,
+    bounds: StressBounds,
     rise: float,
-    asked: Requirement,
+    requirement: Requirement,
 ) -> Maximum:
     """With an error of the whole value where it is not known."""
-    parts = ErrorParts(0.0, rise, model=found.maximum if found.error is None else found.error)
-    relative = parts.total / found.maximum if found.maximum else 0.0
-    known = found.error is not None and relative <= asked.tolerance
-    own = accuracy(relative, asked.tolerance, known)
-    if found.error is None:
-        own = Reason(f"no error is known: {found.why}", ("no-error-known",))
-    own = own + Reason(f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",))
+    parts = ErrorParts(0.0, rise, model=bounds.maximum if bounds.error is None else bounds.error)
+    relative = parts.total / bounds.maximum if bounds.maximum else 0.0
+    known = bounds.error is not None and relative <= requirement.tolerance
+    verdict_reason = accuracy(relative, requirement.tolerance, known)
+    if bounds.error is None:
+        verdict_reason = Reason(f"no error is known: {bounds.why}", ("no-error-known",))
+    verdict_reason = verdict_reason + Reason(
+        f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",)
+    )
     return Maximum(
         pin=over.own.model.given.name,
         case=case,
         model="foundation",
         verdict="converged" if known else "unconverged",
-        note=own.text,
-        max_von_mises=found.maximum,
+        note=verdict_reason.text,
+        max_von_mises=bounds.maximum,
         error_estimate=parts.total,
-        location=point_of(found),
+        location=point_of(bounds),
         parts=parts,
-        reasons=own.codes,
+        reasons=verdict_reason.codes,
     )
 
 
 def _joint(
-    found: JointFoundation, model: FoundationModel, over: JointRange | None, remark: str
+    joint: JointFoundation, model: FoundationModel, over: JointRange | None, remark: str
 ) -> JointResult:
     """Of a single instant."""
-    z = stations(found.pin)
-    moment = np.linalg.norm(found.bending_moment(z)[0], axis=1)
+    z = stations(joint.pin)
+    moment = np.linalg.norm(joint.bending_moment(z)[0], axis=1)
     return JointResult(
         model="foundation",
-        bands=tuple(_band(found, model, b) for b in range(len(found.lugs))),
+        bands=tuple(_band(joint, model, b) for b in range(len(joint.lugs))),
         bending_moment=float(moment.max()),
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
@@ -323,18 +325,22 @@ def _joint(
     )
 
 
-def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact:
+def _band(joint: JointFoundation, model: FoundationModel, b: int) -> BandContact:
     """The angle is that of plane contact at the largest load per length."""
-    lug, bands = found.lugs[b], found.bands
-    own = bands.band == b
-    line, length, half = found.line_load[0, own], bands.length[own], bands.length[own] / 2.0
+    lug, bands = joint.lugs[b], joint.bands
+    on_band = bands.band == b
+    line, length, half = (
+        joint.line_load[0, on_band],
+        bands.length[on_band],
+        bands.length[on_band] / 2.0,
+    )
     force = length @ line
     size = float(np.linalg.norm(force))
     along = force / size if size else np.array([1.0, 0.0])
-    arm = bands.z[own] - bands.middles[b]
-    turning = found.loads.moments[0, own, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    arm = bands.z[on_band] - bands.middles[b]
+    turning = joint.loads.moments[0, on_band, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
     most = float(np.linalg.norm(line, axis=1).max())
-    radius = float(bands.radius[own][0])
+    radius = float(bands.radius[on_band][0])
     stiff = 1.0 / model.material.plane_compliance
     gap = 0.5 * lug.clearance * stiff / most if most else 0.0
     return BandContact(
@@ -342,9 +348,9 @@ def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact
         force=size,
         contact_angle=math.degrees(half_angle(gap)) if most else 0.0,
         mean_pressure=size / (2.0 * radius * float(length.sum())),
-        line_load=tuple(zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)),
+        line_load=tuple(zip(bands.z[on_band].tolist(), (line @ along).tolist(), strict=True)),
         couple=float(np.linalg.norm((length * arm) @ line + turning)),
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
-        ends=(*(bands.z[own] - half).tolist(), float((bands.z[own] + half)[-1])),
+        ends=(*(bands.z[on_band] - half).tolist(), float((bands.z[on_band] + half)[-1])),
     )

@@ -105,9 +105,11 @@ def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
         (kappa + n - 1, n - 1 - kappa, -(n + 2) * (n - 1), -n * (n - 1)),  # r^(2 - n)
     ]
     rows, powers = [*up, *down], [n, n + 2, -n, 2 - n]
-    kept = [1, 2] if n == 1 else [0, 1, 2, 3]
-    kept = [i for i in kept if i < 2 or not solid]
-    columns = [np.array(rows[i]) * r ** (powers[i] - np.array([1.0, 1.0, 2.0, 2.0])) for i in kept]
+    columns_used = [1, 2] if n == 1 else [0, 1, 2, 3]
+    columns_used = [i for i in columns_used if i < 2 or not solid]
+    columns = [
+        np.array(rows[i]) * r ** (powers[i] - np.array([1.0, 1.0, 2.0, 2.0])) for i in columns_used
+    ]
     return np.stack(columns, axis=1)
 
 
@@ -118,8 +120,8 @@ def _many(n: int, other: float, material: Material) -> float:
     here = _powers(n, 1.0, kappa, solid)
     rows = here[2:] if solid else np.vstack([here[2:], _powers(n, other, kappa)[2:]])
     scale, load = np.abs(rows).max(axis=0), -np.eye(len(rows))[0]
-    found = np.linalg.solve(rows / scale, load) / scale
-    return float(here[0] @ found) / (2.0 * mu)
+    constants = np.linalg.solve(rows / scale, load) / scale
+    return float(here[0] @ constants) / (2.0 * mu)
 
 
 def _section(hole: float, material: Material) -> float:
@@ -132,11 +134,11 @@ def _section(hole: float, material: Material) -> float:
     rows = np.vstack([_powers(1, r, kappa, solid)[2:] for r in ends])
     load = np.concatenate([-stress * r for r in ends])
     load[0] -= 1.0
-    found = np.linalg.lstsq(rows, load)[0]  # one row follows from the others, by equilibrium
+    constants = np.linalg.lstsq(rows, load)[0]  # one row follows from the others, by equilibrium
 
     def moved(r: float) -> Floats:
-        own = np.array([alpha, beta]) * r**2
-        return np.asarray(_powers(1, r, kappa, solid)[:2] @ found / (2.0 * mu) + own)
+        particular = np.array([alpha, beta]) * r**2
+        return np.asarray(_powers(1, r, kappa, solid)[:2] @ constants / (2.0 * mu) + particular)
 
     at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS_POINTS
     along = np.array([0.5 * (u - v) for u, v in map(moved, at.tolist())])
@@ -157,6 +159,6 @@ def _eye(wide: float, material: Material) -> float:
 
     held = 0.5 / wide  # of constant direction: s_rr = -held cos, s_rt = held sin
     rows = np.vstack([terms(1.0)[2:], terms(wide)[2:]])
-    found = np.linalg.lstsq(rows, np.array([-1.0, 0.0, -held, held]))[0]
-    here, there = (terms(r)[:2] @ found / (2.0 * mu) for r in (1.0, wide))
-    return float(here[0] - 0.5 * (there[0] - there[1]))
+    constants = np.linalg.lstsq(rows, np.array([-1.0, 0.0, -held, held]))[0]
+    bore, outside = (terms(r)[:2] @ constants / (2.0 * mu) for r in (1.0, wide))
+    return float(bore[0] - 0.5 * (outside[0] - outside[1]))

@@ -83,17 +83,17 @@ class FoundationStress:
         """Stress along the axis per bending moment, (S,) 1/m^3."""
         return np.abs(self.per_force[:, ZZ, MOMENT])
 
-    def von_mises(self, found: JointFoundation) -> VonMisesMaxima:
+    def von_mises(self, joint: JointFoundation) -> VonMisesMaxima:
         """At all points and instants, the largest over the circumference."""
-        return von_mises_maxima(self.harmonics(found))
+        return von_mises_maxima(self.harmonics(joint))
 
-    def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
+    def lacking(self, joint: JointFoundation, von_mises: Floats) -> list[str]:
         """Of the notches that loads reach, why there is no factor, or none that holds. von_mises:
         (S, T) Pa.
         """
         first = len(self.z) - len(self.notches)
-        torque = np.abs(found.along(self.z[first:])[1]).max(axis=0)
-        turned = torque > NEGLIGIBLE_STRESS_SHARE * np.abs(found.loads.moments).max(initial=0.0)
+        torque = np.abs(joint.along(self.z[first:])[1]).max(axis=0)
+        turned = torque > NEGLIGIBLE_STRESS_SHARE * np.abs(joint.loads.moments).max(initial=0.0)
         reached = von_mises[first:].max(axis=1) > NEGLIGIBLE_STRESS_SHARE * von_mises.max()
         pin, edges = self.model.whole, _edges(self.model)
         return [
@@ -110,11 +110,11 @@ class FoundationStress:
             or (t and n.torsion is None)
         ]
 
-    def harmonics(self, found: JointFoundation) -> Floats:
+    def harmonics(self, joint: JointFoundation) -> Floats:
         """(3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has them."""
-        across = np.stack([-found.shear_force(self.z), found.bending_moment(self.z)], axis=-1)
+        across = np.stack([-joint.shear_force(self.z), joint.bending_moment(self.z)], axis=-1)
         first, second = np.einsum("siq,tsaq->asit", self.per_force[:, :, :AXIAL], across)
-        rest = -np.stack(found.along(self.z), axis=-1)
+        rest = -np.stack(joint.along(self.z), axis=-1)
         even = np.einsum("siq,tsq->sit", self.per_force[:, :, AXIAL:], rest)
         even[:, TZ] *= -1.0
         cosine, sine = first.copy(), second.copy()

@@ -95,8 +95,8 @@ def respond(
         foundation=beam.foundation * length**2 / stiff,
         mass=beam.mass * length,
     )
-    found = _System(unit, np.asarray(middles) / length, held, still).solve()
-    return Response(found.force, found.moment * length)
+    response = _System(unit, np.asarray(middles) / length, held, still).solve()
+    return Response(response.force, response.moment * length)
 
 
 class _System:

@@ -56,20 +56,22 @@ class FoundationRange:
 
         Raises: SolveError as FoundationModel.solve.
         """
-        own = stress_bounds(self.own, self.own.model.solve(loads))
-        if own.bounds is None:
-            return None, own.why
+        given = stress_bounds(self.own, self.own.model.solve(loads))
+        if given.bounds is None:
+            return None, given.why
         over, left_out = [], []
         for joint in self.varied:
-            found = _tried(joint.stress, loads)
-            if found is None:
+            varied_bounds = _tried(joint.stress, loads)
+            if varied_bounds is None:
                 continue
-            if found.bounds is None:
+            if varied_bounds.bounds is None:
                 left_out.append(f"{joint.what} {joint.value}")
                 continue
-            size = found.maximum
-            over.append(Variation(joint.what, joint.value, size, joint.length, found.bounds))
-        bounds = [own.bounds, *(v.interval for v in over if v.interval)]
+            size = varied_bounds.maximum
+            over.append(
+                Variation(joint.what, joint.value, size, joint.length, varied_bounds.bounds)
+            )
+        bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
         beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
         whole = JointRange(ends, tuple(over), "foundation", self.assumed)
@@ -99,10 +101,10 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
     if np.any(loads.moments[:, :, :2]):
         return JointResult("prescribed", remark="its links exert moments across its axis")
     try:
-        found, remark = over.at(loads)
+        joint_range, remark = over.at(loads)
     except SolveError as error:
         return JointResult("prescribed", remark=str(error))
-    return JointResult("prescribed", range=found, remark=remark)
+    return JointResult("prescribed", range=joint_range, remark=remark)
 
 
 def _tried(stress: FoundationStress, loads: PinLoads) -> StressBounds | None:
@@ -113,12 +115,12 @@ def _tried(stress: FoundationStress, loads: PinLoads) -> StressBounds | None:
         return None
 
 
-def _varied(own: FoundationStress) -> Iterator[Varied]:
-    model = own.model
+def _varied(given: FoundationStress) -> Iterator[Varied]:
+    model = given.model
     for change in joint_variations(model.whole, model.lugs):
         if change.length is not None:
             other = model.with_clearances(list(change.lugs))
         else:
             both = zip(change.lugs, change.softness, strict=True)
             other = FoundationModel(model.given, model.material, [with_stiffness(*x) for x in both])
-        yield Varied(change.what, change.value, change.length, own.in_lugs(other))
+        yield Varied(change.what, change.value, change.length, given.in_lugs(other))

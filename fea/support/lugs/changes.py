@@ -37,30 +37,30 @@ class JointChange:
 def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
     """Of the lugs on a pin's bands, one thing at a time; not what changes nothing."""
     same = (1.0,) * len(lugs)
-    found = []
+    changes = []
     for end in RANGE_ENDS:
         loose, words = zip(*(_with_clearance(pin, lug, end) for lug in lugs), strict=True)
         size = max(lug.clearance for lug in loose)
-        found.append(JointChange("clearance", _in_words(words), loose, same, size))
+        changes.append(JointChange("clearance", _in_words(words), loose, same, size))
     for end in RANGE_ENDS:
         stiff, words = zip(*(_stiffness(lug, end) for lug in lugs), strict=True)
         by = tuple(1.0 / times for times in stiff)
-        found.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
+        changes.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
     for end in RANGE_ENDS:
         tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
-        found.append(JointChange("tilt", _in_words(words), tilted, same))
+        changes.append(JointChange("tilt", _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
-    return (change for change in found if (change.lugs, change.softness) != unchanged)
+    return (change for change in changes if (change.lugs, change.softness) != unchanged)
 
 
 def with_stiffness(lug: Lug, times: float) -> Lug:
     """Also its bushing."""
 
-    def made(material: Material) -> Material:
+    def softened(material: Material) -> Material:
         return replace(material, youngs_modulus=material.youngs_modulus / times)
 
-    bushing = lug.bushing and replace(lug.bushing, material=made(lug.bushing.material))
-    return replace(lug, material=made(lug.material), bushing=bushing)
+    bushing = lug.bushing and replace(lug.bushing, material=softened(lug.bushing.material))
+    return replace(lug, material=softened(lug.material), bushing=bushing)
 
 
 def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:

@@ -47,14 +47,14 @@ def _layers(ends: list[float], size: float) -> list[Floats]:
     """Radii after the first of `ends`, from `size` on growing outwards, with the others among
     them.
     """
-    found, step = [], size
+    radii, step = [], size
     for start, end in pairwise(ends):
         ratio = 1.0 + (end - start) * (LAYER_GROWTH - 1.0) / step
         count = max(1, int(np.ceil(np.log(ratio) / np.log(LAYER_GROWTH) - 1e-9)))
         parts = LAYER_GROWTH ** np.arange(count)
-        found.append(start + (end - start) * np.cumsum(parts) / parts.sum())
+        radii.append(start + (end - start) * np.cumsum(parts) / parts.sum())
         step *= LAYER_GROWTH**count
-    return found
+    return radii
 
 
 def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np.dtype[np.int64]]]:
@@ -69,9 +69,9 @@ def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np
     along = x[:, ends[1]] - x[:, ends[0]]
     back = along[0] * rightwards + along[1] * onwards < 0.0
     nodes = np.stack([*np.where(back, ends[::-1], ends), middle], axis=1).astype(np.int64)
-    found = {"start": nodes[rightwards > 0.0], "end": nodes[rightwards < 0.0]}
+    edges = {"start": nodes[rightwards > 0.0], "end": nodes[rightwards < 0.0]}
     for label, (z0, z1) in zip(eye.labels, _rings(eye), strict=True):
         here = (at[1] > z0) & (at[1] < z1)
-        found[label] = nodes[here & (onwards > 0.0)]
-        found[f"bore {label}"] = nodes[here & (onwards < 0.0)]
-    return found
+        edges[label] = nodes[here & (onwards > 0.0)]
+        edges[f"bore {label}"] = nodes[here & (onwards < 0.0)]
+    return edges

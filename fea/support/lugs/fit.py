@@ -156,15 +156,18 @@ def _press_fit(walls: Sequence[Wall]) -> Floats:
     system[0, :2] = (0.0, 1.0) if inner == 0.0 else (1.0, -1.0 / inner**2)
     system[1, -2:] = 1.0, -1.0 / outer**2
     for k in range(len(walls) - 1):
-        r, here = walls[k][1], slice(2 * k, 2 * k + 2)
-        there = slice(2 * k + 2, 2 * k + 4)
-        system[2 * k + 2, here], system[2 * k + 2, there] = (1.0, -1.0 / r**2), (-1.0, 1.0 / r**2)
-        system[2 * k + 3, here] = -_widening(r, walls[k][2])
-        system[2 * k + 3, there] = _widening(r, walls[k + 1][2])
+        r, this_wall = walls[k][1], slice(2 * k, 2 * k + 2)
+        next_wall = slice(2 * k + 2, 2 * k + 4)
+        system[2 * k + 2, this_wall], system[2 * k + 2, next_wall] = (
+            (1.0, -1.0 / r**2),
+            (-1.0, 1.0 / r**2),
+        )
+        system[2 * k + 3, this_wall] = -_widening(r, walls[k][2])
+        system[2 * k + 3, next_wall] = _widening(r, walls[k + 1][2])
     right[3] = 0.5
     scale = np.abs(system).max(axis=0)
-    found = np.linalg.solve(system / scale, right) / scale
-    return np.asarray(found.reshape(-1, 2))
+    constants = np.linalg.solve(system / scale, right) / scale
+    return np.asarray(constants.reshape(-1, 2))
 
 
 def _widening(r: float, material: Material) -> Floats:

@@ -161,8 +161,8 @@ def whole_names(pin: Pin, ends: Mapping[str, Floats]) -> dict[str, str]:
     """The pin's own names of the surfaces of `ringed`, by the names there."""
     cut, k, names = ringed(pin, ends), 0, {}
     for i, s in enumerate(pin.segments):
-        own = ends.get(s.connection or "")
-        for _ in range(1 if own is None else len(own) - 1):
+        band_ends = ends.get(s.connection or "")
+        for _ in range(1 if band_ends is None else len(band_ends) - 1):
             for bore in ("", "bore "):
                 names[f"{bore}{cut.labels[k]}"] = f"{bore}{pin.labels[i]}"
             k += 1
