@@ -24,7 +24,7 @@ from pinbase.arrays import Floats
 
 
 class BeamField:
-    """A pin as a beam, with the unit loads of a case."""
+    """The stress of a pin as a beam under the unit loads of a case."""
 
     def __init__(
         self, pin: Pin, material: Material, clamps: tuple[str, ...], case: PinLoads
@@ -34,16 +34,16 @@ class BeamField:
 
     @cached_property
     def estimate(self) -> BeamEstimate:
-        """Of the largest stress of the case."""
+        """The beam's estimate of the largest stress of the case."""
         return beam_estimate(self._beam, self.case, self.clamps)
 
     @property
     def points(self) -> Floats:
-        """Where its stress is, (S, 2): r, z in m."""
+        """The points at which stress is computed, (S, 2): r, z in m."""
         return self._beam.points
 
     def harmonics(self, loads: Loads) -> Floats:
-        """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
+        """The stress at the points, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
         return harmonics(self._beam, loads)
 
     def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
@@ -51,13 +51,13 @@ class BeamField:
         return np.asarray(von_mises_maxima(harmonics(self._beam, loads)).von_mises.max(axis=0))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the index of its instant."""
+        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
         maxima = von_mises_maxima(harmonics(self._beam, loads))
         point, instant = maxima.place
         return float(maxima.von_mises[point, instant]), instant
 
     def result(self, singularities: Sequence[Zone]) -> MeshMaximum:
-        """The largest stress outside the singular zones, as for the other models."""
+        """The largest stress outside the singular zones, in the form of the other models."""
         maxima = von_mises_maxima(harmonics(self._beam, self.case))
         r, z = self._beam.points.T
         value = np.where(outside(singularities, r, z)[:, None], maxima.von_mises, 0.0)
@@ -67,20 +67,23 @@ class BeamField:
         return MeshMaximum(0, float(value[point, instant]), instant, location)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
-        """None: a beam has no field over its surface."""
+        """Return None, since a beam has no field over its surface."""
         return None
 
     @property
     def strain_energy(self) -> float:
-        """Of the loads that have a resultant, at the instant of the largest stress, J."""
+        """The strain energy of the loads that have a resultant, at the instant of the largest
+        stress, J.
+        """
         coefficients = self.case.coefficients()
         felt = {unit: coefficients[unit] for unit in self._beam.loads}
         amounts = LoadAmounts(self.case.case, felt, len(self.case))
         return self._beam.energy.of(amounts, self.estimate.instant)
 
     def peak(self, tolerance: float, seconds: float, note: Reason, rise: float = 0.0) -> Maximum:
-        """The peak with the beam's own error; where it has none, an error of the whole value. rise:
-        by how much the maximum may be higher between instants, Pa.
+        """The peak with the beam's own error, which is the whole value where none is known.
+
+        rise: how much the maximum may be higher between instants, Pa.
         """
         estimate = self.estimate
         r, z = estimate.place

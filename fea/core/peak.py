@@ -16,7 +16,7 @@ Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
 @dataclass(frozen=True)
 class Reason:
-    """Text for people, and the reasons that it states by their codes, for programs."""
+    """A human-readable text, and the codes of the reasons that it states, for programs."""
 
     text: str = ""
     codes: tuple[str, ...] = ()
@@ -125,7 +125,7 @@ class Maximum:
 
     @property
     def time(self) -> float | None:
-        """Of the governing instant, s; None without a motion."""
+        """The time of the governing instant, s; None without a motion."""
         if self.governing is None or self.governing.times is None:
             return None
         return float(self.governing.times[0])
@@ -146,7 +146,7 @@ class Maximum:
 
     @property
     def own_error(self) -> float | None:
-        """On meshes and between instants, Pa, without the effect of the excluded distance."""
+        """The error of meshes and instants, Pa, without the effect of the excluded distance."""
         return self.error_estimate if self.parts is None else self.parts.total
 
     @property

@@ -46,8 +46,8 @@ class Requirement:
     besides: Mapping[str, float] = field(default_factory=dict)
 
     def left(self, case: str) -> float:
-        """What meshes and instants of a case may take of the tolerance, MIN_TOLERANCE_SHARE of it
-        in any case.
+        """The part of the tolerance that meshes and instants of a case may use, at least
+        MIN_TOLERANCE_SHARE of it.
         """
         return max(
             self.tolerance - self.besides.get(case, 0.0), MIN_TOLERANCE_SHARE * self.tolerance
@@ -55,13 +55,15 @@ class Requirement:
 
 
 def decided(requirement: Requirement, material: Material, low: float, high: float) -> bool:
-    """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
+    """Return whether a maximum between two stresses, Pa, decides if the required factor is
+    reached.
+    """
     limit = _limit(requirement, material)
     return limit is not None and (high < limit or low > limit)
 
 
 def _limit(requirement: Requirement, material: Material) -> float | None:
-    """Maximum (Pa) with the required factor, if that is to be decided."""
+    """The maximum, Pa, that gives the required factor; None unless the goal is to decide it."""
     strength, required = material.yield_strength, requirement.required
     if requirement.goal != "decide" or strength is None or required is None:
         return None
@@ -69,8 +71,9 @@ def _limit(requirement: Requirement, material: Material) -> float | None:
 
 
 def accurate_enough(requirement: Requirement, material: Material, seen: MeshHistory) -> bool:
-    """Whether these meshes are accurate enough, or decide the required factor. Fewer never tell
-    how large a maximum is, for they can agree by chance.
+    """Return whether these meshes are accurate enough, or decide the required factor.
+
+    Fewer meshes than the model's minimum never are, since they can agree by chance.
     """
     if len(seen.results) < seen.meshes.min_meshes:
         return False
@@ -82,5 +85,5 @@ def accurate_enough(requirement: Requirement, material: Material, seen: MeshHist
 
 
 def below_sections(requirement: Requirement, seen: MeshHistory) -> bool:
-    """Whether sections have more stress than the surface may have."""
+    """Return whether sections surely have more stress than the surface."""
     return bool(seen.range[1] <= requirement.elsewhere.get(seen.case, 0.0))

@@ -29,8 +29,11 @@ KIND_ARTICLES = {
 
 @dataclass(frozen=True)
 class MeshHistory:
-    """The meshes of one case so far, coarse to fine. seconds: the time of each. meshes: how they
-    are refined. first: how many meshes of a run are coarser than the first of these.
+    """The meshes of one case so far, from coarse to fine.
+
+    seconds: solution time of each.
+    meshes: how they are refined.
+    first: how many meshes of a run are coarser than the first of these.
     """
 
     pin: str
@@ -42,7 +45,7 @@ class MeshHistory:
     first: int = 0
 
     def appended(self, result: MeshMaximum, spent: float) -> MeshHistory:
-        """With one more mesh, on which s were spent."""
+        """The history with the result of one more mesh, which took `spent` seconds."""
         return replace(self, results=(*self.results, result), seconds=(*self.seconds, spent))
 
     @property
@@ -54,7 +57,7 @@ class MeshHistory:
         )
 
     def under(self, loads: PinLoads) -> tuple[Refinement, ...]:
-        """The history with the strain energy of each mesh under loads, of one instant."""
+        """The history with the strain energy of each mesh under loads of one instant."""
         return tuple(
             replace(step, strain_energy=result.energy.of(loads) if result.energy else None)
             for step, result in zip(self.history, self.results, strict=True)
@@ -104,12 +107,12 @@ class MeshHistory:
         return max(0.0, low * (1.0 - self.relative)), high * (1.0 + self.relative)
 
     def known(self, tolerance: float) -> bool:
-        """Whether the error is within `tolerance`."""
+        """Return whether the error is within `tolerance`, relative."""
         return len(self.results) >= self.meshes.min_meshes and self.relative <= tolerance
 
 
 def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZone, ...]:
-    """The zones to report."""
+    """The singular zones to report."""
     return tuple(
         SingularZone(
             location=inside.location,
@@ -132,7 +135,9 @@ def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZ
 def judge(
     seen: MeshHistory, singularities: Sequence[Zone], tolerance: float, note: Reason = NO_REASON
 ) -> Maximum:
-    """The peak of a case; `note` is appended to that of the verdict.
+    """The peak of a case with its verdict.
+
+    note: appended to the note of the verdict.
 
     Raises: SolveError when the stress is not finite.
     """

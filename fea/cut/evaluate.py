@@ -61,9 +61,11 @@ MIN_UNIT_WEIGHT = 1e-3  # of the stress: what brings less is solved as if it bro
 
 @dataclass(frozen=True)
 class CutSolution:
-    """The uncut pin, whose stress where it is cut does not count, and the pieces about the cuts.
-    uncut: the fields of the first, where that counts, too. reactions: motions of redundant clamps
-    that go with loads; held: its first support, if any.
+    """The solution of a cut pin: the uncut pin, and the local solids about the cuts.
+
+    section: the uncut pin, where its stress counts; uncut: its fields also where it is cut.
+    reactions: motions of redundant clamps that go with loads.
+    held: its first support, if any.
     """
 
     section: HarmonicSolution
@@ -78,8 +80,8 @@ class CutSolution:
         return tuple(c.singularity for piece in self.pieces for c in piece.corners)
 
     def idle(self, results: Sequence[tuple[PinLoads, MeshMaximum]]) -> tuple[LocalFields, ...]:
-        """Pieces that need no finer mesh: in no case may their stress reach the largest one, nor
-        swing as much as in another piece.
+        """The pieces that need no finer mesh: in no case may their stress reach the largest one, or
+        vary as much as in another piece.
         """
         out = set(range(len(self.pieces)))
         for loads, result in results:
@@ -105,10 +107,13 @@ def cut_solution(
     finer: LocalFineness | None = None,
     reused: Sequence[LocalFields] = (),
 ) -> CutSolution:
-    """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
-    bands: loaded ones with cuts in them (fea.cut.region.loaded_bands); distance: as
-    fea.cut.inner_corners; finer: of the pieces, in place of the level's; kept: what is
-    known of pieces that this mesh need not know better.
+    """Solve all unit loads on mesh number `level` of the section and of the pieces.
+
+    The arguments are those of fea.harmonic.evaluate.harmonic_solution, and:
+    bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
+    distance: as in fea.cut.inner_corners.
+    finer: fineness of the pieces, instead of that of the level.
+    reused: fields of pieces that need no finer mesh.
 
     Raises: MeshError, SolveError.
     """
@@ -153,7 +158,7 @@ def _supports(problem: SectionProblem) -> list[ClampReaction]:
 
 
 def _fine(piece: Piece, level: int) -> Grade:
-    """How fine the section is about a piece's cuts."""
+    """The fineness of the section about a piece's cuts."""
     radius = piece.profile.largest_diameter / 2.0
     low, high = zone(piece)
     places = np.linspace(low, high, max(2, round((high - low) / radius)))
@@ -167,7 +172,7 @@ def _fine(piece: Piece, level: int) -> Grade:
 
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
-    """Unit loads in the phases in which they ever act, of a motion in all."""
+    """The unit loads in the phases in which they ever act; in all phases for a motion."""
     units: dict[Unit, None] = {}
     for case in cases:
         for load, amounts in case.coefficients().items():
@@ -180,8 +185,9 @@ def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
 
 
 def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: MeridianFields) -> Floats:
-    """How much of the stress in any case a unit load brings, (L,): 1 the most; of one whose amount
-    is not known here, 1, too.
+    """The relative stress of each unit load, the largest over all cases, (L,).
+
+    It is 1 for the load with the largest stress, and for a load whose amount is not known here.
     """
     columns = [fields.loads.index(load) for load, _ in units]
     stress, out = np.abs(fields.stress).max(axis=(0, 1))[columns], np.zeros(len(units))
@@ -202,8 +208,10 @@ def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> Me
 
 @dataclass(frozen=True)
 class CutMesh:
-    """A mesh solved with local solids (fea.core.model.MeshSolution). reach: how far these go past
-    the cuts; spacing: how far from each other cuts are in one (fea.cut.region.pieces).
+    """A mesh solved with local solids (fea.core.model.MeshSolution).
+
+    reach: how far the solids extend beyond the cuts.
+    spacing: the distance up to which cuts share a solid (fea.cut.region.pieces).
     """
 
     problem: MeshProblem
@@ -213,11 +221,11 @@ class CutMesh:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """Those of the problem, and the sharp corners of the cuts."""
+        """The zones of the problem, and the sharp corners of the cuts."""
         return (*self.problem.zones, *self.solution.corners)
 
     def field(self, case: str) -> CutField:
-        """Stress as one case sees it."""
+        """The stress as one case sees it."""
         return CutField(self.solution, self.problem.zones_of(case))
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -228,9 +236,11 @@ class CutMesh:
 
 
 class LocalSolids:
-    """A body of revolution with cuts, solid about these (fea.core.model.Model). A problem's pin is
-    that without cuts. cut: the pin with them; bands: loaded ones with cuts in them
-    (fea.cut.region.loaded_bands).
+    """The model of a body of revolution with cuts, solid about these (fea.core.model.Model).
+
+    The pin of a problem is the one without cuts.
+    cut: the pin with them.
+    bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
     """
 
     name: Literal["harmonic+local"] = "harmonic+local"
@@ -245,8 +255,10 @@ class LocalSolids:
         self._cut, self._bands, self._first = cut, bands, first
 
     def solve(self, problem: MeshProblem, level: int, before: MeshBefore | None = None) -> CutMesh:
-        """As of every model. Local solids grow where their ends or each other disturb the maximum
-        on the mesh before, and those whose stress matters in no case are taken from it.
+        """Solve one mesh, as every model does.
+
+        Local solids grow where their ends or each other disturb the maximum on the mesh before;
+        those whose stress matters in no case are reused from it.
         """
         reach, spacing = PIECE_REACH, 1.0
         reused: tuple[LocalFields, ...] = ()
@@ -270,7 +282,7 @@ class LocalSolids:
 
 
 class CutField:
-    """What a solution says of any loads made of its unit loads (fea.core.solution)."""
+    """The stress of a cut pin under any combination of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: CutSolution, singularities: tuple[Zone, ...]) -> None:
         self.solution, self.singularities = solution, singularities
@@ -294,8 +306,8 @@ class CutField:
         return value, instant
 
     def beneath(self, loads: PinLoads) -> Beneath:
-        """What lies beneath contact (fea.harmonic.beneath): of the pin without cuts, where it is
-        cut, too, and at the surface about these.
+        """The largest stress beneath contact (fea.harmonic.beneath): in the pin without cuts, also
+        where it is cut, and at the surface about the cuts.
         """
         assert loads.pressed is not None
         deepest = beneath(self.solution.uncut, loads, self.singularities)
@@ -308,7 +320,9 @@ class CutField:
         return deepest
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
-        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
+        """The distances from pressed cells at which stress is reached at an instant
+        (fea.harmonic.beneath).
+        """
         pressed = loads.pressed
         assert pressed is not None
         steps = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
@@ -317,7 +331,7 @@ class CutField:
         return stairs(*np.array(steps).reshape(-1, 2).T)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The surface at one instant, with its envelope over all."""
+        """The surface at one instant, with its envelope over all instants."""
         surface, c = self.surface, self.coefficients(loads)
         if loads.pressed is not None:
             stress, envelope, pressed = free_picture(surface, c, loads.pressed, instant)
@@ -339,12 +353,12 @@ class CutField:
         )
 
     def coefficients(self, loads: Loads) -> Floats:
-        """How much of each unit load of the surface acts at each instant, (T, L)."""
+        """The amount of each unit load of the surface at each instant, (T, L)."""
         return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
 
     @cached_property
     def surface(self) -> ShownCut:
-        """The pieces in place, the uncut pin between them, held as its first clamp is."""
+        """The pieces in place and the uncut pin between them, held as its first clamp is."""
         return shown(self.section, self.solution.pieces, self.solution.held)
 
 
@@ -354,7 +368,9 @@ def cut_result(
     loads: PinLoads,
     case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
-    """Maximum outside the singularities, of the uncut pin away from its cuts and about these."""
+    """The maximum outside the singularities, of the uncut pin away from its cuts and of the solids
+    about them.
+    """
     held = solution.reactions.held(loads)
     assert isinstance(held, PinLoads)
     loads = held

@@ -57,10 +57,13 @@ PATCH_ELEMENTS = 2.0  # elements of the first mesh about such a place, in which 
 
 @dataclass(frozen=True)
 class HarmonicSolution:
-    """Fields on one mesh, how fine (of its scale) that mesh is at each singularity, and
-    Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
-    elsewhere: stress (P, 6, K) Pa at the points that were asked for. ends: where pressures end on
-    the outline, (r, z) in m.
+    """The fields of a body of revolution on one mesh.
+
+    close: element size at each singularity, relative to its scale.
+    nu: Poisson's ratio.
+    ends: where pressures end on the outline, (r, z) in m.
+    quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
+    elsewhere: stress (P, 6, K) Pa at the points that were requested.
     """
 
     fields: MeridianFields
@@ -72,16 +75,18 @@ class HarmonicSolution:
 
     @property
     def mesh(self) -> MeridianMesh:
-        """Of the section."""
+        """The mesh of the section."""
         assert self.fields.mesh is not None
         return self.fields.mesh
 
 
 @dataclass(frozen=True)
 class SectionProblem:
-    """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
-    singularities of any of these. first: where the first mesh is kept for other loads. besides:
-    unit loads that are solved, too.
+    """A body of revolution of a material, clamped at surfaces (by name), in some cases.
+
+    singularities: those of any of the cases.
+    first: where the first mesh is kept for other loads.
+    besides: additional unit loads to be solved.
     """
 
     pin: Pin
@@ -101,11 +106,13 @@ def harmonic_solution(
     elsewhere: Floats = NO_POINTS,
     grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
-    """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
-    before, from which the mesh results `before` are: where these have high stresses, that is, and
-    elsewhere by the root of that; all over, without mesh results before. elsewhere: points (P, 2),
-    r and z in m, at which stress is read too, but no maximum looked for; grades: how fine the mesh
-    is there.
+    """Solve all unit loads of the cases on mesh number `level`, each `ratio` times finer than the
+    one before.
+
+    before: mesh results from which to refine: by the ratio where they have high stresses, by its
+    root elsewhere; without any, everywhere.
+    elsewhere: points (P, 2), r and z in m, at which stress is read too, but no maximum is searched.
+    grades: fineness of the mesh at these points.
 
     Raises: MeshError, SolveError.
     """
@@ -163,7 +170,9 @@ def harmonic_solution(
 
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
-    """Without the first points after those that have a displacement, and the stress at these."""
+    """The fields without the first points after those that have a displacement, and the stress at
+    these.
+    """
     if not count:
         return fields, np.zeros((0, *fields.stress.shape[1:]))
     first = len(fields.displacement)
@@ -174,8 +183,9 @@ def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
 
 
 def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
-    """How fine the mesh is at the ends of rings of contact pressure, so that the elements that feel
-    its steps (fea.core.pressed) are beside them.
+    """The fineness of the mesh at the ends of rings of contact pressure.
+
+    It is such that the elements that feel the steps of pressure (fea.core.pressed) lie beside them.
     """
     bands = (pin.band(name) for name in rings)
     return [
@@ -196,13 +206,13 @@ def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
 
 @lru_cache(64)
 def _rims(pin: Pin, singularities: tuple[Zone, ...]) -> Floats:
-    """Points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
+    """The points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
     read = [rim(pin, p, d) for p in singularities for d in _distances(p)]
     return np.concatenate([NO_POINTS, *read])
 
 
 def _distances(singularity: Zone) -> tuple[float, ...]:
-    """From a singularity, m, at which stress is read on a circle about it."""
+    """The distances from a singularity, m, at which stress is read on a circle about it."""
     radii = (singularity.varied(times).radius for times in (1.0, *DISTANCE_VARIATIONS))
     return tuple(dict.fromkeys((*radii, FEATURE_READING_DISTANCE * singularity.feature)))
 
@@ -210,8 +220,10 @@ def _distances(singularity: Zone) -> tuple[float, ...]:
 def _ends(
     pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
 ) -> tuple[tuple[float, float], ...]:
-    """Where a pressure ends on a smooth surface, (r, z) in m. That of contact does not end where a
-    cell does: its steps are those of the cells, and are not read.
+    """The places where a pressure ends on a smooth surface, (r, z) in m.
+
+    Contact pressure does not end where a cell does: its steps belong to the cells, and are not
+    read.
     """
     pushed = {name for load in loads if load.kind == "pressure" for name in load.surfaces}
     if not clamps and any(load.n <= 1 and not load.shears for load in loads):
@@ -227,8 +239,8 @@ def _spots(
     close: tuple[float, ...],
     factor: float,
 ) -> list[Spot]:
-    """At singularities, with elements `close` (of their scale), and at edges of bands, `factor`
-    times finer than on the first mesh.
+    """The spots where the mesh is refined: singularities, with elements `close` (of their scale),
+    and edges of bands, `factor` times finer than on the first mesh.
     """
     spots = [
         _spot(p, near if p.measured else CORNER_ELEMENT_SIZES[0] / factor, factor)
@@ -244,7 +256,10 @@ def _spots(
 
 
 def _spot(singularity: Zone, near: float, factor: float) -> Spot:
-    """near: the element there, of the singularity's scale."""
+    """The spot at a singularity.
+
+    near: size of the element there, of the singularity's scale.
+    """
     p = singularity
     size = near * p.scale
     if p.kind == "edge of a load":
@@ -253,7 +268,7 @@ def _spot(singularity: Zone, near: float, factor: float) -> Spot:
 
 
 def _matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
-    """Whether stress in a singularity is so large that it may govern, so that its growth is
+    """Return whether stress in a singularity is so large that it may govern, so that its growth is
     measured.
     """
     return any(
@@ -271,11 +286,11 @@ class HarmonicMesh:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """Those of the problem."""
+        """The zones of the problem."""
         return self.problem.zones
 
     def field(self, case: str) -> HarmonicField:
-        """Stress as one case sees it."""
+        """The stress as one case sees it."""
         return HarmonicField(self.solution, self.problem.zones_of(case))
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -286,8 +301,10 @@ class HarmonicMesh:
 
 
 class Harmonic:
-    """Any body of revolution (fea.core.model.Model). first: what was solved on the first mesh
-    before. pressed: whether pressures of contact act.
+    """The harmonic model of any body of revolution (fea.core.model.Model).
+
+    first: the solution on the first mesh of an earlier run.
+    pressed: whether contact pressures act.
     """
 
     name = "harmonic"
@@ -299,14 +316,17 @@ class Harmonic:
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> HarmonicMesh:
-        """As of every model."""
+        """Solve one mesh, as every model does."""
         posed = section_problem(problem, self._first)
         results = () if before is None else before.results
         return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
 
 
 def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> SectionProblem:
-    """A problem as its sections are solved. Raises: ArgumentError for what is not turned."""
+    """The problem of a pin's section.
+
+    Raises: ArgumentError for a pin that is not a body of revolution.
+    """
     pin = problem.pin
     if not isinstance(pin, Pin):
         raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
@@ -316,15 +336,15 @@ def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> Sec
 
 
 class HarmonicField:
-    """What a solution says of any loads made of its unit loads (fea.core.solution)."""
+    """The stress of a section under any combination of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: HarmonicSolution, singularities: tuple[Zone, ...]) -> None:
         self.solution, self.singularities = solution, singularities
         self.fields = solution.fields
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
-        where it does not exceed that.
+        """The largest von Mises stress (T,) Pa at every instant outside the singularities, or
+        `least` where it does not exceed that.
         """
         around = self.reader(loads)
         return around.maxima(around.fields.outside(self.singularities), least)
@@ -336,11 +356,13 @@ class HarmonicField:
         return top.value, top.instant
 
     def reader(self, loads: Loads) -> Circumference:
-        """Where their largest stress is looked for (fea.harmonic.free_surface)."""
+        """The points and angles at which the largest stress under these loads is searched
+        (fea.harmonic.free_surface).
+        """
         return reader(self.fields, loads, self.solution.nu)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The surface at one instant, with its envelope over all."""
+        """The surface at one instant, with its envelope over all instants."""
         return revolve(self.fields, loads, instant, self.solution.nu)
 
 
@@ -350,8 +372,9 @@ def harmonic_result(
     loads: PinLoads,
     case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
-    """Maximum outside the singularities, and what is inside them. own: those of this case, where
-    others have more; all by default.
+    """The maximum outside the singularities, and that inside each of them.
+
+    case_zones: the singularities of this case, where others have more; all by default.
     """
     around = reader(solution.fields, loads, solution.nu)
     fields = around.fields
@@ -383,7 +406,7 @@ def around_governing(
     loads: Loads,
     maximum: float,
 ) -> tuple[float, float] | None:
-    """The interval of a mesh result without the rest of it, of which the maximum (Pa) is known."""
+    """The interval of a mesh result alone, given its maximum, Pa."""
     around = reader(solution.fields, loads, solution.nu)
     if not felt_beyond(around.fields, around, singularities, maximum):
         return None
@@ -393,8 +416,9 @@ def around_governing(
 def high_places(
     around: Circumference, points: Floats, among: Mask, top: Crest, least: float = REFINE_ABOVE
 ) -> tuple[tuple[float, float], ...]:
-    """Points (r, z) where stress is nearly the maximum, `least` of it at least, the highest first,
-    well apart.
+    """Points (r, z) where stress is nearly the maximum, the highest first, well apart.
+
+    least: the least stress there, as a fraction of the maximum.
     """
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
@@ -412,8 +436,10 @@ def high_places(
 
 
 def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
-    """Of a bearing pressure's series, by its last harmonic at the maximum (a thin tube that becomes
-    oval feels more of it than a solid pin).
+    """The error from truncating the series of a bearing pressure, Pa, by its last harmonic at the
+    maximum.
+
+    A thin tube that becomes oval feels more of that harmonic than a solid pin.
     """
     n, largest = around.last(np.array([top.point]))
     if loads.distribution != "cosine" or n != loads.terms:

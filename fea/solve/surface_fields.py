@@ -45,7 +45,7 @@ class UnitSurface:
 
     @property
     def revolved(self) -> bool:
-        """Whether it is a meridian."""
+        """Whether the surface is the meridian of a body of revolution."""
         return not len(self.triangles)
 
 
@@ -87,7 +87,7 @@ def unit_surface(answer: StressField) -> UnitSurface | None:
 
 
 def amounts(answer: StressField, loads: PinLoads) -> Floats:
-    """How much of each unit load of the surface acts at each instant, by phase: (T, K, 2)."""
+    """The amount of each unit load of the surface at each instant, by phase: (T, K, 2)."""
     if isinstance(answer, SolidField | CutField):
         known = answer.solution.fields if isinstance(answer, SolidField) else answer
         one = known.coefficients(loads)
@@ -99,7 +99,7 @@ def amounts(answer: StressField, loads: PinLoads) -> Floats:
 
 
 def excluded(answer: StressField) -> Mask:
-    """Which points of the surface (P,) lie in a singularity, where the maximum is not read."""
+    """A mask (P,) of the points of the surface in a singularity, where the maximum is not read."""
     if isinstance(answer, CutField):
         return ~answer.surface.read
     if isinstance(answer, SolidField):
@@ -111,8 +111,10 @@ def excluded(answer: StressField) -> Mask:
 
 
 def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
-    """Von Mises stress (P,) Pa at the surface's points at an instant, of a meridian the largest
-    about the axis where it is read (fea.harmonic.free_surface), 0 where it is not.
+    """The von Mises stress (P,) Pa at the surface's points at an instant.
+
+    On a meridian it is the largest about the axis where it is read (fea.harmonic.free_surface), 0
+    where it is not.
     """
     if isinstance(answer, SolidField | CutField):
         if isinstance(answer, CutField):
@@ -130,8 +132,9 @@ def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
 def largest_at(
     answer: StressField, loads: PinLoads, instant: int
 ) -> tuple[float, float, float] | None:
-    """Where (x, y, z), m, the largest stress of what is read of a section is at an instant; None of
-    other models.
+    """The location (x, y, z), m, of the largest stress that is read in a section at an instant.
+
+    None for other models.
     """
     if not isinstance(answer, HarmonicField):
         return None
@@ -142,8 +145,11 @@ def largest_at(
 
 
 def unread(answer: StressField, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
-    """Where points (J,) of the surface are not read, for lugs press on them or beside: (T, J, A) at
-    all instants and angles (rad). None where no lugs press on a body of revolution.
+    """A mask of the points (J,) of the surface that are not read, since lugs press on them or
+    beside.
+
+    It has the shape (T, J, A) for all instants and `angles` (A,), rad; None where no lugs press on
+    a body of revolution.
     """
     if not isinstance(answer, HarmonicField) or loads.pressed is None:
         return None
@@ -158,7 +164,9 @@ def unread(answer: StressField, loads: PinLoads, points: Ints, angles: Floats) -
 
 
 def _shown(surface: SurfaceMesh) -> tuple[Ints, Ints]:
-    """Nodes (P,), sorted, and plane triangles (M, 3) of them; of a fine mesh the corners alone."""
+    """The nodes (P,), sorted, and the plane triangles (M, 3) of a surface; of a fine mesh the
+    corners alone.
+    """
     corners = surface.corners
     if len(surface.nodes) > MAX_SHOWN_NODES:
         corners = corners[:, :3]

@@ -1,4 +1,4 @@
-"""The same contact on cells twice as large: by how much cells change what is found of the pin."""
+"""The same contact on cells twice as large, from which the error of the cells follows."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from pinbase.arrays import Ints
 
 
 def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
-    """Contact with each two rings of a band as one and half the sectors, and the rings (R, C) of
-    which the coarse ones consist, 1 or 0.
+    """The contact problem with pairs of rings merged and half the sectors.
+
+    The second value, (R, C), is 1 where a ring belongs to a coarse one, else 0.
     """
     fine = model.contact
     group = _pairs(model)
@@ -37,9 +38,11 @@ def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
 
 
 def _pairs(model: ContactModel) -> Ints:
-    """Numbers (R,) of the coarse rings: two of a band each, none both flat and rounded, where a
-    common gap would keep light loads off what is flat. One that is left over is alone where the
-    rounding ends, or the third of the last flat ones.
+    """The numbers (R,) of the coarse rings, each of two rings of a band.
+
+    No pair has a flat and a rounded ring: their common gap would keep light loads off the flat
+    part. A ring that is left over is alone where the rounding ends, or the third of the last flat
+    ones.
     """
     out: list[int] = []
     for _, lug, ends in model.by_lug():
@@ -54,5 +57,7 @@ def _pairs(model: ContactModel) -> Ints:
 
 
 def _twos(count: int) -> list[int]:
-    """So many rings by two, one at the end if their number is odd."""
+    """The sizes of groups of two that add up to a count, with a group of one at the end if it is
+    odd.
+    """
     return [2] * (count // 2) + [1] * (count % 2)

@@ -53,9 +53,14 @@ MAX_KEPT_NUMBERS = 4_000_000  # numbers: of what sets of cells answer
 
 @dataclass(frozen=True)
 class ContactState:
-    """Pressure (R, M) in Pa and gap (R, M) in m on the cells; shift (B, 2) m of the lugs against
-    the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set. angle:
-    of the first cells' middle from the x axis, rad.
+    """The contact of a pin at one instant.
+
+    pressure: (R, M), Pa, on the cells.
+    gap: (R, M), m.
+    shift: (B, 2), m, of the lugs against the pin along x and y.
+    turn: (2,), slopes dx / dz and dy / dz of the pin.
+    steps: number of active-set steps.
+    angle: of the first cells' middle from the x axis, rad.
     """
 
     pressure: Floats
@@ -67,11 +72,11 @@ class ContactState:
 
     @property
     def active(self) -> Mask:
-        """Which cells are in contact."""
+        """A mask (R, M) of the cells in contact."""
         return self.gap <= 0.0
 
     def times(self, factor: float) -> ContactState:
-        """Under so many times the loads, where contact without them has no gap to close."""
+        """The state under so many times the loads, valid where there is no gap before loading."""
         return ContactState(
             factor * self.pressure,
             factor * self.gap,
@@ -82,7 +87,7 @@ class ContactState:
         )
 
     def turned(self, angle: float) -> ContactState:
-        """All of it turned about the axis by an angle, rad."""
+        """The state turned about the axis by an angle, rad."""
         turn = rotation(angle).T
         return replace(
             self, shift=self.shift @ turn, turn=self.turn @ turn, angle=self.angle + angle
@@ -90,15 +95,19 @@ class ContactState:
 
 
 def rotation(angle: float) -> Floats:
-    """By an angle, rad, of columns along x and y, (2, 2)."""
+    """The matrix (2, 2) that rotates columns (x, y) by an angle, rad."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s], [s, c]])
 
 
 @dataclass(frozen=True)
 class AdjointContact:
-    """Contact of some cells: forces (U,) N and rigid motions (Y,), and what a sum of the forces
-    loses by a gap at each of the cells (U,), and gains by what is asked of each motion (Y,).
+    """The contact of given cells and its adjoint, for a weighted sum of the cells' forces.
+
+    force: (U,) N.
+    motion: rigid motions (Y,).
+    by_gap: decrease of the sum per gap at each cell, (U,).
+    by_required: increase of the sum per required resultant of each motion, (Y,).
     """
 
     force: Floats
@@ -109,9 +118,12 @@ class AdjointContact:
 
 @dataclass(frozen=True)
 class _Answer:
-    """What the cells of one active set answer: forces (U,) N and gaps (U,) m without rigid motions,
-    how much each rigid motion takes off the forces and adds to the gaps, (U, Y), and the equations
-    (Y, Y), (Y,) of the motions but for what equilibrium asks; motions: (U, Y), of the gap.
+    """The linear response of one active set of cells to the rigid motions.
+
+    force, gap: (U,) N and (U,) m without rigid motions.
+    yielding, moving: how much each rigid motion takes off the forces and adds to the gaps, (U, Y).
+    system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
+    motions: change of the gap by each motion, (U, Y).
     """
 
     force: Floats
@@ -123,7 +135,7 @@ class _Answer:
     motions: Floats
 
     def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
-        """Forces, gaps and rigid motions."""
+        """The forces, gaps and rigid motions with which the cells have the required resultants."""
         motion, lost = np.zeros(len(required)), self.right - required
         for _ in range(2):  # once more for round-off: forces are small where gaps are large
             # what moves nothing is zero
@@ -136,9 +148,10 @@ class _Answer:
 class ContactProblem:
     """One pin in its lugs, ready for any loads.
 
-    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings;
-    tail: n u_n / p_n of both together for higher ones, m/Pa, (R,). tilt: (B,) N m/rad of the lugs'
-    tilt, inf where guided, 0 where free. sectors: M, of equal angles, the first about x.
+    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings.
+    tail: n u_n / p_n of both together for higher harmonics, m/Pa, (R,).
+    tilt: (B,) N m/rad, stiffness of the lugs' tilt, inf where guided, 0 where free.
+    sectors: M, of equal angles, the first about x.
     """
 
     def __init__(
@@ -156,11 +169,11 @@ class ContactProblem:
         self._fit(bands, tilt)
 
     def cells_area(self, bands: Bands) -> Floats:
-        """Of all cells of bands with as many rings, (U,) m^2."""
+        """The areas of all cells of bands with as many rings, (U,) m^2."""
         return np.repeat(bands.length * bands.radius, self.sectors) * 2.0 * np.pi / self.sectors
 
     def changed(self, gap: Floats, tilt: Sequence[float]) -> ContactProblem:
-        """The same with other gaps before any load (R,) m and tilts."""
+        """The same problem with another initial gap (R,), m, and another tilt stiffness."""
         other = copy.copy(self)
         other._fit(replace(self.bands, gap=gap), tilt)
         return other
@@ -181,13 +194,15 @@ class ContactProblem:
         return not self.bands.gap.any()
 
     def factors(self, n: Ints) -> Floats:
-        """Of harmonics in the mean over a cell under pressure on a cell, (N,)."""
+        """Factors (N,) of harmonics in the mean displacement of a cell under pressure on a cell."""
         return np.asarray(
             np.where(n == 0, 1.0, 2.0) / self.sectors * np.sinc(n / self.sectors) ** 2
         )
 
     def tail_weights(self, first: int) -> Floats:
-        """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
+        """Coefficients (M,) of cos(n a) on the sectors that sum the series u_n = p_n / n from
+        harmonic `first` on.
+        """
         n = np.arange(first, TAIL_HARMONICS_PER_SECTOR * self.sectors)
         terms = self.factors(n) / n
         return np.asarray(np.bincount(n % self.sectors, terms, self.sectors), dtype=np.float64)
@@ -206,9 +221,11 @@ class ContactProblem:
         return np.asarray(full / self.area)
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
-        """Changes of the gap on bands with as many rings by what has no stiffness, (U, Y): shifts
-        of the lugs, turn of the pin, tilts of the lugs that are free; and by the tilts of those
-        that have one, over its root, (U, S), whose products are their compliance.
+        """Changes of the gap by the motions of lugs and pin, on bands with as many rings.
+
+        The first value, (U, Y), is that of motions without stiffness: shifts of the lugs, turn of
+        the pin, tilts of the free lugs. The second, (U, S), is that of sprung tilts over the root
+        of their stiffness, so that its product with itself is their compliance.
         """
         columns = [self._e_r * (self._link == k)[:, None] for k in range(self._count)]
         band, z = (np.repeat(x, self.sectors) for x in (bands.band, bands.z))
@@ -227,10 +244,11 @@ class ContactProblem:
     def solve(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
     ) -> ContactState:
-        """Under forces (L, 2) N of the links on the pin, along x and y.
+        """The contact under forces (L, 2), N, of the links on the pin, along x and y.
 
-        couple: N m, along x and y, on the pin by anything but forces across at the bands, moments
-        of links included. start: cells (R, M) in contact, of a neighbouring instant.
+        couple: N m, along x and y, on the pin by anything but transverse forces at the bands,
+        moments of links included.
+        start: cells (R, M) in contact at a neighbouring instant.
 
         Raises: SolveError where the active set does not settle.
         """
@@ -245,7 +263,9 @@ class ContactProblem:
         return state
 
     def _settled(self, required: Floats, active: Mask) -> ContactState | None:
-        """From a set of cells in contact; None where the sets do not settle."""
+        """The contact found from a first set of cells in contact; None where the sets do not
+        settle.
+        """
         seen: set[bytes] = set()
         for step in range(1, MAX_ACTIVE_SET_STEPS + 1):
             answer = self._answer(active)
@@ -265,8 +285,10 @@ class ContactProblem:
         return None
 
     def _from_larger(self, required: Floats, facing: Mask) -> ContactState | None:
-        """From loads so many times larger that contact settles, down to the given ones: with small
-        loads and large gaps few cells touch, far from the first guess.
+        """The contact found by continuation from larger loads, under which it settles, down to the
+        given ones.
+
+        With small loads and large gaps few cells touch, far from the first guess.
         """
         times, state = 1.0, None
         while state is None and times < MAX_LOAD_FACTOR:
@@ -283,7 +305,7 @@ class ContactProblem:
         return state if times == 1.0 else None
 
     def _answer(self, active: Mask) -> _Answer:
-        """Of given cells in contact."""
+        """The response of given cells in contact, kept for later instants."""
         key = np.packbits(active).tobytes()
         if key not in self._answers:
             if len(self._answers) * self._motions.size > MAX_KEPT_NUMBERS:
@@ -311,8 +333,9 @@ class ContactProblem:
     def required_resultants(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)
     ) -> Floats:
-        """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
-        pin against e_r.
+        """The resultants (Y,) that the cells' forces must have on the rigid motions.
+
+        Their sign is negative since the cells push the pin against e_r.
         """
         out = np.zeros(self._motions.shape[1])
         count = self._count
@@ -322,7 +345,10 @@ class ContactProblem:
         return out
 
     def _require_balance(self, force: Floats, required: Floats, answer: _Answer) -> None:
-        """Raises: SolveError where the cells' forces are not what equilibrium asks."""
+        """Check that the cells' forces have the required resultants.
+
+        Raises: SolveError where they have not.
+        """
         arm = np.sqrt(np.diag(self._scale))  # of each motion
         residual = np.abs(self._motions.T @ force - required) / np.where(arm > 0.0, arm, 1.0)
         lost = residual.max(initial=0.0)
@@ -338,8 +364,11 @@ class ContactProblem:
         )
 
     def adjoint(self, active: Mask, wanted: Floats, required: Floats) -> AdjointContact:
-        """Of contact under what is asked of the rigid motions, with these cells (R, M) in contact:
-        how a sum of their forces, each (U,) times `wanted`, goes with gaps, motions and loads.
+        """The sensitivity of a sum of the cells' forces, weighted by `wanted` (U,), to gaps and
+        loads.
+
+        active: the cells (R, M) in contact.
+        required: the required resultants of the rigid motions.
         """
         rows = np.flatnonzero(active)
         answer = self._answer(active.ravel())
@@ -354,7 +383,7 @@ class ContactProblem:
         return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
     def _facing(self, forces: Floats) -> Mask:
-        """The cells that face the load of their band."""
+        """A mask of the cells that face the load of their band."""
         towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._link])
         size = np.linalg.norm(forces, axis=1)[self._link]
         return np.asarray((towards > 0.3 * size) & (size > 0.0))

@@ -1,4 +1,6 @@
-"""What only contact has, of a pin in its lugs: edges, mean pressures, and what lies beneath."""
+"""Results that only contact has, of a pin in its lugs: edges, mean pressures, stress beneath
+contact.
+"""
 
 from __future__ import annotations
 
@@ -26,17 +28,19 @@ def contact_place(
     error: float,
     row: float,
 ) -> ContactPlace:
-    """contact: at the row's instant. loads: on the rings at all instants of the case; error: of
-    what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
-    outcome asks how far stress reaches.
+    """The results of contact at the row's instant.
+
+    loads: on the rings at all instants of the case.
+    error: of the stress beneath contact, relative.
+    row: the maximum of surface and section, Pa, below which the depth of stress is not needed.
     """
     under = answer if isinstance(answer, CutField) else _Plain(answer)
     deepest = under.beneath(loads)
     limits = reached(material, required)
     instants = dict.fromkeys((deepest.instant, _instant(loads, contact)))
     least = min(row, *limits) if limits else row
-    bands = [x for t in instants for x in under.depths(loads, t, least)]
-    known = stairs(*np.array(bands).reshape(-1, 2).T)
+    steps = [x for t in instants for x in under.depths(loads, t, least)]
+    known = stairs(*np.array(steps).reshape(-1, 2).T)
     place = ContactPlace(
         deepest.value,
         error * deepest.value,
@@ -54,7 +58,7 @@ def contact_place(
 
 @dataclass(frozen=True)
 class _Plain:
-    """A pin without cuts, asked as one with them is."""
+    """The field of a pin without cuts, with the interface of one with cuts."""
 
     answer: HarmonicField
 

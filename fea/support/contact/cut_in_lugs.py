@@ -44,9 +44,13 @@ MIN_REPORTED_LOSS = 5e-4  # of a lug's force: what is lost of it is reported
 
 @dataclass(frozen=True)
 class NeglectedCuts:
-    """softer: by how much, relative, cuts raise the pin's bending compliance; pressed: the largest
-    pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; moved: the
-    largest part that may move away from holes; bands: those on which cuts are, by their names.
+    """The effects of cuts in lugs that contact neglects.
+
+    softer: relative increase of the pin's bending compliance by cuts.
+    pressed: the largest pressure on a mouth, Pa.
+    lost: the largest part of a lug's force that acts on mouths.
+    moved: the largest part that may move away from holes.
+    bands: those with cuts, by their names.
     """
 
     softer: float
@@ -57,7 +61,7 @@ class NeglectedCuts:
 
     @property
     def note(self) -> Reason:
-        """Of the cuts in lugs."""
+        """The note about the cuts in lugs."""
         if not self.bands:
             return Reason()
         where = ", ".join(f"{cut} in lug {name}" for cut, name in self.bands.items())
@@ -72,7 +76,7 @@ class NeglectedCuts:
         )
 
     def error(self, largest: float, at_cut: bool, over: tuple[Variation, ...]) -> float:
-        """Of a maximum, Pa, with the maxima of the joint varied."""
+        """The error of a maximum, Pa, given the maxima of the varied joint."""
         factors = [v.max_von_mises / largest for v in over if v.what == STIFFNESS_VARIATION]
         most = max((abs(math.log(x)) for x in factors if x > 0.0), default=LOG_2)
         relative = self.softer * most / LOG_2 + max(self.lost, self.moved)
@@ -82,7 +86,7 @@ class NeglectedCuts:
 def neglected(
     cut: CutPin, material: Material, contact: JointContact, pressure: CellPressure, of: CutField
 ) -> NeglectedCuts:
-    """At the single instant of a contact."""
+    """The neglected effects of cuts at the single instant of a contact."""
     pressed, lost, bands = 0.0, dict[int, float](), dict[str, str]()
     for name, one in cut.cuts.items():
         for band, lug in enumerate(contact.lugs):
@@ -163,7 +167,7 @@ def _inertia(pin: Pin, z: float) -> float:
 
 
 def at_a_cut(peak: Maximum, of: CutField) -> bool:
-    """Whether a maximum is about a cut."""
+    """Return whether a maximum is about a cut."""
     ends = [zone(piece.piece) for piece in of.solution.pieces]
     where = peak.location
     return where is not None and any(low <= where[2] <= high for low, high in ends)
@@ -176,7 +180,9 @@ def with_neglected(
     over: tuple[Variation, ...],
     requirement: Requirement,
 ) -> Maximum:
-    """With what is neglected among the parts of its error, and a note about it."""
+    """The maximum with the neglected effects among the parts of its error, and a note about
+    them.
+    """
     if not peak.max_von_mises or peak.parts is None:
         return peak
     more = left.error(peak.max_von_mises, at_a_cut(peak, of), over)

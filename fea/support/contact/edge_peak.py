@@ -64,8 +64,11 @@ SUBSURFACE_STRESS_RATIOS = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.476
 
 @dataclass(frozen=True)
 class EdgePeak:
-    """At a rounded edge. pressure: the largest, Pa; von_mises: of the pin under it, Pa, by contact
-    alone; reach: length of contact in the rounding, m.
+    """The peak of contact at a rounded edge.
+
+    pressure: the largest, Pa.
+    von_mises: largest stress of the pin under it by contact alone, Pa.
+    reach: length of contact in the rounding, m.
     """
 
     pressure: float
@@ -74,7 +77,8 @@ class EdgePeak:
 
 
 def contact_edges(contact: JointContact, material: Material) -> tuple[ContactEdge, ...]:
-    """Of contact at a single instant, both edges of each band that carries anything there.
+    """The edges of contact at a single instant: both edges of each band, where they carry load.
+
     material: the pin's.
     """
     out = []
@@ -134,7 +138,10 @@ def strength_at_edge(
 
 
 def edge_peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
-    """Of a rounded edge."""
+    """The peak at a rounded edge.
+
+    K: intensity of the sharp edge, Pa m^s, s being the exponent.
+    """
     r, soft = lug.edge_radius, material.plane_compliance + lug.bearing.plane_compliance
     pressure = float(np.interp(exponent, EDGE_EXPONENTS, PRESSURE_COEFFICIENTS)) * (
         K * K * r ** (-2.0 * exponent) / soft

@@ -9,7 +9,7 @@ from fea.core.requirement import Requirement
 
 
 def with_parts(peak: Maximum, parts: ErrorParts, requirement: Requirement) -> Maximum:
-    """With larger parts of the error, and the verdict that goes with them."""
+    """The peak with larger parts of the error, and the verdict that follows from them."""
     largest, error = peak.max_von_mises, peak.error_estimate
     if not largest or error is None or peak.parts is None:
         return peak
@@ -30,7 +30,7 @@ def with_parts(peak: Maximum, parts: ErrorParts, requirement: Requirement) -> Ma
 
 
 def with_cells(peak: Maximum, relative: float, requirement: Requirement) -> Maximum:
-    """With the error of the cells, relative, among its parts."""
+    """The peak with the error of the cells, relative, among its parts."""
     largest = peak.max_von_mises
     if not largest or peak.parts is None:
         return peak
