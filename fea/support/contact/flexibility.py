@@ -44,8 +44,10 @@ OUTWARDS = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True)
 class RingBody:
-    """A body on one mesh, rings of its surface (by name), and where pressure on them points.
-    guided: as a lug.
+    """A body on one mesh, the rings of its surface (by name), and the direction of pressure on
+    them.
+
+    guided: whether it is held like a lug.
     """
 
     body: HarmonicBody
@@ -55,16 +57,16 @@ class RingBody:
 
     @property
     def area(self) -> Floats:
-        """Of the rings, (R,) m^2 per radian."""
+        """The areas of the rings, (R,) m^2 per radian."""
         bands = [self.body.pin.band(name) for name in self.rings]
         return np.array([b.radius * b.length for b in bands])
 
     def forces(self, n: int) -> Floats:
-        """On the unknowns, (unknowns, R), of pressures of one on the rings."""
+        """The nodal forces (unknowns, R) of unit pressures of harmonic n on the rings."""
         return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NO_SLOPE),) for r in self.rings])
 
     def balanced(self, n: int, forces: Floats) -> Floats:
-        """With the reaction of what guides it."""
+        """The forces of harmonic n with the reaction of what guides the body."""
         if self.guided and n == 1:
             return self.reacted(self.body.outline, self.body.pin.length, forces)
         return forces
@@ -82,7 +84,7 @@ class RingBody:
         return np.asarray(forces - against @ np.linalg.solve(modes.T @ against, modes.T @ forces))
 
     def flexibility(self, highest: int) -> Floats:
-        """C_n (highest + 1, R, R), m/Pa, towards where pressure points."""
+        """The flexibility C_n (highest + 1, R, R), m/Pa, positive in the direction of pressure."""
         out = []
         for n in range(highest + 1):
             forces = self.balanced(n, self.forces(n))
@@ -115,8 +117,11 @@ def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
 
 
 def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
-    """The same of the rings of a lug's bore, outwards under pressure; its annulus is `eye`
-    (fea.support.lugs.rings). across: elements over the bore's diameter.
+    """The flexibility C_n (highest + 1, R, R), m/Pa, outwards under pressure, of the rings of a
+    lug's bore.
+
+    eye: the lug's annulus (fea.support.lugs.rings).
+    across: elements over the bore's diameter.
     """
     return lug_rings(eye, lug, across).flexibility(highest)
 
@@ -155,7 +160,9 @@ def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves
 
 @lru_cache(maxsize=4)
 def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Of a half-space on rings with such ends, over the radius, and what mirrors add to it."""
+    """The responses of a half-space on rings with such ends, over the radius, and the terms that
+    mirrors add.
+    """
     x = np.outer(waves, ends)
     beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
     return _half_space(x, x), beyond
@@ -171,7 +178,7 @@ def _half_space(x: Floats, y: Floats) -> Floats:
 
 
 def _integral_of_k0(x: Floats) -> Floats:
-    """From 0 to x of (x - t) K0(t)."""
+    """The integral from 0 to x of (x - t) K0(t)."""
     positive = np.maximum(x, 1e-300)
     return np.asarray(
         np.where(x > 0.0, x * iti0k0(positive)[1] - 1.0 + positive * k1(positive), 0.0)
@@ -179,8 +186,10 @@ def _integral_of_k0(x: Floats) -> Floats:
 
 
 def layered(lug: Lug, waves: float) -> float:
-    """What a wavy pressure does to a lug with a bushing, over what it does to a half-plane of the
-    bushing's material; waves: 2 pi / wavelength, 1/m.
+    """The displacement of a lug with a bushing under a wavy pressure, over that of a half-plane of
+    the bushing's material.
+
+    waves: 2 pi / wavelength, 1/m.
     """
     if lug.bushing is None:
         return 1.0

@@ -1,5 +1,6 @@
-"""Contact of a pin with its lugs in several cases, at any of their instants, each solved once; and
-how far its stress depends on the cells and on what is not known of the joint.
+"""Contact of a pin with its lugs in several cases, at any of their instants, each solved once.
+
+It also tells how far stress depends on the cells and on the uncertain properties of the joint.
 """
 
 from __future__ import annotations
@@ -41,8 +42,11 @@ MIN_INTERVALS = 16  # intervals to begin with
 
 @dataclass(frozen=True)
 class Candidates:
-    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
-    is known), and which (T,) are so near to it that they may govern.
+    """The instants of a case that may govern, by the stress on the first mesh.
+
+    instant: of the largest stress of the surface.
+    may: (T,), true where the stress is so near to the largest that the instant may govern.
+    largest: the largest stress, Pa, 0 where it is not known.
     """
 
     instant: int
@@ -52,19 +56,23 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Compared:
-    """Of a case, at the instants of the surface's largest stress and of the sections'."""
+    """The comparisons of a case at the instants of the largest stress of the surface and of the
+    sections.
+    """
 
     surface: ResolutionComparison
     section: ResolutionComparison
 
     @property
     def row(self) -> ResolutionComparison:
-        """That of the larger one, of which the joint was varied."""
+        """The comparison at the place with the larger stress, for which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
     def fine(self, material: Material, requirement: Requirement) -> bool:
-        """Whether finer cells would not help: they take little of the tolerance, or the required
-        factor is decided whatever they do, for what lies beneath the contact, too.
+        """Return whether finer cells would not help.
+
+        They would not if the error of the cells is a small part of the tolerance, or if the
+        required factor is decided whatever the cells, also for the stress beneath the contact.
         """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
@@ -88,16 +96,18 @@ class Compared:
         case: PinLoads,
         anew: Callable[[JointContact], ResolutionComparison],
     ) -> Compared:
-        """With the surface at another instant, if that is not near."""
+        """The comparisons with the surface's made anew at another instant, unless that is near."""
         if self.surface.is_at(contact.loads.links, case):
             return self
         return replace(self, surface=anew(contact))
 
 
 class PressedCases:
-    """The pressures of all cases at any time, each found once; those made of the same patterns act
-    on one mesh. instants: by case, those of which the patterns are made; failed: why a case has no
-    contact.
+    """The pressures of all cases at any time, each solved once.
+
+    Pressures made of the same patterns act on one mesh.
+    instants: by case, the loads of which the patterns are made.
+    failed: the reason why a case has no contact.
     """
 
     def __init__(
@@ -130,7 +140,9 @@ class PressedCases:
             self.sections[case.case] = SectionField(model.pin, model.material, (), rings)
 
     def near(self, requirement: Requirement) -> dict[str, Candidates]:
-        """By the stress of all instants, roughly, on the first mesh."""
+        """The candidates of each case, by the approximate stress of all instants on the first
+        mesh.
+        """
         if all(len(links) == 1 for links in self.instants.values()):
             return {case: Candidates(0, np.ones(1, dtype=bool)) for case in self.instants}
         self.follow(
@@ -155,7 +167,7 @@ class PressedCases:
         return out
 
     def follow(self, near: Mapping[str, Candidates]) -> None:
-        """Make the patterns: good ones of what may govern, rough ones of other instants."""
+        """Make the patterns: accurate ones for instants that may govern, rough ones for others."""
         parts = [(waves, MODE_TOLERANCE) for waves in self._besides.values()]
         for case, links in self.instants.items():
             waves, may = self.model.waves(self._at(links)), near[case].may
@@ -164,7 +176,7 @@ class PressedCases:
             self.patterns = self.model.patterns(parts, self.patterns)
 
     def _at(self, links: PinLoads) -> list[ContactState]:
-        """Contact at the loads' instants."""
+        """The contact at the loads' instants."""
         if links.times is None:
             return self.model.pressed(links)
         keys = [(links.case, t) for t in links.times.tolist()]
@@ -175,13 +187,13 @@ class PressedCases:
         return [self._known[key] for key in keys]
 
     def press(self, links: PinLoads) -> PressureLoads:
-        """What presses on the pin under loads of its links."""
+        """The pressures on the pin under loads of its links."""
         assert self.patterns is not None
         states = self._at(links)
         return self.patterns.loads(self.model.waves(states), links, self.model.arcs(states))
 
     def on_rings(self, links: PinLoads) -> PinLoads:
-        """The resultants of what presses on the rings under loads of the links."""
+        """The resultants of the pressures on the rings under loads of the links."""
         states = self._at(links)
         return resultants(self.model.pin, self.model.rings, self.model.waves(states), links)
 
@@ -192,8 +204,8 @@ class PressedCases:
     def compared(
         self, near: Mapping[str, Candidates], requirement: Requirement
     ) -> dict[str, Compared]:
-        """By case, at the instants of the largest stress of the surface on the first mesh and of
-        sections.
+        """The comparisons of each case, at the instants of the largest stress of the surface on the
+        first mesh and of sections.
         """
         at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
@@ -210,8 +222,10 @@ class PressedCases:
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
-    """Those of a case; of a motion those between which its loads go straight, and those amid each
-    two. More are added where the maximum may be between them (fea.core.over_time).
+    """The instants of a case to begin with.
+
+    A motion has those between which its loads are linear, and the middles between each two. More
+    are added where the maximum may lie between them (fea.core.over_time).
     """
     if between is None or case.times is None or len(case) < 2:
         return case

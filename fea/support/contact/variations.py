@@ -1,5 +1,5 @@
-"""By how much a pin's stress changes with its joint: with the cells of contact, and with what is
-seldom known of a joint, its clearance and how stiff its lugs are.
+"""The change of a pin's stress with its joint: with the cells of contact, with clearance, and with
+the stiffness of lugs.
 
 Contact is solved again at the governing instants with the flexibilities at hand, and all pressures
 act on one mesh, the first: its error is in all maxima alike, so that their ratios are compared.
@@ -61,10 +61,12 @@ class AtPlaces:
 
 @dataclass(frozen=True)
 class ResolutionComparison:
-    """At one instant, on the first mesh: stress there, and by how much, relative, it may differ for
-    the cells. links: the loads. over: what is changed of the joint, the larger of surface and
-    section and what lies beneath contact relative to those of the joint as given; left_out: what
-    could not be, and why.
+    """The stress at one instant on the first mesh, and its relative error from the cells.
+
+    links: the loads.
+    over: variations of the joint, with the larger of surface and section, and the stress beneath
+    contact, relative to those of the joint as given.
+    left_out: the variations that could not be solved, and why.
     """
 
     stress: AtPlaces
@@ -74,7 +76,7 @@ class ResolutionComparison:
     left_out: str = ""
 
     def range(self, largest: float, below: float = 0.0) -> JointRange:
-        """Over the joint, of a maximum and of what lies beneath contact, Pa."""
+        """The range over the joint of a maximum and of the stress beneath contact, Pa."""
         over = tuple(
             replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
             for x in self.over
@@ -83,7 +85,9 @@ class ResolutionComparison:
         return JointRange((min(ends), max(ends)), over)
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
-        """Whether an instant is this one, or no farther from it than two of the case's are."""
+        """Return whether an instant is this one, or no farther from it than two of the case's are
+        apart.
+        """
         if links.times is None or self.links.times is None or case.times is None:
             return np.array_equal(links.forces, self.links.forces)
         apart = float(np.abs(links.times - self.links.times)[0])
@@ -92,7 +96,7 @@ class ResolutionComparison:
 
 @dataclass(frozen=True)
 class _Joint:
-    """Contact at an instant with something changed: the harmonics of its pressures, and the
+    """The contact at an instant with something changed: the harmonics of its pressures, and the
     cells.
     """
 
@@ -107,8 +111,10 @@ def compare(
     known: PressureModes | None = None,
     vary: Sequence[bool] | None = None,
 ) -> tuple[ResolutionComparison, ...]:
-    """Joints in contact, each at one instant. known: patterns of the pressures on them; vary: by
-    instant, whether joints with something changed are looked at, by default all.
+    """Compare joints in contact, each at one instant, with coarser cells and with a varied joint.
+
+    known: patterns of the pressures on them.
+    vary: by instant, whether the joint is varied, by default always.
     """
     if not at:
         return ()
@@ -145,7 +151,7 @@ def compare(
 
 
 def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:
-    """The error of cells, relative, by the stress on them and on cells twice as large."""
+    """The relative error of the cells, from the stress on them and on cells twice as large."""
     agreement_floor = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
     surface_floor = max(RING_SCATTER * USUAL_RING_COUNT / rings, agreement_floor)
 
@@ -169,7 +175,7 @@ def _loads(
 def _at_places(
     model: ContactModel, requirement: Requirement, every: Sequence[Sequence[PressureLoads]]
 ) -> list[AtPlaces]:
-    """On the first mesh, of loads of one instant each."""
+    """The stress at the places on the first mesh, of loads of one instant each."""
     loads = list(itertools.chain(*every))
     whole = stacked(loads)
     singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
@@ -215,9 +221,13 @@ def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
 def _varied(
     model: ContactModel, at: Sequence[JointContact], own_cells: bool, vary: Sequence[bool]
 ) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
-    """Of each contact, what is changed of the joint, contact then, and what could not be changed:
-    lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
-    clearance. own: on the model's own cells, instead of cells twice as large; vary: which.
+    """The variations of the joint for each contact, the contact under each, and those that could
+    not be solved.
+
+    Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large
+    clearance.
+    own_cells: whether to use the model's own cells, instead of cells twice as large.
+    vary: the contacts for which the joint is varied.
     """
     names: list[list[Variation]] = [[] for _ in at]
     varied: list[list[_Joint]] = [[] for _ in at]

@@ -16,8 +16,10 @@ def contact_result(
     case: PinLoads,
     remark: str = "",
 ) -> JointResult:
-    """Of a contact at a single instant. case: what the rings do to the pin at
-    all instants; remark: what the range leaves out.
+    """The joint result of a contact at a single instant.
+
+    case: loads of the rings on the pin at all instants.
+    remark: what the range leaves out.
     """
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)

@@ -46,8 +46,9 @@ MAX_EDGE_ROUNDING = 0.05  # of the diameter
 @dataclass(frozen=True)
 class StressBounds:
     """The largest von Mises stress, Pa, at (r, z) in m and theta, at the instant of that index.
-    bounds: of that with contact; None where nothing is known of them, and `why`. moment_part: error
-    of the largest moment, relative, inf where nothing is known of it.
+
+    bounds: of the stress with contact; None where they are not known, and `why`.
+    moment_part: relative error of the largest moment, inf where it is not known.
     """
 
     maximum: float
@@ -60,14 +61,14 @@ class StressBounds:
 
     @property
     def error(self) -> float | None:
-        """Covers both bounds, Pa."""
+        """The error that covers both bounds, Pa."""
         if self.bounds is None:
             return None
         return max(self.maximum - self.bounds[0], self.bounds[1] - self.maximum)
 
 
 def stress_bounds(stress: FoundationStress, joint: JointFoundation) -> StressBounds:
-    """Over all instants."""
+    """The bounds of the largest stress over all instants."""
     top, model = stress.von_mises(joint), stress.model
     point, t = top.place
     s = top.von_mises
@@ -125,7 +126,7 @@ def _moment_part(model: FoundationModel, loose: float) -> float:
 def _contact_stress(
     stress: FoundationStress, joint: JointFoundation, loose: float
 ) -> tuple[Floats, float]:
-    """Of contact at the points, (S, T) Pa, and the largest of all."""
+    """The stress of contact at the points, (S, T) Pa, and the largest pressure stress of all."""
     bands, model = joint.bands, stress.model
     load = np.linalg.norm(joint.line_load, axis=2)  # (T, R)
     pressure = np.concatenate(
@@ -140,7 +141,10 @@ def _contact_stress(
 
 
 def _of_lug(model: FoundationModel, lug: Lug, load: Floats, on_lug: Floats) -> Floats:
-    """Pressure of the lug's rings (T, own) by the load per length of all (T, R), Pa."""
+    """The pressure on the lug's own rings by the load per length of all (T, R), Pa.
+
+    on_lug: a mask of the lug's rings.
+    """
     band = model.whole.band(lug.connection)
     segment = model.whole.segments[model.whole.labels.index(lug.connection)]
     z, length = model.bands.z[on_lug], model.bands.length[on_lug]

@@ -70,7 +70,9 @@ Stiffness = Callable[[Segment, Material, Lug], float]
 
 
 def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> float:
-    """Of the foundation of a pin's segment in a lug, N/m^2: force per length over deflection."""
+    """The stiffness of the foundation of a pin's segment in a lug, N/m^2: force per length over
+    deflection.
+    """
     radii = segment.bore / 2.0, segment.diameter / 2.0
     return (
         plane_stiffness(radii, material, lug.outer_diameter / 2.0, lug.material) / COMPLIANCE_SHARE
@@ -79,8 +81,11 @@ def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> floa
 
 @dataclass(frozen=True)
 class JointFoundation:
-    """A case of a pin on foundations. pin: its bands cut into rings; loads: what the rings do to
-    it, forces and, where the line load rises along a ring, moments; mass: of its segments, kg/m.
+    """A case of a pin on foundations.
+
+    pin: with its bands cut into rings.
+    loads: of the rings on it, forces and, where the line load varies along a ring, moments.
+    mass: of its segments, kg/m.
     """
 
     pin: Pin
@@ -98,17 +103,19 @@ class JointFoundation:
         return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
 
     def bending_moment(self, z: Floats) -> Floats:
-        """By the foundations and the body force, of the part of the pin before z (Z,) m: (T, Z, 2)
-        N m, the integral of the shear along x and along y.
+        """The bending moment by the foundations and the body force of the part before z (Z,) m, (T,
+        Z, 2) N m.
+
+        It is the integral of the shear along x and along y.
         """
         return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
     def shear_force(self, z: Floats) -> Floats:
-        """Sum of the loads across before z (Z,) m: (T, Z, 2) N."""
+        """The sum of the transverse loads before z (Z,) m, (T, Z, 2) N."""
         return shear_force(self.pin, self.mass, self.bands, self.loads, z)
 
     def along(self, z: Floats) -> tuple[Floats, Floats]:
-        """Of what acts before z (Z,) m, the axial force (T, Z) N and the torque (T, Z) N m."""
+        """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""
         part = np.clip((z[:, None] - self.bands.z) / self.bands.length + 0.5, 0.0, 1.0)
         ends = np.array(self.pin.stations)
         mass = np.clip(z[:, None] - ends[:-1], 0.0, np.diff(ends)) @ self.mass
@@ -147,8 +154,10 @@ class FoundationModel:
         self._unit = self._of_rings(np.array(soft))
 
     def solve(self, loads: PinLoads, whole: bool = True) -> JointFoundation:
-        """All instants of a case. loads: of links on all the lugs' bands or on some. whole: false
-        for a part of loads, which need not be in balance.
+        """Solve all instants of a case.
+
+        loads: of links on all the lugs' bands or on some.
+        whole: false for a part of loads, which need not be in balance.
 
         Raises: SolveError where forces are not in balance, no lug reacts a couple, or links exert
         moments across the axis.
@@ -171,7 +180,10 @@ class FoundationModel:
         return JointFoundation(self.pin, self.lugs, self.bands, ring_loads, self.mass)
 
     def with_clearances(self, lugs: Sequence[Lug]) -> FoundationModel:
-        """The same, of which only the error depends on them; lugs: in the order of the bands."""
+        """The same model with lugs of other clearance, which changes the error alone.
+
+        lugs: in the order of the bands.
+        """
         other = copy.copy(self)
         other.lugs = tuple(lugs)
         return other
@@ -182,8 +194,10 @@ class FoundationModel:
         return float(self.mass @ np.diff(self.pin.stations))
 
     def _along(self, loads: PinLoads, amounts: Floats, body: Floats) -> Floats:
-        """Axial forces or torques (T, C) of the links as those of the rings, (T, R), even along a
-        band; a structure reacts, evenly, what they and the body's (T,) leave over.
+        """The axial forces or torques (T, C) of the links as those of the rings, (T, R), even along
+        a band.
+
+        A structure reacts, evenly, the remainder of these and of the body's (T,).
         """
         out = amounts @ ring_shares(self.pin, self.rings, loads.surfaces)
         react = self.bands.length * np.array(self.structure)[self.bands.band]
@@ -192,7 +206,7 @@ class FoundationModel:
         return np.asarray(out)
 
     def _of_rings(self, stiffness: Floats) -> Response:
-        """Of the rings, what the lugs do under unit loads."""
+        """The response of the rings to unit loads of the lugs."""
         beam, number = self._beam(stiffness)
         still = np.flatnonzero(self.structure).tolist() or [0]
         response = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
@@ -202,7 +216,7 @@ class FoundationModel:
         return Response(belongs @ response.force, belongs @ response.moment + arms @ response.force)
 
     def _beam(self, stiffness: Floats) -> tuple[SupportedBeam, Ints]:
-        """Pieces, and the number of the ring that each is in, -1 outside."""
+        """The pieces of the beam, and the number of the ring that each is in, -1 outside."""
         bands, pin = self.bands, self.pin
         low, high = bands.z - bands.length / 2.0, bands.z + bands.length / 2.0
         z = np.sort([*pin.stations, *low, *high])
@@ -227,7 +241,10 @@ class FoundationModel:
     def _require_couples(
         self, case: str, moment: Floats, force: Floats, link_force: Floats
     ) -> None:
-        """Raises: SolveError where a couple is left over, which a lug that is free would react."""
+        """Check that no couple is left on a lug that is free to tilt.
+
+        Raises: SolveError where one is.
+        """
         bands = self.bands
         arm = (bands.z - bands.middles[bands.band])[:, None]
         least = COUPLE_TOLERANCE * self.pin.length * np.abs(link_force).max(initial=0.0)

@@ -63,7 +63,10 @@ def largest_pressure(gap: float) -> float:
 
 
 def half_angle(gap: float) -> float:
-    """Of contact, rad, by the same."""
+    """The half angle of contact, rad.
+
+    gap and source: as `largest_pressure`.
+    """
 
     def off(angle: float) -> float:
         b2 = math.tan(angle / 2.0) ** 2
@@ -87,14 +90,16 @@ def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
 
 
 def _even(other: float, material: Material) -> float:
-    """n = 0: Lame's tube."""
+    """The radial displacement of harmonic 0, by Lame's tube."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return (1.0 + nu) / E * (1.0 - 2.0 * nu + other**2) / abs(1.0 - other**2)
 
 
 def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
-    """Of Michell's powers of r: 2 mu u_r, 2 mu u_theta, s_rr, s_rt, (4, 4 or 2 for a solid); for
-    n = 1 without those that are rigid or have a resultant.
+    """The terms of Michell's solution at r: 2 mu u_r, 2 mu u_theta, s_rr, s_rt, (4, 4 or 2 for a
+    solid).
+
+    For n = 1 the rigid ones and those with a resultant are left out.
     """
     up = [
         (-n, n, -n * (n - 1), n * (n - 1)),  # r^n
@@ -114,7 +119,7 @@ def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
 
 
 def _many(n: int, other: float, material: Material) -> float:
-    """n > 1, along r."""
+    """The radial displacement of a harmonic n > 1."""
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
     solid = other == 0.0
     here = _powers(n, 1.0, kappa, solid)
@@ -125,7 +130,10 @@ def _many(n: int, other: float, material: Material) -> float:
 
 
 def _section(hole: float, material: Material) -> float:
-    """n = 1 of a pin; the pressure along -x is held by a force per volume along x."""
+    """The displacement of a pin for harmonic 1.
+
+    The pressure along -x is held by a force per volume along x.
+    """
     (lam, mu), kappa, solid = material.lame, 3.0 - 4.0 * material.poisson_ratio, hole == 0.0
     alpha = -3.0 / (8.0 * (lam + 2.0 * mu) * (1.0 - hole**2))
     beta = -alpha / 3.0
@@ -147,11 +155,13 @@ def _section(hole: float, material: Material) -> float:
 
 
 def _eye(wide: float, material: Material) -> float:
-    """n = 1 of a lug."""
+    """The displacement of a lug for harmonic 1."""
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
 
     def terms(r: float) -> Floats:
-        """As _powers, with the pair that has a resultant, in proportions that have one value."""
+        """The terms of `_powers`, and the pair with a resultant in proportions that give one
+        value.
+        """
         k, ln = kappa, math.log(r)
         first = np.array([(k + 1.0) * ln - 1.0, -(k + 1.0) * ln - 1.0, 4.0 / r, 0.0]) / 2.0
         second = np.array([(k - 1.0) * ln - 1.0, -(k - 1.0) * ln - 1.0, 2.0 / r, 2.0 / r]) / 2.0

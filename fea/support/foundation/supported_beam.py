@@ -35,9 +35,13 @@ MAX_FOUNDATION_LENGTHS = (
 
 @dataclass(frozen=True)
 class SupportedBeam:
-    """Pieces (N,) of a beam between stations (N + 1,) m. bending: 1 / (E I), 1 / (N m^2); shear:
-    1 / (kappa G A), 1 / N; foundation: N/m^2, 0 outside lugs; mass: kg/m; lug: number of the lug
-    that holds each, -1 for none.
+    """The pieces (N,) of a beam between stations (N + 1,) m.
+
+    bending: 1 / (E I), 1 / (N m^2).
+    shear: 1 / (kappa G A), 1 / N.
+    foundation: N/m^2, 0 outside lugs.
+    mass: kg/m.
+    lug: number of the lug that holds each, -1 for none.
     """
 
     stations: Floats
@@ -53,10 +57,11 @@ class SupportedBeam:
 
 @dataclass(frozen=True)
 class Response:
-    """What the lugs do to the pieces of a beam under P loads, one newton on each lug and a body
-    force of 1 m/s^2: force (N, P), N, and moment (N, P), N m, about the middles of the pieces, of
-    forces along x. The lugs that stand still react what each load leaves over; one newton on one of
-    them does nothing.
+    """The reaction of the lugs on the pieces of a beam under P loads: one newton on each lug, and a
+    body force of 1 m/s^2.
+
+    force: (N, P), N, and moment: (N, P), N m, about the middles of the pieces, of forces along x.
+    The fixed lugs react the remainder of each load; one newton on one of them does nothing.
     """
 
     force: Floats
@@ -78,9 +83,12 @@ def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
 def respond(
     beam: SupportedBeam, middles: Floats, tilt: Sequence[float], still: Sequence[int] = (0,)
 ) -> Response:
-    """middles: of the lugs, (B,) m. tilt: N m/rad of the lugs' tilt, inf guided, 0 free. still: the
-    lugs that do not shift; where there is one, and all are free, it is guided and reacts the couple
-    that is left over.
+    """The response of a beam in its lugs.
+
+    middles: of the lugs, (B,) m.
+    tilt: N m/rad of the lugs' tilt, inf guided, 0 free.
+    still: the fixed lugs; where there is one, and all are free to tilt, it is guided and reacts the
+    remaining couple.
     """
     length = float(beam.stations[-1] - beam.stations[0]) / len(beam)
     stiff = 1.0 / float(beam.bending.max() * length**2)  # N; makes numbers near 1 of all
@@ -139,7 +147,7 @@ class _System:
         return out
 
     def _hold(self, rows: Floats, loads: Floats) -> None:
-        """Equations of the lugs: a force, or no shift, and a couple each."""
+        """Add the equations of the lugs: a force, or no shift, and a couple each."""
         for b, stiffness in enumerate(self.tilt.tolist()):
             force, couple = self._reactions(b)
             if b in self.still:

@@ -37,7 +37,9 @@ class Varied:
 
 
 class FoundationRange:
-    """Of one pin, for all cases. assumed: whether its lugs are.
+    """The range of a pin's maximum over its joint, for all cases.
+
+    assumed: whether its lugs are assumed.
 
     Raises: ValueError for lugs that do not fit; SolveError for lugs that it cannot answer.
     """
@@ -52,7 +54,8 @@ class FoundationRange:
         self.varied = tuple(_varied(self.own))
 
     def at(self, loads: PinLoads) -> tuple[JointRange | None, str]:
-        """At a single instant; and what is left out, or why all is.
+        """The range at a single instant, and the variations it leaves out, or the reason why there
+        is none.
 
         Raises: SolveError as FoundationModel.solve.
         """
@@ -85,9 +88,10 @@ def prescribed_ranges(
     loads: Sequence[PinLoads | None],
     how: tuple[float, bool],
 ) -> tuple[JointResult | None, ...]:
-    """Of a pin that is supported otherwise, if it sat in these lugs. loads: at the governing
-    instants of its cases, None where there is none. how: distance and assumed, as of
-    FoundationRange.
+    """The ranges of a pin with another support, as if it sat in these lugs.
+
+    loads: at the governing instants of its cases, None where there is none.
+    how: distance and assumed, as of FoundationRange.
     """
     try:
         over = FoundationRange(pin, material, lugs, *how)
@@ -108,7 +112,9 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
 
 
 def _tried(stress: FoundationStress, loads: PinLoads) -> StressBounds | None:
-    """None where lugs that are free to tilt leave a couple on the pin."""
+    """The bounds with a varied joint; None where lugs that are free to tilt leave a couple on the
+    pin.
+    """
     try:
         return stress_bounds(stress, stress.model.solve(loads))
     except SolveError:

@@ -1,8 +1,8 @@
-"""What is seldom known of a joint, and how far it is changed to see what depends on it.
+"""Variations of the uncertain properties of a joint, to see which results depend on them.
 
 By default a clearance goes from none to twice the given one (to a free running fit where none is
 given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
-of its own. Of everything both ends are tried, for all lugs at once.
+of its own. Both ends of each range are tried, for all lugs at once.
 """
 
 from __future__ import annotations
@@ -23,8 +23,10 @@ RANGE_ENDS = (0, 1)
 
 @dataclass(frozen=True)
 class JointChange:
-    """A joint with something changed: what, to what in words, the lugs, and by how much each is
-    softer. length: the value, m, where it is one, the largest of all lugs.
+    """A joint with something changed: the property, its value in words, and the lugs.
+
+    softness: how many times softer each lug is.
+    length: the value, m, where it is one, the largest of all lugs.
     """
 
     what: str
@@ -35,7 +37,9 @@ class JointChange:
 
 
 def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
-    """Of the lugs on a pin's bands, one thing at a time; not what changes nothing."""
+    """The variations of the lugs on a pin's bands, one property at a time, without those that
+    change nothing.
+    """
     same = (1.0,) * len(lugs)
     changes = []
     for end in RANGE_ENDS:
@@ -54,7 +58,7 @@ def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
 
 
 def with_stiffness(lug: Lug, times: float) -> Lug:
-    """Also its bushing."""
+    """The lug, and its bushing, so many times as stiff."""
 
     def softened(material: Material) -> Material:
         return replace(material, youngs_modulus=material.youngs_modulus / times)

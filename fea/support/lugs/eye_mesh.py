@@ -16,11 +16,11 @@ MIN_WALL_ELEMENTS = 2.0  # with one element pressure at a rounded edge is 6 % hi
 
 
 def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> MeridianMesh:
-    """Of a lug's annulus, one surface for each segment outside and in the bore.
+    """The mesh of a lug's annulus, with one surface for each segment outside and in the bore.
 
-    across: elements over the bore's diameter where it is pressed, of which each ring, and what is
-    between bore and interface, has MIN_WALL_ELEMENTS at least. interface: a radius (m) along which
-    elements end.
+    across: elements over the bore's diameter where it is pressed; each ring, and the wall between
+    bore and interface, has at least MIN_WALL_ELEMENTS of them.
+    interface: a radius, m, along which elements end.
     """
     bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
     ends = [bore, *([] if interface is None else [interface]), outer]
@@ -58,7 +58,7 @@ def _layers(ends: list[float], size: float) -> list[Floats]:
 
 
 def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np.dtype[np.int64]]]:
-    """By surface, the edges counter-clockwise (E, 3): ends, then middle."""
+    """The edges (E, 3) of each surface, counter-clockwise: ends, then middle."""
     facets = grid.boundary_facets()
     ends, middle = grid.facets[:, facets], grid.dofs.facet_dofs[0, facets]
     x, at = grid.doflocs, grid.doflocs[:, middle]

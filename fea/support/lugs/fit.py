@@ -1,8 +1,8 @@
-"""Whether lugs fit a pin: what is refused before anything is computed.
+"""Checks that lugs fit a pin, made before anything is computed.
 
 Interference presses pin and eye as tubes one in the other, of which every wall follows Lame with
-free ends: u = r / E (s_tt - nu s_rr), s = A -+ B / r^2. Beyond a few times what yields one of them
-linear elasticity says nothing.
+free ends: u = r / E (s_tt - nu s_rr), s = A -+ B / r^2. Beyond a few times the interference that
+yields one of them linear elasticity does not apply.
 """
 
 from __future__ import annotations
@@ -41,8 +41,9 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
 
 
 def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Carried:
-    """What the lugs of a pin carry of what its links leave over; foundations: by a beam on these,
-    on which a structure carries what is along the axis too.
+    """The part of the links' imbalance that the lugs of a pin carry.
+
+    foundations: whether the pin is a beam on these, on which a structure carries axial loads too.
     """
     structure = sum(lug.connection not in pin.connections for lug in lugs)
     tilts = any(lug.tilt > 0.0 for lug in lugs)
@@ -136,7 +137,7 @@ def yielding_interference(lug: Lug, radius: float, bore: float, material: Materi
 
 
 def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
-    """By wall, yield strength over von Mises stress under an interference of 1 m."""
+    """The yield strength over the von Mises stress of each wall under an interference of 1 m."""
     yield math.inf
     for (inner, outer, material), (a, b) in zip(walls, fields, strict=True):
         if material.yield_strength is not None:
@@ -171,15 +172,13 @@ def _press_fit(walls: Sequence[Wall]) -> Floats:
 
 
 def _widening(r: float, material: Material) -> Floats:
-    """u_r by A and by B."""
+    """The factors of A and B in u_r."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
 
 
 def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
-    """What of pin and lugs a beam on foundations cannot answer (fea.joint.foundation), if
-    anything.
-    """
+    """The property of pin and lugs that a beam on foundations cannot represent, if any."""
     if not pin.stepped:
         return f"pin {pin.name} has cones or rounded edges, and its beams have only cylinders"
     for lug in lugs:

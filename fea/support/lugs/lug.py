@@ -1,4 +1,4 @@
-"""What surrounds a band of a pin: the eye of a link, with a bushing or without."""
+"""The surroundings of a band of a pin: the eye of a link, with or without a bushing."""
 
 from __future__ import annotations
 
@@ -29,8 +29,12 @@ class Bushing:
 
 @dataclass(frozen=True)
 class LugRange:
-    """Between what values something of a lug may lie, None where the usual ones are tried
-    (fea.support.lugs.changes): clearance, m; stiffness, times that of the lug; tilt, N m/rad.
+    """The ranges of the uncertain properties of a lug, None where the usual ones are tried
+    (fea.support.lugs.changes).
+
+    clearance: m.
+    stiffness: times that of the lug.
+    tilt: N m/rad.
 
     Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
     """
@@ -86,7 +90,7 @@ class Lug:
 
     @property
     def bearing(self) -> Material:
-        """What the pin bears on: the bushing's material or the lug's."""
+        """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material
 
     def gap(self, ends: Floats) -> Floats:
@@ -96,7 +100,7 @@ class Lug:
         return 0.5 * self.clearance + np.diff(self._rounded(ends)) / np.diff(ends)
 
     def _rounded(self, z: Floats) -> Floats:
-        """Integral of what the rounding of both edges takes from the bore, from its start to z."""
+        """The integral of the depth of rounding of both edges, from the bore's start to z."""
         first, last = z[0], z[-1]
         return _segment(self.edge_radius, z - first) - _segment(self.edge_radius, last - z)
 
