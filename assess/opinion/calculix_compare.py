@@ -46,8 +46,10 @@ def second_opinions(
     distance: float,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Opinion, ...]:
-    """Opinions on a pin's cases, each at the governing instant of its peak, on the first mesh of
-    the solid model. distance: as in fea.solve.solve.Asked. An unconstrained pin has none.
+    """Opinions on a pin's cases, each at the governing instant of its peak.
+
+    They are computed on the first mesh of the solid model; an unconstrained pin has none.
+    distance: as in fea.solve.solve.Asked.
 
     Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
     """
@@ -75,7 +77,10 @@ def second_opinions(
 def _compared(
     answer: Opinion, material: Material, solution: SolidSolution, loads: Floats
 ) -> Opinion:
-    """Both programs under one combination (L,) of the unit loads. Raises: CalculixError."""
+    """Compare both programs under one combination (L,) of the unit loads.
+
+    Raises: CalculixError.
+    """
     fields, space = solution.fields, solution.fields.space
     forces = fields.forces @ loads
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
@@ -103,8 +108,11 @@ def _compared(
 
 
 def _outside(solution: SolidSolution) -> Ints:
-    """Nodes outside the excluded zones of a body of revolution, where all models search
-    inside, where such a singularity ends; of any other body those of its surface.
+    """The nodes at which maxima are compared.
+
+    For a body of revolution they are all nodes outside the excluded zones, also those inside the
+    body, where all models search and such a singularity ends; for any other body those of its
+    surface.
     """
     fields = solution.fields
     if not fields.revolved:

@@ -54,7 +54,9 @@ def opinion_in_lugs(
     progress: Callable[[str], None] = lambda _: None,
     meshes: Meshes | None = None,
 ) -> Opinion:
-    """Of a case with a peak and its contact there; the opinion has the reason if there is none."""
+    """CalculiX's opinion on a case with a peak and its contact there, or the reason why there is
+    none.
+    """
     answer = Opinion(peak.pin, peak.case, peak.max_von_mises, peak.own_error)
     try:
         loads = transverse(seated, peak.governing)
@@ -68,8 +70,9 @@ def opinion_in_lugs(
 
 
 def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
-    """The links' forces across the pin, in balance. Raises: ArgumentError for what CalculiX's model
-    lacks; SolveError for forces out of balance.
+    """The transverse forces of the links, in balance.
+
+    Raises: ArgumentError for what CalculiX's model lacks; SolveError for forces out of balance.
     """
     _require_modelled(seated)
     assert governing is not None
@@ -101,7 +104,7 @@ def _require_modelled(seated: PinInLugs) -> None:
 
 
 def _meshes(loads: PinLoads) -> Meshes:
-    """As fine as takes minutes."""
+    """The coarser and the finer mesh, as fine as can be solved in minutes."""
     _, half = plane_of(loads.forces[0, :, :2])
     return HALF_MODEL_MESHES if half else FULL_MODEL_MESHES
 
@@ -132,8 +135,10 @@ def _compared(
 
 
 def _stress(opinion: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
-    """At our maximum, Pa: on the surface where that is, or in the section that has it, by the
-    forces of CalculiX's rings.
+    """CalculiX's stress at our maximum, Pa.
+
+    It is that on the surface if our maximum is there, else that of the section by the forces of
+    CalculiX's rings.
     """
     if peak.places is not None and peak.places.governs == "section":
         return section_of(opinion, seated.pin, seated.material).value
@@ -142,13 +147,13 @@ def _stress(opinion: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
 
 
 def largest_moment(opinion: JointOpinion, pin: Pin) -> float:
-    """Along the pin, N m."""
+    """The largest bending moment along the pin, N m."""
     z = np.linspace(0.0, pin.length, MOMENT_STATION_COUNT)
     return float(np.linalg.norm(opinion.bending_moment(z), axis=1).max())
 
 
 def _band(pin: Pin, ours: BandContact, theirs: JointOpinion) -> BandOpinion:
-    """Ours is spread over CalculiX's rings."""
+    """The load per length of both programs, ours spread over CalculiX's rings."""
     band = pin.band(ours.name)
     tiny = 1e-9 * pin.length
     within = (theirs.ends[:, 0] > band.z0 - tiny) & (theirs.ends[:, 1] < band.z1 + tiny)

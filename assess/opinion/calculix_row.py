@@ -20,15 +20,13 @@ RELATIVE_LENGTH_TOLERANCE = 1e-9  # of lengths
 
 
 def section_of(opinion: JointOpinion, pin: Pin, material: Material) -> AtSection:
-    """The largest stress of its sections, by the forces of its rings."""
+    """The largest stress of the pin's sections, by the forces of CalculiX's rings."""
     loads = ring_loads(opinion, pin)
     return SectionField(on_rings(opinion, pin), material, (), [loads]).place(loads)
 
 
 def free(opinion: JointOpinion) -> Mask:
-    """Which nodes (N,) are corners of elements on the pin's surface, none of which has a node
-    that is pressed: where s_rr on a ring is MIN_PRESSURE_SHARE of the largest there.
-    """
+    """A mask (N,) of the corner nodes on the pin's surface whose elements have no pressed node."""
     x, corners = opinion.nodes, opinion.elements[:, :8]
     faces = corners[:, HEXAHEDRON_FACES].reshape(-1, 4)
     unique_faces, count = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
@@ -43,7 +41,9 @@ def free(opinion: JointOpinion) -> Mask:
 
 
 def pressed(opinion: JointOpinion) -> Mask:
-    """Which nodes (N,) are pressed."""
+    """A mask (N,) of the pressed nodes: those on a ring where s_rr is MIN_PRESSURE_SHARE of the
+    largest there.
+    """
     x = opinion.nodes
     r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
     near = RELATIVE_LENGTH_TOLERANCE * float(np.ptp(z))
@@ -62,12 +62,12 @@ def pressed(opinion: JointOpinion) -> Mask:
 
 
 def on_rings(opinion: JointOpinion, pin: Pin) -> Pin:
-    """The pin with its bands cut into these rings."""
+    """The pin with its bands cut into CalculiX's rings."""
     return ringed(pin, {name: ends for name, _, ends in _by_band(opinion, pin)})
 
 
 def ring_loads(opinion: JointOpinion, pin: Pin) -> PinLoads:
-    """Forces of the lugs on the rings, and their couples about the middles of these."""
+    """The forces of the lugs on the rings, and their couples about the middles of these."""
     names = [
         ring(name, k)
         for name, band_rows, _ in _by_band(opinion, pin)
@@ -81,7 +81,9 @@ def ring_loads(opinion: JointOpinion, pin: Pin) -> PinLoads:
 
 
 def _by_band(opinion: JointOpinion, pin: Pin) -> list[tuple[str, Ints, Floats]]:
-    """Each band's name, rows of its rings in the order of z, and their ends along it, m."""
+    """The name of each band, the rows of its rings in the order of z, and their ends along it,
+    m.
+    """
     out, tiny = [], RELATIVE_LENGTH_TOLERANCE * pin.length
     for name in pin.connections:
         band = pin.band(name)

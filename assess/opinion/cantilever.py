@@ -59,7 +59,9 @@ _UNIT_MATERIAL = Material("any", 1.0, 0.0)
 
 @dataclass(frozen=True)
 class BeamForces:
-    """Along z (m): shear (N), moment (N m) and axial stress (Pa) on the side that is in tension."""
+    """Results of a beam along z, m: shear, N, moment, N m, and axial stress, Pa, on the side in
+    tension.
+    """
 
     z: Floats
     shear: Floats
@@ -149,8 +151,11 @@ def axis_load_term(nu: float) -> float:
 
 
 def constant_stress(k: float, load: float, radius: float) -> float:
-    """By how much (Pa) the axial stress in tension is below the beam's: term `k`, `load` in N/m,
-    `radius` in m.
+    """The amount, Pa, by which the axial stress in tension is below the beam's.
+
+    k: Michell's term.
+    load: N/m.
+    radius: m.
 
     Source: as the module.
     """

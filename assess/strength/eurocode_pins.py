@@ -198,7 +198,10 @@ def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
 
 
 def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:
-    """Diameters, thickness and E of the softer-side mean of pin and lug, as they are in series."""
+    """The diameters of pin and hole, the thickness, m, and Young's modulus, Pa.
+
+    The modulus is the harmonic mean of pin and lug, since these are in series.
+    """
     lug, band = s.lug(name), s.pin.band(name)
     assert lug is not None
     E = 2.0 / (1.0 / s.material.youngs_modulus + 1.0 / lug.bearing.youngs_modulus)

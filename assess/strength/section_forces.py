@@ -112,8 +112,9 @@ def _values(forces: InternalForces, c: Floats, cells: Cells, z: Floats) -> Float
 
 
 def _at_middles(s: Situation, forces: InternalForces, c: Floats) -> Floats:
-    """Shear and moment on both sides of concentrated loads, (2, 2 C, T, 2): the shear there is
-    that beyond the band, at which the diagrams end anyway.
+    """Shear and moment on both sides of concentrated loads, (2, 2 C, T, 2).
+
+    The shear there is that beyond the band, at which the diagrams end anyway.
     """
     bands = [s.pin.band(name) for name in s.loads.surfaces]
     middles = np.array([b.middle for b in bands])

@@ -167,7 +167,7 @@ class Maximum:
 
 
 def meets_limit(peak: Maximum, limit: float) -> bool | None:
-    """Whether the maximum stays below a limit (Pa); None if not decided.
+    """Return whether the maximum stays below a limit, Pa; None if not decided.
 
     A maximum is compared with its error, whatever its verdict: one that straddles the limit decides
     nothing. A singular one exceeds the limit if its whole interval does; it never stays below,

@@ -1,4 +1,4 @@
-"""How far rings move, on the average round them, under uniform pressures on rings, by harmonic.
+"""Flexibility of rings, by harmonic: the mean displacement of rings under even pressures on them.
 
 A pressure p cos n theta on a ring moves the mean of u_r over each ring by C_n p cos n theta. By the
 theorem of Betti C_n times the rings' lengths is symmetric; it is made exactly so. Rigid motions are

@@ -56,12 +56,16 @@ Alike = tuple[float, Material, Bushing | None, bytes, Material]
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely contact is resolved. rings: of a band with sharp edges (lugs.rings); sectors:
-    round it; highest: harmonic of elasticity that is computed; across: elements over the pin's
-    diameter where flexibilities are found; beside: of an edge's radius, the length of the rings
-    where rounding begins, if the peak of pressure there is to be resolved.
+    """The resolution of contact.
 
-    The usual ones give the moment and the stress at mid-span to 0.3 %
+    rings: of a band with sharp edges (lugs.rings).
+    sectors: over its circumference.
+    highest: harmonic of elasticity that is computed.
+    across: elements over the pin's diameter where flexibilities are found.
+    beside: length of the rings where rounding begins, of an edge's radius, if the peak of pressure
+    there is to be resolved.
+
+    The usual values give the moment and the stress at mid-span to 0.3 %
     (benchmarks/joints/joint.py). They do not give the peak of pressure at rounded edges: contact
     reaches only a few hundredths of the radius into the rounding, and the peak to 3 % takes rings
     of a tenth of that: `beside` 0.004.

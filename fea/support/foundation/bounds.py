@@ -1,4 +1,4 @@
-"""How far true contact may be away from a pin on foundations: its error, a matter of the model.
+"""Bounds of the stress by contact from that of a pin on foundations: the error of the model.
 
 Where the beam's von Mises stress is s at a point, that of contact is taken to be between
 
