@@ -9,9 +9,8 @@ from fea.core.strain_energy import StrainEnergy
 
 Point = tuple[float, float, float]
 
-FEATURE_READING_DISTANCE = (
-    0.1  # of a feature: a singularity governs if the stress at this distance is the largest
-)
+# Of a feature: a singularity governs if the stress at this distance is the largest
+FEATURE_READING_DISTANCE = 0.1
 
 
 @dataclass(frozen=True)

@@ -33,9 +33,8 @@ from pinbase.arrays import Floats, Mask
 
 SECTIONS_BETWEEN_STATIONS = 9  # sections between two stations, both ends included
 WALL_FRACTIONS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
-CLOSER_POINTS = (
-    33  # points between two of these, about the angle, and along the pin, near the largest
-)
+# Points between two of these, about the angle, and along the pin, near the largest
+CLOSER_POINTS = 33
 MIN_SECTION_GAIN = 1e-9  # relative: a section must have so much more than another
 CLOSER_ANGLE = np.radians(2.0)  # of that angle
 

@@ -58,6 +58,8 @@ def zones_of(
 
     Those of a pin with cuts are the zones of its profile, which end where its cuts begin.
     """
+    # Only the profile of a pin with cuts is a body of revolution, for which zones are known. Where
+    # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
     turned, openings = pin, tuple[tuple[float, float], ...]()
     if isinstance(pin, CutPin) and not pin.revolved:
         turned, openings = pin.profile, tuple(c.opens for c in unringed(pin).cuts.values())
@@ -90,6 +92,8 @@ def refine(
     notes = dict(held.notes)
     before: MeshBefore | None = None
     for level in range(requirement.meshes or meshes.max_meshes):
+        # Stop before a mesh that is too large, by the unknowns that the model is likely to need
+        # next.
         if before is not None:
             next_mesh = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
             if next_mesh > meshes.max_unknowns:
@@ -102,6 +106,8 @@ def refine(
         progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
         mesh = model.solve(posed, level, before)
+        # The first mesh shows between which instants of a motion the maximum may lie; these are
+        # added for all meshes.
         if not level:
             posed = replace(posed, cases=_through_time(held, problem, mesh, posed))
         for case in posed.cases:
@@ -110,7 +116,9 @@ def refine(
             start = end
         if all(accurate_enough(requirement, material, s) for s in seen.values()):
             break
+        # The results show the model where the next mesh must be finer.
         before = MeshBefore(mesh, {case: s.results[-1] for case, s in seen.items()})
+    # Verdicts come last, since the instant of the maximum is refined on the last mesh alone.
     out = {}
     for case in posed.cases:
         between = _between(held, problem, case.case)
@@ -191,6 +199,8 @@ def _at_crest(
     """
     if between is None:
         return case, seen
+    # The error between instants is how much higher the maximum may be than at the instants solved,
+    # the crest included; a crest that is no new instant leaves the mesh result as it is.
     field, last = mesh.field(case.case), seen.results[-1]
     more = with_crest(field, case, between)
     if len(more) > len(case):

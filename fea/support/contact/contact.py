@@ -35,20 +35,23 @@ from pinbase.arrays import Ints
 
 Mask = NDArray[np.bool_]
 
+# Limits of the iteration and of the continuation from larger loads, chosen by judgement. They
+# decide whether and how soon contact is found; the contact itself is unique.
 MAX_ACTIVE_SET_STEPS = 60
-LOAD_GROWTH, MAX_LOAD_FACTOR = (
-    16.0,
-    1e12,
-)  # times the loads, where contact does not settle under them
+LOAD_GROWTH, MAX_LOAD_FACTOR = 16.0, 1e12  # times the loads, where these do not settle
 LOAD_REDUCTION, MIN_LOAD_REDUCTION = 2.0, 1.01  # factors by which they become smaller again
+# A cell belongs to the first guess if the cosine between its normal and the load is larger.
+FACING_COSINE = 0.3
+# Round-off of double precision, with a margin chosen by judgement.
 BALANCE_TOLERANCE = 1e-9  # of the largest force
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
-SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: what is round-off
-SOFT_SPRING_STIFFNESS = (
-    1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
-)
+SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it is round-off
+# Of the stiffness of the cells: holds a lug that has lost all contact, and is far too soft to
+# change that of a lug in contact.
+SOFT_SPRING_STIFFNESS = 1e-13
 TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
-MAX_KEPT_NUMBERS = 4_000_000  # numbers: of what sets of cells answer
+# Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
+MAX_KEPT_NUMBERS = 4_000_000
 
 
 @dataclass(frozen=True)
@@ -210,6 +213,8 @@ class ContactProblem:
     def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
         """Mean displacement of cells under forces on cells, (U, U) m/N."""
         M, n = self.sectors, np.arange(len(flexibility))
+        # The flexibility depends on the angle between two cells alone: it is summed over harmonics
+        # for each angle, the half-plane's beyond, and then laid out for all pairs of cells.
         waves = np.cos(np.outer(n, self.angles)) * self.factors(n)[:, None]  # (N + 1, M)
         apart = np.tensordot(flexibility, waves, (0, 0))  # (R, R, M)
         weights = self.tail_weights(len(flexibility))
@@ -266,6 +271,9 @@ class ContactProblem:
         """The contact found from a first set of cells in contact; None where the sets do not
         settle.
         """
+        # Each step solves the linear contact of the guessed cells, then corrects the guess: cells
+        # in tension open, cells that penetrate close. This is a semismooth Newton method
+        # (Hintermueller et al.), which needs few steps even from a poor guess.
         seen: set[bytes] = set()
         for step in range(1, MAX_ACTIVE_SET_STEPS + 1):
             answer = self._answer(active)
@@ -276,7 +284,9 @@ class ContactProblem:
                 self._require_balance(force, required, answer)
                 return self._state(force, gap, motion, step)
             key = active.tobytes()
-            if key in seen:  # it goes in circles: one cell at a time, the first that is wrong
+            # A set that comes back is a cycle. Changing the first wrong cell alone, as in Murty's
+            # least-index method, leads out of it.
+            if key in seen:
                 first = int(np.flatnonzero(wrong_force | wrong_gap)[0])
                 active[first] = not active[first]
             else:
@@ -290,6 +300,9 @@ class ContactProblem:
 
         With small loads and large gaps few cells touch, far from the first guess.
         """
+        # Up: under a larger load gaps matter less and most facing cells touch, which the first
+        # guess has. Down: each contact is the start of the next smaller load; where that does not
+        # settle the reduction is made smaller.
         times, state = 1.0, None
         while state is None and times < MAX_LOAD_FACTOR:
             times *= LOAD_GROWTH
@@ -314,6 +327,8 @@ class ContactProblem:
         return self._answers[key]
 
     def _compute_answer(self, active: Mask) -> _Answer:
+        # On the cells in contact the gap is zero: C p = -open - G y. One factorisation of C serves
+        # the initial gaps and every rigid motion y, which are then the only unknowns left.
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
@@ -349,6 +364,8 @@ class ContactProblem:
 
         Raises: SolveError where they have not.
         """
+        # A couple counts as the force at the far end that makes it, so that all residuals are
+        # forces.
         arm = np.sqrt(np.diag(self._scale))  # of each motion
         residual = np.abs(self._motions.T @ force - required) / np.where(arm > 0.0, arm, 1.0)
         lost = residual.max(initial=0.0)
@@ -370,6 +387,8 @@ class ContactProblem:
         active: the cells (R, M) in contact.
         required: the required resultants of the rigid motions.
         """
+        # The problem is symmetric: the adjoint is the same contact with `wanted` as its right-hand
+        # side and no resultants.
         rows = np.flatnonzero(active)
         answer = self._answer(active.ravel())
         force, _, motion = answer.under(required)
@@ -386,7 +405,7 @@ class ContactProblem:
         """A mask of the cells that face the load of their band."""
         towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._link])
         size = np.linalg.norm(forces, axis=1)[self._link]
-        return np.asarray((towards > 0.3 * size) & (size > 0.0))
+        return np.asarray((towards > FACING_COSINE * size) & (size > 0.0))
 
     def _state(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
         shape = (len(self.bands.z), self.sectors)

@@ -54,9 +54,8 @@ REACH_COEFFICIENTS = 0.42, 0.45, 0.5
 EDGE_PEAK_ERROR = 0.1  # relative, of resolved peaks (on usual cells 6 %)
 RING_FORCE_ERROR, REGULAR_TERM_RATIO = 0.03, 0.5
 STATION_ROUND_OFF = 1e-9
-MIN_FIT_DISTANCE = (
-    2.0  # edge radii from the face: from there on forces are compared with the expansion
-)
+# Edge radii from the face: from there on forces are compared with the expansion
+MIN_FIT_DISTANCE = 2.0
 # Largest von Mises stress below the surface over the largest pressure, by Poisson's ratio.
 POISSON_RATIOS = 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5
 SUBSURFACE_STRESS_RATIOS = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.4763

@@ -31,13 +31,15 @@ from fea.support.contact.pressure_loads import (
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.contact.variations import CELL_ERROR_SHARE, ResolutionComparison, compare
 
-CANDIDATE_FRACTION = (
-    0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
-)
-CHORD_TOLERANCE = (
-    0.01  # of the largest load: what an instant left out to begin with may be off its chord
-)
-MIN_INTERVALS = 16  # intervals to begin with
+# Of the largest stress on the first mesh: an instant above it may govern on finer meshes. Chosen by
+# judgement, with room for the error of the first mesh.
+CANDIDATE_FRACTION = 0.8
+# Of the largest load: how far an instant that is left out at first may be off the chord between its
+# neighbours. Chosen by judgement; instants are added later where the maximum may lie between two.
+CHORD_TOLERANCE = 0.01
+# Intervals to begin with. Chosen by judgement; with the middles they are 33 instants, and 21 or
+# more give the maximum of the landing gear's pins to 0.02 % (docs/measured/instants.md).
+MIN_INTERVALS = 16
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,8 @@ class Compared:
         They would not if the error of the cells is a small part of the tolerance, or if the
         required factor is decided whatever the cells, also for the stress beneath the contact.
         """
+        # The error counts on the row, the larger of surface and section: the place that governs
+        # now, or the other one if the error of its cells lifts it above.
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
         cells = {name: float(getattr(x.cells, name)) for x, name in both}
@@ -83,6 +87,8 @@ class Compared:
         error = max(row_error, worst_growth)
         if error <= CELL_ERROR_SHARE * requirement.tolerance:
             return True
+        # Otherwise a decision is enough: for the row, and for the stress beneath contact, unless
+        # the row alone already exceeds the limit.
         low, high = largest / (1.0 + error), largest * (1.0 + error)
         below, beneath_factor = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
         return decided(requirement, material, low, high) and (
@@ -125,6 +131,8 @@ class PressedCases:
         self._besides: dict[str, Floats] = {}
         self.patterns: PressureModes | None = None
         self.sections: dict[str, SectionField] = {}
+        # Contact of all cases comes first: patterns and sections are made from all of it, and a
+        # case without contact must not stop the others.
         for case in cases:
             instants = _instants(case, between.get(case.case))
             try:
@@ -143,8 +151,9 @@ class PressedCases:
         """The candidates of each case, by the approximate stress of all instants on the first
         mesh.
         """
-        if all(len(links) == 1 for links in self.instants.values()):
+        if all(len(links) == 1 for links in self.instants.values()):  # nothing to choose from
             return {case: Candidates(0, np.ones(1, dtype=bool)) for case in self.instants}
+        # Rough patterns of all instants, since it is not known yet which may govern.
         self.follow(
             {case: Candidates(0, np.zeros(len(x), bool)) for case, x in self.instants.items()}
         )
@@ -161,7 +170,7 @@ class PressedCases:
             answer = HarmonicField(section, zones)
             largest, instant = answer.largest(x)
             may = answer.maxima(x, CANDIDATE_FRACTION * largest) > CANDIDATE_FRACTION * largest
-            if self.cut:  # any may govern where it is cut
+            if self.cut:  # the uncut pin does not show which instant governs at a cut
                 may[:] = True
             out[x.case] = Candidates(instant, may, largest)
         return out
@@ -179,6 +188,7 @@ class PressedCases:
         """The contact at the loads' instants."""
         if links.times is None:
             return self.model.pressed(links)
+        # Only new times are solved, all at once: neighbours are the start of each other.
         keys = [(links.case, t) for t in links.times.tolist()]
         new = [i for i, key in enumerate(keys) if key not in self._known]
         if new:
@@ -210,6 +220,8 @@ class PressedCases:
         at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
             stress, instant = self.sections[case].largest(self.on_rings(links))
+            # Surface and section may peak at one instant, which is then compared once. The joint is
+            # varied where the row is: at the instant of the larger stress.
             both = near[case].instant, instant
             distinct = dict.fromkeys(both)
             first, second = (len(at) + list(distinct).index(t) for t in both)
@@ -229,6 +241,8 @@ def _instants(case: PinLoads, between: Between | None) -> PinLoads:
     """
     if between is None or case.times is None or len(case) < 2:
         return case
+    # Contact is not linear in the loads even where these are linear in time, so that middles are
+    # needed, too.
     case = case.at(knots(case, CHORD_TOLERANCE, MIN_INTERVALS))
     assert case.times is not None
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))

@@ -48,9 +48,8 @@ from pinbase.arrays import Ints
 EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
 LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
 LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
-COUPLED_HARMONICS_PER_SECTOR = (
-    4  # times the sectors: harmonics in which neighbouring rings feel each other
-)
+# Times the sectors: harmonics in which neighbouring rings feel each other
+COUPLED_HARMONICS_PER_SECTOR = 4
 Alike = tuple[float, Material, Bushing | None, bytes, Material]
 
 

@@ -28,21 +28,23 @@ from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.rings import USUAL_RING_COUNT
 from fea.support.records import JointRange, Variation
 
-CELL_ERROR_SHARE = 0.6  # of the tolerance: what the cells may take
-# Orders of the error in the length of cells, on the surface and beneath, and in sections: what is
-# off is 0.52, 0.66 and 0.25 at most of the change by cells twice as large, where that is noticed
-# (benchmarks/joints/cells.py).
+# Of the tolerance: the part that the cells may use. Chosen by judgement; the rest is for meshes and
+# instants (MIN_TOLERANCE_SHARE of fea.core.requirement).
+CELL_ERROR_SHARE = 0.6
+# Orders of the error in the length of cells, on the surface and beneath, and in sections. They are
+# tuned on the random pins of benchmarks/joints/cells.py: the error there is 0.52, 0.66 and 0.25 at
+# most of the change by cells twice as large, where that is noticed.
 SURFACE_CELL_ORDER, SECTION_CELL_ORDER = 1.4, 2.0
-# Relative, of the usual number of rings, and less of more: by so much the stress beside the edges
-# of lugs goes up and down with where rings happen to end, whatever two sets of cells tell.
+# Relative, of the usual number of rings, and less of more: the stress beside the edges of lugs
+# scatters by this much with where rings happen to end, whatever two sets of cells show. With it the
+# estimate covers the error of all 24 pins of benchmarks/joints/cells.py (docs/measured/cells.md).
 RING_SCATTER = 0.01
-MIN_CELL_ERROR = (
-    0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
-)
-# of the landing gear to 2 %, while both are 4 to 5 % off)
-VARIATION_MODE_TOLERANCE = (
-    1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
-)
+# Relative, the least error of cells larger than the usual ones. Two such sets can agree by chance:
+# on pin D of the landing gear to 2 %, while both are 4 to 5 % off.
+MIN_CELL_ERROR = 0.06
+# Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
+# judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
+VARIATION_MODE_TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True)
@@ -119,13 +121,15 @@ def compare(
     if not at:
         return ()
     vary = (True,) * len(at) if vary is None else vary
-    few = (
-        model.cells.rings < USUAL_RING_COUNT
-    )  # twice as large cells are too large to tell changes apart
+    # Varied joints are solved on cells twice as large, which cost less, and compared with the joint
+    # as given on the same cells. Where the model's own cells are already large, they are used
+    # instead.
+    few = model.cells.rings < USUAL_RING_COUNT
     exact = _on_both_cells(model, at)
     over, varied, missing = _varied(model, at, few, vary)
     parts = [(one.waves, MODE_TOLERANCE) for both in exact for one in both]
     parts += [(one.waves, VARIATION_MODE_TOLERANCE) for one in itertools.chain(*varied)]
+    # One set of patterns for all, so that all stress comes from one solution on the first mesh.
     patterns = model.patterns(parts, known)
     out = []
     every = [
@@ -152,6 +156,8 @@ def compare(
 
 def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:
     """The relative error of the cells, from the stress on them and on cells twice as large."""
+    # Richardson's estimate: the error is the change over (2^q - 1), q being its order in the length
+    # of cells. It has floors, since two sets of cells can agree by chance.
     agreement_floor = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
     surface_floor = max(RING_SCATTER * USUAL_RING_COUNT / rings, agreement_floor)
 

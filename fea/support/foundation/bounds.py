@@ -32,12 +32,10 @@ from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.lug import Lug
 
 PRESSURE_FACTOR = 0.8  # von Mises stress over the pressure
-EDGE_DISTANCE = (
-    0.1  # of the diameter: pressure nearer to a lug's edge is a peak that is not resolved
-)
-CLEARANCE_ERROR = (
-    0.08  # of the largest moment, at a clearance of p / E diameters, p the mean pressure
-)
+# Of the diameter: pressure nearer to a lug's edge is a peak that is not resolved
+EDGE_DISTANCE = 0.1
+# Of the largest moment, at a clearance of p / E diameters, p the mean pressure
+CLEARANCE_ERROR = 0.08
 MAX_RELATIVE_CLEARANCE = 100.0  # p / E diameters: what was measured
 ROUNDING_ERROR = 2.5  # of the largest moment, per diameter of the edges' radius
 MAX_EDGE_ROUNDING = 0.05  # of the diameter

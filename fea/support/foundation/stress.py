@@ -28,10 +28,9 @@ from fea.support.foundation.foundation_model import FoundationModel, JointFounda
 from geometry import Pin
 
 SHOULDER_REACH = 0.5  # of the diameter: so far a sharp shoulder is felt
-MIN_FILLET_EDGE_DISTANCE = (
-    0.15  # of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3
-)
-# times the bound at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
+# Of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3 times the bound
+# at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
+MIN_FILLET_EDGE_DISTANCE = 0.15
 NEGLIGIBLE_STRESS_SHARE = 1e-6  # of the largest
 POINTS_PER_RADIUS = 17  # points of a segment at a radius, besides the ends of rings
 

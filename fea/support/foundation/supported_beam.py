@@ -28,9 +28,8 @@ U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(
     7
 )  # REACTION_INTEGRAL: the integral of k u, REACTION_DOUBLE_INTEGRAL: that of REACTION_INTEGRAL
 STATE_COUNT = 4
-MAX_FOUNDATION_LENGTHS = (
-    1.0  # most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
-)
+# Most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
+MAX_FOUNDATION_LENGTHS = 1.0
 
 
 @dataclass(frozen=True)

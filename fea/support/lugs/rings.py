@@ -14,12 +14,10 @@ from geometry import Band, Pin, Segment
 
 USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
 MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many
-RING_PART_RATIO = (
-    2.5  # times as long each part of an outermost ring that is cut is with the next one
-)
-FILLET_PEAK_OFFSET = (
-    0.25  # of a fillet's radius from where it begins: its largest stress is not nearer
-)
+# Times as long each part of an outermost ring that is cut is with the next one
+RING_PART_RATIO = 2.5
+# Of a fillet's radius from where it begins: its largest stress is not nearer
+FILLET_PEAK_OFFSET = 0.25
 MIN_RING_LENGTH = 1e-3  # ring, of the diameter
 # Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
 # begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
