@@ -35,10 +35,10 @@ FIRST_MESH_SIZE = SectionSize()  # of the first mesh
 BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
 LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
 MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere
-# Of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
+# The remainder of a pressure's series over its last harmonic, at most: terms go as +-1/(n^2 - 1).
 SERIES_REMAINDER_RATIO = 0.6
 LOW_STRESS_POWER = 0.5  # power of the refinement where stresses are low
-# Places where they are: of the maximum, of r apart, so many
+# Places of high stress: least stress, of the maximum; least distance, of r; their number at most.
 REFINE_ABOVE, MIN_SPACING, MAX_PLACES = 0.95, 0.1, 3
 RING_END_ELEMENT = 0.25  # of a ring of contact pressure: the elements at its ends
 # The scatter was measured on random shoulders (benchmarks coverage). Nodes lie on the edges of

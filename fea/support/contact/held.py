@@ -43,11 +43,12 @@ from fea.support.prescribed import balanced, imbalance
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
 from geometry import CutPin, Pin, PinLike
 
+# They are tried in this order, until one is fine enough.
 RESOLUTIONS: tuple[Resolution, ...] = (
     Resolution(),
     Resolution(12, 48, 16),
     Resolution(16, 64, 20),
-)  # until one is fine enough
+)
 ROUGH = Resolution(4, 24, 8)  # may decide a required factor
 MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 

@@ -40,17 +40,18 @@ from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import graded, ring, ringed
 from geometry import Pin, Segment
 
-# Of the plane's compliance, fitted to the largest moments of 60 pins at random
+# Of the plane's compliance, fitted to the largest moments of 60 random pins
+# (python -m benchmarks foundation).
 COMPLIANCE_SHARE = 0.70
 
 # Error of the largest bending moment, of contact without clearance over this model's, less 1: what
-# 19 in 20 of 180 pins at random are within (python -m benchmarks foundation).
+# 19 in 20 of 180 random pins are within (python -m benchmarks foundation).
 PLAIN_MOMENT_ERROR = 0.06
-# More with two lugs: the moment is small, and where in the lugs loads are counts
+# Added with two lugs: the moment is small, and depends on where in the lugs the loads act.
 SINGLE_SHEAR_ERROR = 0.04
-# Bore over diameter beyond which the section deforms; more with it
+# Bore over diameter beyond which the section deforms, and the error added there.
 TUBE_BORE_RATIO, TUBE_ERROR = 0.4, 0.04
-# A middle lug's thickness over the diameter; more with a thicker one
+# A middle lug's thickness over the diameter, and the error added with a thicker one.
 LONG_LUG_RATIO, LONG_LUG_ERROR = 1.8, 0.05
 THICKNESS_LIMITS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
 WIDTH_LIMITS = 1.6, 4.0  # of the lug, over the diameter

@@ -24,11 +24,10 @@ from scipy.linalg import expm
 
 from fea.core.pin_loads import Floats
 
-U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(
-    7
-)  # REACTION_INTEGRAL: the integral of k u, REACTION_DOUBLE_INTEGRAL: that of REACTION_INTEGRAL
+# REACTION_INTEGRAL: the integral of k u; REACTION_DOUBLE_INTEGRAL: the integral of that.
+U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(7)
 STATE_COUNT = 4
-# Most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
+# Of a foundation's length 1 / lambda: a piece is no longer, so that exponentials remain moderate.
 MAX_FOUNDATION_LENGTHS = 1.0
 
 

@@ -14,9 +14,9 @@ from geometry import Band, Pin, Segment
 
 USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
 MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many
-# Times as long each part of an outermost ring that is cut is with the next one
+# Length of each part of an outermost ring that is cut, over that of the part before it.
 RING_PART_RATIO = 2.5
-# Of a fillet's radius from where it begins: its largest stress is not nearer
+# Of a fillet's radius: its largest stress is at least this far from where the fillet begins.
 FILLET_PEAK_OFFSET = 0.25
 MIN_RING_LENGTH = 1e-3  # ring, of the diameter
 # Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
