@@ -83,10 +83,10 @@ def cantilever(pin: Pin, forces: dict[str, float], z: Floats) -> BeamForces:
 def beam_check(
     pin: Pin, material: Material, loads: PinLoads, bore: float, points: int = 101
 ) -> BeamCheck:
-    """Compare a pin clamped at its start under transverse forces on one band, at the instant of the
-    largest.
+    """Compare with beam theory a pin clamped at its start under transverse forces on one band.
 
-    bore: diameter (m) of the thin bore on which the load also acts.
+    The comparison is at the instant of the largest force.
+    bore: diameter, m, of the thin bore on which the load also acts.
 
     Raises: MeshError, SolveError.
     """
@@ -118,8 +118,10 @@ def beam_check(
 
 
 def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats) -> Floats:
-    """Axial stress (Z,) in Pa at z (m) on the side in tension of a shaft of `radius` (m) clamped at
-    its start, for one newton across on the surface `loaded`.
+    """The axial stress (Z,), Pa, at z, m, on the side in tension of a shaft clamped at its start.
+
+    The load is one newton across on the surface `loaded`.
+    radius: of the shaft, m.
 
     Raises: MeshError, SolveError.
     """

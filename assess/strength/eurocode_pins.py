@@ -39,14 +39,22 @@ _by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics")
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:
-    """F_v,Rd in N of a shear plane of `area`, m^2, and ultimate strength, Pa."""
+    """The shear resistance F_v,Rd, N, of a shear plane.
+
+    area: m^2.
+    ultimate: ultimate strength, Pa.
+    """
     return 0.6 * area * ultimate / GAMMA_M2
 
 
 def bearing_resistance(
     thickness: Floats, diameter: Floats, strength: Floats, *, replaceable: bool = False
 ) -> Floats:
-    """F_b,Rd in N, or F_b,Rd,ser of a replaceable pin; m, and the lower yield strength in Pa."""
+    """The bearing resistance F_b,Rd, N, or F_b,Rd,ser of a replaceable pin.
+
+    thickness, diameter: m.
+    strength: the lower yield strength of pin and lug, Pa.
+    """
     part = 0.6 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0
     return part * thickness * diameter * strength
 
@@ -54,12 +62,20 @@ def bearing_resistance(
 def bending_resistance(
     modulus: Floats | float, strength: float, *, replaceable: bool = False
 ) -> Floats | float:
-    """M_Rd in N m, or M_Rd,ser of a replaceable pin; section modulus in m^3, yield in Pa."""
+    """The bending resistance M_Rd, N m, or M_Rd,ser of a replaceable pin.
+
+    modulus: section modulus, m^3.
+    strength: yield strength, Pa.
+    """
     return (0.8 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0) * modulus * strength
 
 
 def double_shear_moment(force: float, outer: float, middle: float, gap: float) -> float:
-    """M_Ed of figure 3.11, N m: F (b + 4 c + 2 a) / 8; a: outer, b: middle, c: gap, m."""
+    """The moment M_Ed of figure 3.11, N m: F (b + 4 c + 2 a) / 8.
+
+    force: F, N.
+    outer, middle, gap: a, b and c, m.
+    """
     return force * (middle + 4.0 * gap + 2.0 * outer) / 8.0
 
 
@@ -74,7 +90,7 @@ class PinInHole:
 
 
 def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
-    """sigma_h,Ed in Pa of a force in N."""
+    """The contact stress sigma_h,Ed, Pa, of a force, N."""
     play = np.asarray(at.hole) - at.diameter
     area = np.asarray(at.diameter) ** 2 * at.thickness
     return np.asarray(0.591 * np.sqrt(at.modulus * force * play / area))

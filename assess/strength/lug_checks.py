@@ -42,7 +42,10 @@ BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand")
 
 
 def net_section_stress(force: float, outer: float, bore: float, thickness: float) -> float:
-    """Net-section tension at the bore, Pa; N, and diameters and thickness in m.
+    """The net-section tension at the bore, Pa.
+
+    force: N.
+    outer, bore, thickness: diameters and thickness, m.
 
     Raises: ArgumentError where the eye is not wider than its bore. Source: as the module.
     """

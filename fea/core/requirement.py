@@ -21,16 +21,19 @@ DECIDED_TEXT = "its error does not affect whether the required factor is reached
 class Requirement:
     """Requirements on a solution.
 
-    tolerance: of the maximum, relative. model: the one to use. goal: "value" asks for the maximum
-    to the tolerance, "decide" only whether the `required` safety factor is met. distance: excluded
-    around singularities, as a fraction of the local diameter. meshes: maximum number of meshes, by
-    default that of the model. memory: limit for a mesh in MB, by default most of the free memory.
-    joints: how lugs hold a pin. cells: of contact with lugs, these alone; None: until they are fine
-    enough.
+    tolerance: of the maximum, relative.
+    model: the one to use.
+    goal: "value" asks for the maximum to the tolerance, "decide" only whether the `required` safety
+    factor is met.
+    distance: excluded around singularities, as a fraction of the local diameter.
+    meshes: maximum number of meshes, by default that of the model.
+    memory: limit for a mesh in MB, by default most of the free memory.
+    joints: the model of the lugs that hold a pin.
+    cells: of contact with lugs, these alone; None: until they are fine enough.
 
-    A support adds what it knows. elsewhere: by case, stress (Pa) that sections have: a surface that
-    surely has less needs no finer mesh. besides: by case, the error, relative, that comes to that
-    of meshes and instants.
+    A support adds what it knows:
+    elsewhere: by case, stress, Pa, of sections; a surface that surely has less needs no finer mesh.
+    besides: by case, the relative error in addition to that of meshes and instants.
     """
 
     tolerance: float = 0.02

@@ -70,8 +70,10 @@ class MeshHistory:
 
     @property
     def parts(self) -> ErrorParts:
-        """Parts of the error of the last maximum: that of the mesh from the sequence of meshes, but
-        never less than the scatter with the positions of nodes.
+        """The parts of the error of the last maximum.
+
+        That of the mesh follows from the sequence of meshes, but is never less than the scatter
+        with the positions of nodes.
         """
         last = self.results[-1]
         if len(self.results) == 1:
@@ -92,9 +94,11 @@ class MeshHistory:
 
     @property
     def range(self) -> tuple[float, float]:
-        """Bounds of the maximum, Pa: from its error; where stress is larger in an excluded zone,
-        from half and twice the excluded distance, with the error, and with what both have changed
-        from the mesh before: so near to the zone they are known less well than the maximum.
+        """The bounds of the maximum, Pa, from its error.
+
+        Where stress is larger in an excluded zone, they are those of half and twice the excluded
+        distance, with the error, and with the change of both from the mesh before: so near to the
+        zone they are known less well than the maximum.
         """
         last = self.results[-1]
         if not last.governed:

@@ -64,8 +64,10 @@ class ModelMesh:
 def result_on(
     problem: Problem, rung: ModelMesh, before: tuple[MeshMaximum, ...] = ()
 ) -> MeshMaximum:
-    """The maximum on one mesh. before: the mesh result of the harmonic model, with local solids or
-    not, at the level below, where a run has one, by which it decides where its elements are small.
+    """The maximum on one mesh.
+
+    before: the mesh result of the harmonic model, with local solids or not, at the level below,
+    where a run has one, by which it decides where its elements are small.
 
     Raises: MeshError, SolveError; ValueError for a beam or section of a pin that is not a body of
     revolution and for loads that a beam cannot take.

@@ -24,14 +24,18 @@ _EVEN_COMPONENTS = (True,) * EVEN_COUNT + (False,) * (5 - EVEN_COUNT) + (True, F
 
 @dataclass(frozen=True)
 class UnitSurface:
-    """Fields of K unit loads at P points of the surface.
+    """The fields of K unit loads at P points of the surface.
 
     points: (P, 3) m; of a body of revolution those of its meridian at theta = 0, edge by edge in
-    their order (the last of an edge is where the next begins), and `triangles` is empty. triangles:
-    (M, 3) points of any other. n: (K,) harmonics. stress: (P, 5, K) Pa, five numbers whose squares
-    sum to von Mises squared; displacement: (P, 3, K) m along r, theta, z (x, y, z). Under a load of
-    the amounts a, b (its two phases) what is `even` (of the eight, stress first) is at an angle
-    theta a cos + b sin of n theta times the number here, the rest a sin - b cos.
+    their order (the last of an edge is where the next begins), and `triangles` is empty.
+    triangles: (M, 3) points of any other body.
+    n: (K,) harmonics.
+    stress: (P, 5, K) Pa, five numbers whose squares sum to von Mises squared.
+    displacement: (P, 3, K) m along r, theta, z (x, y, z).
+
+    Under a load of the amounts a, b (its two phases) a component that is `even` (of the eight,
+    stress first) is at an angle theta a cos + b sin of n theta times the number here, any other a
+    sin - b cos.
 
     Where K loads of a solid are of one phase each they have n = 0, are even, and b = 0.
     """

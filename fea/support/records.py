@@ -72,8 +72,11 @@ class JointRange:
 
 @dataclass(frozen=True)
 class JointForces:
-    """Shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the case;
-    times: (T,), None without a motion. forces: of the lugs on the pin along x and y, (T, L, 2).
+    """The shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the
+    case.
+
+    times: (T,), None without a motion.
+    forces: of the lugs on the pin along x and y, (T, L, 2).
     """
 
     z: Lengths

@@ -105,8 +105,8 @@ def neglected(
 
 
 def _moved(cut: CutPin, contact: JointContact) -> float:
-    """The largest part of a lug's force that acts where a hole is, times the hole's diameter over
-    the pin's.
+    """The largest part of a lug's force that acts at a hole, times the hole's diameter over the
+    pin's.
     """
     bands, most = contact.bands, 0.0
     force = np.linalg.norm(contact.loads.forces[0, :, :2], axis=1)
@@ -123,7 +123,7 @@ def _moved(cut: CutPin, contact: JointContact) -> float:
 
 
 def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
-    """Points (P, 3), m, of a band that a cut takes away, and the area that each stands for, m^2."""
+    """The points (P, 3), m, of a band that a cut takes away, and the area of each, m^2."""
     on = cut.profile.band(band)
     low, high = max(one.opens[0], on.z0), min(one.opens[1], on.z1)
     if low >= high:
@@ -137,8 +137,10 @@ def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
 
 
 def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutField) -> float:
-    """The work of the bending moment at the cuts, where it is largest, on the turns that these add,
-    over that of the whole pin; of passages at least that on the net section.
+    """The relative increase of the pin's bending compliance by its cuts.
+
+    It is the work of the bending moment at the cuts, where it is largest, on the turns that these
+    add, over that of the whole pin; for passages at least that on the net section.
     """
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)

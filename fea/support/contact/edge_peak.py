@@ -114,8 +114,12 @@ def _edge(lug: Lug, end: End, K: float, exponent: float, material: Material) -> 
 def strength_at_edge(
     pressure: Floats, length: Floats, radius: float, powers: tuple[float, float], diameter: float
 ) -> float:
-    """K, Pa m^s, where it is largest round the pin, of rings (R, M) from a face on. powers: the
-    exponent s and the power q.
+    """The largest intensity K round the pin of a sharp edge, Pa m^s.
+
+    pressure, length: of rings (R, M) and (R,) from a face on, Pa and m.
+    radius: of the rounded edge, m.
+    powers: the exponent s and the power q.
+    diameter: of the pin, m.
     """
     stations = np.concatenate([[0.0], np.cumsum(length)])
     half, least = 0.5 * stations[-1] * (1.0 + STATION_ROUND_OFF), radius * (1.0 + STATION_ROUND_OFF)

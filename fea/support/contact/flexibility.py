@@ -72,8 +72,9 @@ class RingBody:
         return forces
 
     def reacted(self, outline: Outline, length: float, forces: Floats) -> Floats:
-        """Forces of harmonic 1 (unknowns, K) on a lug like this one with the reaction on its outer
-        surface, of constant direction.
+        """The forces of harmonic 1 (unknowns, K) with the reaction on the outer surface.
+
+        The reaction has a constant direction.
         """
         reactions = [
             tuple(Traction(name, 0.5 * length, *parts) for name in self.body.pin.connections)
@@ -96,9 +97,11 @@ class RingBody:
 def pin_flexibility(
     pin: Pin, rings: Sequence[str], material: Material, across: float, highest: int
 ) -> Floats:
-    """C_n (highest + 1, R, R), m/Pa, inwards under pressure, of rings of a pin.
+    """The flexibility C_n (highest + 1, R, R), m/Pa, inwards under pressure, of rings of a pin.
 
-    across: elements over the diameter. Raises: MeshError, SolveError.
+    across: elements over the diameter.
+
+    Raises: MeshError, SolveError.
     """
     return pin_rings(pin, rings, material, across).flexibility(highest)
 
@@ -111,7 +114,7 @@ def pin_rings(pin: Pin, rings: Sequence[str], material: Material, across: float)
 
 
 def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
-    """Elements at a ring's ends no longer than half of it."""
+    """The fineness at a ring's ends, where elements are no longer than half of it."""
     bands = (pin.band(name) for name in rings)
     return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
 
@@ -143,13 +146,15 @@ def lug_rings(eye: Pin, lug: Lug, across: float) -> RingBody:
 
 
 def half_plane(material: Material, radius: float) -> float:
-    """n u_n / p_n of one body for high harmonics n, m/Pa."""
+    """The displacement n u_n / p_n of one body for high harmonics n, m/Pa."""
     return 2.0 * radius * material.plane_compliance
 
 
 def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
-    """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
-    `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
+    """The flexibility C_n (2, N, R, R), m/Pa, of a lug's rings for high harmonics `waves` (N,).
+
+    The first is that of the pin as a half-space, the second of the lug, which its faces end.
+    ends: of the rings, (R + 1,) m along z.
     """
     on, beyond = _responses(tuple((ends / radius).tolist()), tuple(waves.tolist()))
     n = waves[:, None, None]
@@ -169,8 +174,9 @@ def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats,
 
 
 def _half_space(x: Floats, y: Floats) -> Floats:
-    """Mean over each ring of a pressure's response at wave number 1, over a plane's: (N, R, R), for
-    rings with ends x (N, R + 1), under pressure on rings with ends y.
+    """The mean response over each ring to a pressure at wave number 1, over a plane's: (N, R, R).
+
+    It is that of rings with ends x (N, R + 1), under pressure on rings with ends y.
     """
     twice = _integral_of_k0(np.abs(x[:, :, None] - y[:, None]))
     both = twice[:, 1:, :-1] + twice[:, :-1, 1:] - twice[:, 1:, 1:] - twice[:, :-1, :-1]

@@ -155,7 +155,7 @@ def pressure_modes(
 
 
 def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:
-    """Loads made of the same patterns as instants of one case, without times."""
+    """The loads, made of the same patterns, as instants of one case without times."""
     acting = _after_each_other(loads)
     forces, moments, body = (
         np.concatenate([getattr(one, name) for one in loads])

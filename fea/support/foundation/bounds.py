@@ -94,7 +94,9 @@ def _diameters(model: FoundationModel) -> Floats:
 
 
 def _relative_clearance(model: FoundationModel, joint: JointFoundation, instant: int) -> float:
-    """The largest clearance, in p / E diameters; p is the mean pressure on the most loaded band."""
+    """The largest clearance, in p / E diameters, p being the mean pressure on the most loaded
+    band.
+    """
     d = _diameters(model)
     play = max(lug.clearance / x for lug, x in zip(model.lugs, d, strict=True))
     if play == 0.0:
@@ -105,14 +107,14 @@ def _relative_clearance(model: FoundationModel, joint: JointFoundation, instant:
 
 
 def band_forces(joint: JointFoundation) -> Floats:
-    """Size of the force of each lug on the pin, (T, B) N."""
+    """The magnitude of the force of each lug on the pin, (T, B) N."""
     starts = np.flatnonzero(np.diff(joint.bands.band, prepend=-1))
     sums = np.add.reduceat(joint.loads.forces[:, :, :2], starts, axis=1)
     return np.asarray(np.linalg.norm(sums, axis=2))
 
 
 def _moment_part(model: FoundationModel, loose: float) -> float:
-    """Error of the largest moment, relative; inf where nothing is known of it."""
+    """The relative error of the largest moment; inf where it is not known."""
     part = moment_error(model.given, model.material, model.lugs)
     edges = np.array([lug.edge_radius for lug in model.lugs])
     rounding = float((edges / _diameters(model)).max())

@@ -91,9 +91,10 @@ class JointFoundation:
 
     @property
     def line_load(self) -> Floats:
-        """Force per length of the lugs on the pin, the mean over each ring, along x and y,
-        (T, R, 2) N/m; where its sign is not that of the link's force the other side of the bore
-        carries.
+        """The force per length of the lugs on the pin along x and y, the mean over each ring, (T,
+        R, 2) N/m.
+
+        Where its sign is not that of the link's force the other side of the bore carries.
         """
         return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
 
@@ -119,9 +120,11 @@ class JointFoundation:
 
 
 class FoundationModel:
-    """A pin in its lugs as a beam, factorised for all cases. rings: of each band, into which loads
-    are cut; what they add up to does not depend on their number. stiffness: of foundations. Lugs
-    named after segments on which no link bears are those of a structure, which stands still.
+    """A pin in its lugs as a beam, factorised for all cases.
+
+    rings: of each band, into which loads are cut; their resultants do not depend on the number.
+    stiffness: the function for the stiffness of foundations.
+    Lugs named after segments on which no link bears are those of a structure, which is fixed.
 
     Raises: ValueError for a lug where nothing has its name, or a band without one.
     """
@@ -255,8 +258,10 @@ class FoundationModel:
 
 
 def moment_error(pin: Pin, material: Material, lugs: Sequence[Lug]) -> float:
-    """Relative error of the largest bending moment of FoundationModel, of frictionless contact
-    without clearance; inf outside of what was measured.
+    """The relative error of the largest bending moment of FoundationModel.
+
+    It is the difference from frictionless contact without clearance; inf outside of what was
+    measured.
 
     Raises: ValueError as FoundationModel.
     """

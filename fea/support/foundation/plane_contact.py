@@ -35,10 +35,12 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(
 def plane_stiffness(
     radii: tuple[float, float], pin: Material, outer: float, lug: Material
 ) -> float:
-    """Force per length over displacement of the lug's outer surface against the pin's section,
-    N/m^2, without friction and clearance.
+    """The stiffness of plane contact without friction and clearance, N/m^2.
 
-    radii: of the pin's bore, 0 if solid, and of its surface, m; outer: the lug's outer radius, m.
+    It is the force per length over the displacement of the lug's outer surface against the pin's
+    section.
+    radii: of the pin's bore, 0 if solid, and of its surface, m.
+    outer: the lug's outer radius, m.
     """
     inner, r = radii
     flexible = pin_harmonics(inner, r, pin) + lug_harmonics(r, outer, lug)
@@ -51,8 +53,9 @@ def plane_stiffness(
 
 
 def largest_pressure(gap: float) -> float:
-    """p0 R / Q of a disc in a plate of its material: the largest pressure p0 under a load per
-    length Q; gap: E / (1 - nu^2) times the radial clearance over Q.
+    """The largest pressure p0 R / Q of a disc in a plate of its material under a load per length Q.
+
+    gap: E / (1 - nu^2) times the radial clearance over Q.
 
     Source: Persson 1964; Ciavarella & Decuzzi, Int. J. Solids Struct. 38 (2001) 4507.
     """
@@ -76,14 +79,18 @@ def half_angle(gap: float) -> float:
 
 
 def pin_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, inwards under pressure on a pin's surface."""
+    """The flexibility C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, inwards under pressure on a pin's
+    surface.
+    """
     hole = inner / outer  # lengths over the loaded radius, so that powers stay within range
     high = [-_many(n, hole, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return outer * np.array([_even(hole, material), _section(hole, material), *high])
 
 
 def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, outwards under pressure in a lug's bore."""
+    """The flexibility C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, outwards under pressure in a lug's
+    bore.
+    """
     wide = outer / inner
     high = [_many(n, wide, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return inner * np.array([_even(wide, material), _eye(wide, material), *high])

@@ -67,7 +67,7 @@ class Response:
 
 
 def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
-    """Stations (m) with pieces (N,) cut where they are long for the foundation they are on."""
+    """The stations, m, with pieces (N,) cut where they are long for the foundation they are on."""
     length = np.diff(stations)
     waves = length * (foundation * bending / 4.0) ** 0.25
     counts = np.maximum(1, np.ceil(waves / MAX_FOUNDATION_LENGTHS)).astype(int)
@@ -135,7 +135,7 @@ class _System:
         return len(self.middles) + 1
 
     def _against(self, i: int, end: int) -> Floats:
-        """State at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
+        """The state at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
         out, lug = np.zeros((STATE_COUNT, self.size)), int(self.beam.lug[i])
         at = STATE_COUNT * (i + end)
         out[:, at : at + STATE_COUNT] = np.eye(STATE_COUNT)
@@ -159,8 +159,10 @@ class _System:
             rows[2 * b + 1] = turn
 
     def _reactions(self, lug: int) -> tuple[Floats, Floats]:
-        """Force and couple about its middle that a lug exerts on the beam, (size + 1,) each, by the
-        states and, last, by the body force.
+        """The force and the couple about its middle that a lug exerts on the beam, (size + 1,)
+        each.
+
+        They are linear in the states and, last, in the body force.
         """
         force, couple = np.zeros(self.size + 1), np.zeros(self.size + 1)
         for i in np.flatnonzero(self.beam.lug == lug).tolist():
@@ -183,7 +185,10 @@ class _System:
 
 
 def _rates(beam: SupportedBeam) -> Floats:
-    """Derivatives of (u, psi, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, 1), (N, 7, 7)."""
+    """The matrices (N, 7, 7) that give the derivatives of each piece's state.
+
+    The state is (u, psi, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, 1).
+    """
     out = np.zeros((len(beam), 7, 7))
     out[:, U, PSI], out[:, U, V], out[:, PSI, M] = 1.0, beam.shear, beam.bending
     out[:, M, V], out[:, V, U], out[:, V, UNIT_LOAD] = -1.0, beam.foundation, -beam.mass

@@ -28,7 +28,11 @@ from geometry import ArgumentError, Pin
 
 @dataclass(frozen=True)
 class Varied:
-    """A joint with something changed: what, to what in words, and as a length, m, if it is one."""
+    """A joint with one property changed.
+
+    what, value: the property, and its value in words.
+    length: the value, m, if it is a length.
+    """
 
     what: str
     value: str

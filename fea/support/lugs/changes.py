@@ -23,10 +23,12 @@ RANGE_ENDS = (0, 1)
 
 @dataclass(frozen=True)
 class JointChange:
-    """A joint with something changed: the property, its value in words, and the lugs.
+    """A joint with one property changed.
 
+    what, value: the property, and its value in words.
+    lugs: with the change.
     softness: how many times softer each lug is.
-    length: the value, m, where it is one, the largest of all lugs.
+    length: the value, m, if it is a length, the largest of all lugs.
     """
 
     what: str

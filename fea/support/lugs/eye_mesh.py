@@ -38,13 +38,13 @@ def _rings(eye: Pin) -> list[tuple[float, float]]:
 
 
 def _even(start: float, end: float, size: float) -> Floats:
-    """Ends of elements after the start, of `size` at most."""
+    """The ends of elements after the start, of `size` at most."""
     count = max(1, int(np.ceil((end - start) / size - 1e-9)))
     return np.linspace(start, end, count + 1)[1:]
 
 
 def _layers(ends: list[float], size: float) -> list[Floats]:
-    """Radii after the first of `ends`, from `size` on growing outwards, with the others among
+    """The radii after the first of `ends`, from `size` on growing outwards, with the others among
     them.
     """
     radii, step = [], size

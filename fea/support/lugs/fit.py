@@ -27,7 +27,7 @@ Wall = tuple[float, float, Material]  # inner and outer radius, m
 
 
 def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
-    """The same pin, its bands in lugs of the structure (by the segments' names) among its
+    """The same pin with bands in lugs of the structure (by the segments' names) among its
     connections.
     """
     held = {lug.connection for lug in lugs} - set(pin.connections)
@@ -125,8 +125,11 @@ def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> N
 
 
 def yielding_interference(lug: Lug, radius: float, bore: float, material: Material) -> float:
-    """Interference of the diameters, m, at which a wall begins to yield (von Mises), free of other
-    loads; inf where no material has a yield strength. radius, bore: of the pin, both radii, m.
+    """The interference of the diameters, m, at which a wall begins to yield (von Mises), without
+    other loads.
+
+    It is inf where no material has a yield strength.
+    radius, bore: of the pin, both radii, m.
     """
     walls: list[Wall] = [(bore, radius, material), (radius, lug.outer_diameter / 2.0, lug.material)]
     if lug.bushing is not None:
@@ -148,8 +151,10 @@ def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
 
 
 def _press_fit(walls: Sequence[Wall]) -> Floats:
-    """A and B (walls, 2) of s_rr, s_tt = A -+ B / r^2 in tubes one in the other, the first pressed
-    into the second by 1 m of the diameters, Pa and Pa m^2; the others are bonded.
+    """The constants A and B (walls, 2), Pa and Pa m^2, of s_rr, s_tt = A -+ B / r^2 in tubes one in
+    the other.
+
+    The first is pressed into the second by 1 m of the diameters; the others are bonded.
     """
     size = 2 * len(walls)
     system, right = np.zeros((size, size)), np.zeros(size)

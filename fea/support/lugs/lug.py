@@ -57,13 +57,17 @@ class LugRange:
 
 @dataclass(frozen=True)
 class Lug:
-    """The eye of the link at a connection, as an annulus; m.
+    """The eye of the link at a connection, as an annulus, m.
 
-    clearance: of the diameters, negative for interference. edge_radius: of the bore's edges. tilt:
-    N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
-    The pin bears on the bushing, if there is one. range: of what is not known of it.
+    clearance: of the diameters, negative for interference.
+    edge_radius: of the bore's edges.
+    tilt: N m/rad, stiffness of the link's tilt against the others about any axis across the pin;
+    inf: guided, 0: free.
+    bushing: the pin bears on it, if there is one.
+    range: of the uncertain properties of the lug.
 
-    Raises: ArgumentError for what cannot be; fea.support.lugs.fit has what depends on the pin.
+    Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
+    the pin.
     """
 
     connection: str
@@ -94,8 +98,10 @@ class Lug:
         return self.material if self.bushing is None else self.bushing.material
 
     def gap(self, ends: Floats) -> Floats:
-        """Gap on the radius, (R,) m, on the mean over each ring with `ends` (R + 1,) m along z,
-        before anything moves: half of the clearance, and what the edges are rounded by.
+        """The gap on the radius, (R,) m, on the mean over each ring, before anything moves.
+
+        It is half of the clearance, and the depth of the edges' rounding.
+        ends: of the rings, (R + 1,) m along z.
         """
         return 0.5 * self.clearance + np.diff(self._rounded(ends)) / np.diff(ends)
 
@@ -106,8 +112,8 @@ class Lug:
 
 
 def _segment(radius: float, x: Floats) -> Floats:
-    """Integral from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t < r from
-    the edge, m^2.
+    """The integral, m^2, from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t
+    < r from the edge.
     """
     if radius == 0.0:
         return np.zeros_like(x)
