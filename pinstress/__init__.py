@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pinstress.analysis.engine import Engine
     from pinstress.analysis.plan import prepare
     from pinstress.analysis.results import RunResults, run, solve
     from pinstress.explore.sweep.sweep import sweep
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 __version__ = "0.1.0"
 __all__ = [
+    "Engine",
     "InputError",
     "RunResults",
     "Study",
@@ -35,6 +37,7 @@ __all__ = [
 ]  # fmt: skip
 
 _MODULE_OF = {
+    "Engine": "pinstress.analysis.engine",
     "InputError": "pinstress.study.reading.errors",
     "RunResults": "pinstress.analysis.results",
     "Study": "pinstress.study.reading.file",
