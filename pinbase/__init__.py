@@ -1,4 +1,4 @@
-"""What all rooms share: errors, types of arrays, dimensions of numbers, child processes.
+"""Definitions that all rooms share: errors, array types, dimensions of numbers, child processes.
 
-Imports nothing else of ours.
+This package imports nothing else of ours.
 """

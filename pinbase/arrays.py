@@ -1,4 +1,4 @@
-"""Types of NumPy arrays in annotations; shape and unit are stated in docstrings."""
+"""Types of NumPy arrays for annotations; docstrings state shape and unit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Errors with a code, by which programs tell them apart without reading their message."""
+"""Errors with a code, so that programs can tell them apart without reading the message."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ Place = tuple[str | int, ...]
 class CodedError(Exception):
     """An error with a short, stable `code` for programs and a message for people.
 
-    message: what was wrong, where, and what would be right.
+    message: states what was wrong, where, and what would be right.
     at: path of the part that is wrong, for instance ("segment", 2); empty for the whole.
     """
 
@@ -22,4 +22,4 @@ class ArgumentError(CodedError, ValueError):
 
 
 class Damaged(ValueError):
-    """A file's content is not what pinstress wrote; the message names the file."""
+    """The content of a file is not what pinstress wrote; the message names the file."""

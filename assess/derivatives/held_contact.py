@@ -68,7 +68,7 @@ class FixedContact:
         """The right-hand side of the equilibrium, in the directions of the cells."""
         forces, couples = model.forces(links)[0], model.couples(links)[0]
         x, y = (couples @ self._turn).tolist()
-        return self._contact.asked(forces @ self._turn, (x, y))
+        return self._contact.required_resultants(forces @ self._turn, (x, y))
 
     def with_fixed_cells(self, model: ContactModel) -> float:
         """The stress, Pa, on another shape (ContactModel.reshaped) with the same cells in contact.
@@ -84,7 +84,7 @@ class FixedContact:
         # The stress by the cell forces, less the adjoint work of the gaps.
         total = (self._wanted / area) @ at.force - at.by_gap @ opened
         # Equilibrium of the links' loads.
-        total += at.by_asked @ (right_hand_side - motions.T @ at.force)
+        total += at.by_required @ (right_hand_side - motions.T @ at.force)
         # Short waves of pressure, whose flexibility is not part of `ring_work`.
         of_ring = area[::sectors]
         total -= self._tail @ (model.tail / of_ring)
@@ -113,7 +113,7 @@ class FixedContact:
 
     def by_loads(self, links: PinLoads) -> float:
         """The stress, Pa, that loads of the links add through the pressures."""
-        return float(self._at.by_asked @ self._right_hand_side(self._model, links))
+        return float(self._at.by_required @ self._right_hand_side(self._model, links))
 
 
 def _close(values: Floats, some: Mask) -> int:

@@ -35,7 +35,7 @@ class CalculixSolution:
 
 
 def installed() -> bool:
-    """Whether there is a CalculiX to run."""
+    """Return whether CalculiX is installed."""
     return shutil.which(CALCULIX_COMMAND) is not None
 
 
@@ -55,7 +55,10 @@ def run(folder: Path) -> str:
 
 
 def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
-    """The same, of a job that may end without an answer. Raises: CalculixError if it cannot run."""
+    """Run CalculiX as `run` does, on a job that may end without an answer.
+
+    Raises: CalculixError if it cannot run.
+    """
     threads = {"OMP_NUM_THREADS": str(os.cpu_count() or 1)}
     try:
         return subprocess.run(
@@ -73,26 +76,29 @@ def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def solved(folder: Path, printed: str) -> CalculixSolution:
-    """The results of a run with this output.
+    """The results of a run, given its output.
 
     Raises: CalculixError when it failed: its own status is 0 after many of its errors.
     """
     seconds_of(printed)
     try:
-        found = CalculixSolution(
+        results = CalculixSolution(
             displacements(folder / f"{JOB_NAME}.dat"), stresses(folder / f"{JOB_NAME}.frd")
         )
     except (OSError, ValueError, IndexError, StopIteration) as error:
         raise CalculixError(
             f"{CALCULIX_COMMAND} wrote no readable results ({error})", "unreadable-results"
         ) from None
-    if not (np.isfinite(found.displacement).all() and np.isfinite(found.stress).all()):
+    if not (np.isfinite(results.displacement).all() and np.isfinite(results.stress).all()):
         raise CalculixError(f"the results of {CALCULIX_COMMAND} are not finite", "not-finite")
-    return found
+    return results
 
 
 def seconds_of(printed: str) -> float:
-    """The run time that CalculiX reports, s. Raises: CalculixError when it failed before."""
+    """The run time that CalculiX reports, s.
+
+    Raises: CalculixError when it failed before.
+    """
     time = re.search(r"Total CalculiX Time:\s*(\S+)", printed)
     if "*ERROR" in printed or time is None:
         raise CalculixError(f"{CALCULIX_COMMAND} failed: {end(printed)}", "failed")
@@ -100,7 +106,7 @@ def seconds_of(printed: str) -> float:
 
 
 def end(printed: str) -> str:
-    """What a program printed from its first error on, or the end of it, on one line."""
+    """The output of a program from its first error on, or the end of it, on one line."""
     words = " ".join(printed.split())
     first = words.find("*ERROR")
     return words[first:][:500] if first >= 0 else words[-500:]

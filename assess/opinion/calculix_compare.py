@@ -46,8 +46,10 @@ def second_opinions(
     distance: float,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Opinion, ...]:
-    """Opinions on a pin's cases, each at the governing instant of its peak, on the first mesh of
-    the solid model. distance: as in fea.solve.solve.Asked. An unconstrained pin has none.
+    """Opinions on a pin's cases, each at the governing instant of its peak.
+
+    They are computed on the first mesh of the solid model; an unconstrained pin has none.
+    distance: as in fea.solve.solve.Asked.
 
     Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
     """
@@ -75,27 +77,30 @@ def second_opinions(
 def _compared(
     answer: Opinion, material: Material, solution: SolidSolution, loads: Floats
 ) -> Opinion:
-    """Both programs under one combination (L,) of the unit loads. Raises: CalculixError."""
+    """Compare both programs under one combination (L,) of the unit loads.
+
+    Raises: CalculixError.
+    """
     fields, space = solution.fields, solution.fields.space
     forces = fields.forces @ loads
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
         deck = folder / f"{calculix.JOB_NAME}.inp"
         write_deck(deck, space.nodes, space.elements, material, fields.fixed, forces)
-        found = calculix.solved(folder, calculix.run(folder))
+        results = calculix.solved(folder, calculix.run(folder))
     u = fields.displacement @ loads
-    if found.displacement.shape != u.shape or len(found.stress) != len(u):
+    if results.displacement.shape != u.shape or len(results.stress) != len(u):
         raise calculix.CalculixError(
             f"{calculix.CALCULIX_COMMAND} did not write results for all {len(u)} nodes",
             "missing-nodes",
         )
     ours = von_mises(nodal_stress(space, material, u[..., None])[..., 0])
-    theirs = von_mises(found.stress)
+    theirs = von_mises(results.stress)
     outside = _outside(solution)
     return replace(
         answer,
         unknowns=space.unknowns,
-        displacement=_difference(u, found.displacement),
+        displacement=_difference(u, results.displacement),
         stress=_difference(ours, theirs),
         ours=float(ours[outside].max()),
         theirs=float(theirs[outside].max()),
@@ -103,8 +108,11 @@ def _compared(
 
 
 def _outside(solution: SolidSolution) -> Ints:
-    """Nodes outside the excluded zones of a body of revolution, where all models search
-    inside, where such a singularity ends; of any other body those of its surface.
+    """The nodes at which maxima are compared.
+
+    For a body of revolution they are all nodes outside the excluded zones, also those inside the
+    body, where all models search and such a singularity ends; for any other body those of its
+    surface.
     """
     fields = solution.fields
     if not fields.revolved:

@@ -39,7 +39,10 @@ def write_deck(
 
 
 def mesh_lines(kind: str, nodes: Floats, elements: Ints, material: Material) -> Iterator[str]:
-    """Nodes (N, 3), m, in the set ALL, elements of a kind (C3D10, CAX6), and their material.
+    """The lines of a deck with the mesh and its material.
+
+    nodes: (N, 3), m, in the set ALL.
+    elements: of a kind, C3D10 or CAX6.
 
     CalculiX numbers nodes and elements from 1.
     """
@@ -75,7 +78,9 @@ def _lines(
 
 
 def real(x: float) -> str:
-    """A number as CalculiX reads it: of more than 20 characters it cuts off the exponent, and says
-    "nonpositive jacobian".
+    """A number as CalculiX can read it.
+
+    It cuts the exponent off a number of more than 20 characters, and then reports a "nonpositive
+    jacobian".
     """
     return f"{x:.11g}"

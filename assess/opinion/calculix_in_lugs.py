@@ -54,22 +54,25 @@ def opinion_in_lugs(
     progress: Callable[[str], None] = lambda _: None,
     meshes: Meshes | None = None,
 ) -> Opinion:
-    """Of a case with a peak and its contact there; the opinion has the reason if there is none."""
+    """CalculiX's opinion on a case with a peak and its contact there, or the reason why there is
+    none.
+    """
     answer = Opinion(peak.pin, peak.case, peak.max_von_mises, peak.own_error)
     try:
         loads = transverse(seated, peak.governing)
-        found = []
+        opinions = []
         for number, mesh in enumerate(meshes or _meshes(loads), 1):
             progress(f"pin {peak.pin}, {peak.case}, contact by CalculiX, mesh {number} of 2")
-            found.append(joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh))
+            opinions.append(joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh))
     except (ArgumentError, CalculixError, SolveError) as error:
         return replace(answer, failure=str(error))
-    return _compared(answer, seated, peak, joint, found)
+    return _compared(answer, seated, peak, joint, opinions)
 
 
 def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
-    """The links' forces across the pin, in balance. Raises: ArgumentError for what CalculiX's model
-    lacks; SolveError for forces out of balance.
+    """The transverse forces of the links, in balance.
+
+    Raises: ArgumentError for what CalculiX's model lacks; SolveError for forces out of balance.
     """
     _require_modelled(seated)
     assert governing is not None
@@ -101,7 +104,7 @@ def _require_modelled(seated: PinInLugs) -> None:
 
 
 def _meshes(loads: PinLoads) -> Meshes:
-    """As fine as takes minutes."""
+    """The coarser and the finer mesh, as fine as can be solved in minutes."""
     _, half = plane_of(loads.forces[0, :, :2])
     return HALF_MODEL_MESHES if half else FULL_MODEL_MESHES
 
@@ -111,13 +114,13 @@ def _compared(
     seated: PinInLugs,
     peak: Maximum,
     joint: JointResult,
-    found: Sequence[JointOpinion],
+    opinions: Sequence[JointOpinion],
 ) -> Opinion:
     assert joint.bending_moment is not None  # contact has one
     pin = seated.pin
-    moments = [largest_moment(x, pin) for x in found]
-    stresses = [_stress(x, seated, peak) for x in found]
-    coarse, fine = found
+    moments = [largest_moment(x, pin) for x in opinions]
+    stresses = [_stress(x, seated, peak) for x in opinions]
+    coarse, fine = opinions
     least = MIN_BAND_FORCE * max(band.force for band in joint.bands)
     contact = ContactOpinion(
         tuple(_band(pin, b, fine) for b in joint.bands if b.ends and b.force > least),
@@ -131,32 +134,34 @@ def _compared(
     return replace(answer, unknowns=fine.unknowns, theirs=stresses[1], contact=contact)
 
 
-def _stress(found: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
-    """At our maximum, Pa: on the surface where that is, or in the section that has it, by the
-    forces of CalculiX's rings.
+def _stress(opinion: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
+    """CalculiX's stress at our maximum, Pa.
+
+    It is that on the surface if our maximum is there, else that of the section by the forces of
+    CalculiX's rings.
     """
     if peak.places is not None and peak.places.governs == "section":
-        return section_of(found, seated.pin, seated.material).value
+        return section_of(opinion, seated.pin, seated.material).value
     assert peak.location is not None
-    return found.surface_at(np.array(peak.location), seated.material.poisson_ratio)
+    return opinion.surface_at(np.array(peak.location), seated.material.poisson_ratio)
 
 
-def largest_moment(found: JointOpinion, pin: Pin) -> float:
-    """Along the pin, N m."""
+def largest_moment(opinion: JointOpinion, pin: Pin) -> float:
+    """The largest bending moment along the pin, N m."""
     z = np.linspace(0.0, pin.length, MOMENT_STATION_COUNT)
-    return float(np.linalg.norm(found.bending_moment(z), axis=1).max())
+    return float(np.linalg.norm(opinion.bending_moment(z), axis=1).max())
 
 
 def _band(pin: Pin, ours: BandContact, theirs: JointOpinion) -> BandOpinion:
-    """Ours is spread over CalculiX's rings."""
+    """The load per length of both programs, ours spread over CalculiX's rings."""
     band = pin.band(ours.name)
     tiny = 1e-9 * pin.length
-    own = (theirs.ends[:, 0] > band.z0 - tiny) & (theirs.ends[:, 1] < band.z1 + tiny)
-    ends = np.append(theirs.ends[own, 0], theirs.ends[own, 1].max())
-    total = theirs.force[own].sum(axis=0)
-    line = theirs.line_load[own] @ total / np.linalg.norm(total)
-    mine = _mean(np.array(ours.ends), np.array([load for _, load in ours.line_load]), ends)
-    lists: list[list[float]] = [x.tolist() for x in (ends, mine, line)]
+    within = (theirs.ends[:, 0] > band.z0 - tiny) & (theirs.ends[:, 1] < band.z1 + tiny)
+    ends = np.append(theirs.ends[within, 0], theirs.ends[within, 1].max())
+    total = theirs.force[within].sum(axis=0)
+    line = theirs.line_load[within] @ total / np.linalg.norm(total)
+    our_load = _mean(np.array(ours.ends), np.array([load for _, load in ours.line_load]), ends)
+    lists: list[list[float]] = [x.tolist() for x in (ends, our_load, line)]
     return BandOpinion(ours.name, *(tuple(x) for x in lists))
 
 

@@ -52,12 +52,15 @@ CORNER_SIGNS = np.array(
 class JointOpinion:
     """CalculiX's answer, in the pin's axes, SI.
 
-    ends: (R, 2) m along z of the rings of all bands in their order; force: (R, 2) N of the lugs on
-    the pin at each; first: (R, 2) N m, the forces' moments about z = 0: integrals of z times force.
-    nodes (N, 3) m, elements (M, 20) and stress (N, 6) Pa of the pin, or of its half, in axes turned
-    about the pin's by `angle`. edges: (K, 2), r and z, m, of circles where stress is unbounded.
-    unknowns, iterations, seconds: of the run. appended: whether CalculiX found tension in the
-    contact and added an increment of no load with contact found anew, which is less accurate.
+    ends: (R, 2) m along z of the rings of all bands in their order.
+    force: (R, 2) N of the lugs on the pin at each ring.
+    first: (R, 2) N m, the forces' moments about z = 0: integrals of z times force.
+    nodes (N, 3) m, elements (M, 20) and stress (N, 6) Pa are those of the pin, or of its half, in
+    axes turned about the pin's by `angle`.
+    edges: (K, 2), r and z, m, of circles where stress is unbounded.
+    unknowns, iterations, seconds: of the run.
+    appended: whether CalculiX found tension in the contact and added an increment of no load with
+    contact found anew, which is less accurate.
     """
 
     ends: Floats
@@ -76,12 +79,14 @@ class JointOpinion:
 
     @property
     def line_load(self) -> Floats:
-        """Force per length of the lugs on the pin, mean over each ring, (R, 2) N/m."""
+        """The force per length of the lugs on the pin, mean over each ring, (R, 2) N/m."""
         return self.force / np.diff(self.ends)
 
     def bending_moment(self, z: Floats) -> Floats:
-        """Of the part of the pin before z (Z,) m: (Z, 2) N m, the integral of the shear along x and
-        along y; at a ring's ends exactly by its force and moment, within it by an even load.
+        """The bending moment of the part of the pin before z (Z,) m, (Z, 2) N m.
+
+        It is the integral of the shear along x and along y; exact at a ring's ends by its force and
+        moment, within it by an even load.
         """
         low, high = self.ends.T
         reach = np.clip(z[:, None] - low, 0.0, high - low)
@@ -91,8 +96,9 @@ class JointOpinion:
         return np.asarray(even + (z[:, None] >= high) @ off)
 
     def surface_at(self, point: Floats, nu: float) -> float:
-        """Von Mises stress, Pa, at a point (3,), m, of the surface, without that of pressure on a
-        ring (fea.harmonic.free_surface).
+        """The von Mises stress, Pa, at a point (3,), m, of the surface.
+
+        It is without the stress of pressure on a ring (fea.harmonic.free_surface).
         """
         c, s = np.cos(self.angle), np.sin(self.angle)
         x = point @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -119,7 +125,9 @@ class JointOpinion:
         return float(von_mises(self.stress[(away > distance).all(axis=1)]).max())
 
     def _stress_at(self, point: Floats) -> Floats:
-        """(6,) Pa, linear within the element that has the point, or comes nearest to it."""
+        """The stress (6,), Pa, linear within the element that has the point, or comes nearest to
+        it.
+        """
         corners = self.nodes[self.elements[:, :8]]
         near = np.argsort(np.linalg.norm(corners.mean(axis=1) - point, axis=1))[:NEAREST_ELEMENTS]
         natural = [_natural(corners[e], point) for e in near]
@@ -136,7 +144,7 @@ def joint_opinion(
     loads: PinLoads,
     fineness: Fineness = DEFAULT_FINENESS,
 ) -> JointOpinion:
-    """CalculiX's opinion on a pin under loads of one instant: forces across of the links, no more.
+    """CalculiX's opinion on a pin under the transverse forces of its links at one instant.
 
     Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
     """
@@ -145,7 +153,10 @@ def joint_opinion(
 
 
 def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> JointOpinion:
-    """Of a deck whose axes are turned by an angle, rad, with forces and gaps times `scale`.
+    """CalculiX's opinion from a deck.
+
+    angle: by which its axes are turned, rad.
+    scale: factor on its forces and gaps.
 
     Raises: CalculixError.
     """
@@ -163,7 +174,10 @@ def joint_deck(
     loads: PinLoads,
     fineness: Fineness,
 ) -> tuple[JointDeck, float]:
-    """The deck, and by which angle (rad) its axes are turned about the pin's. As joint_opinion."""
+    """The deck, and the angle, rad, by which its axes are turned about the pin's.
+
+    Arguments and errors as `joint_opinion`.
+    """
     force = _forces(loads, [lug.connection for lug in lugs])
     angle, half = plane_of(force)
     c, s = np.cos(angle), np.sin(angle)
@@ -181,7 +195,10 @@ def joint_deck(
 
 
 def _forces(loads: PinLoads, connections: Sequence[str]) -> Floats:
-    """(B, 2) N. Raises: ArgumentError for more than one instant, or other loads."""
+    """The transverse forces (B, 2), N, of the links.
+
+    Raises: ArgumentError for more than one instant, or other loads.
+    """
     if len(loads) != 1:
         raise ArgumentError("the contact is solved for one instant", "not-one-instant")
     if loads.body.any() or loads.moments.any() or loads.forces[..., 2].any():
@@ -193,8 +210,9 @@ def _forces(loads: PinLoads, connections: Sequence[str]) -> Floats:
 
 
 def plane_of(force: Floats) -> tuple[float, bool]:
-    """The direction (rad) of the largest of forces (B, 2) N, and whether all have it, or its
-    opposite; then half of the joint is modelled.
+    """The direction, rad, of the largest of forces (B, 2), N, and whether all lie along it.
+
+    If they do, only half of the joint is modelled.
     """
     fx, fy = force[np.argmax(np.linalg.norm(force, axis=1))]
     across = np.abs(force @ [-fy, fx]).max() / np.hypot(fx, fy)
@@ -204,7 +222,10 @@ def plane_of(force: Floats) -> tuple[float, bool]:
 
 
 def _stations(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
-    """Ends of the layers of elements in every segment, m. radii: of the bores' edges, m."""
+    """The ends of the layers of elements in every segment, m.
+
+    radii: of the bores' edges, m.
+    """
     out = []
     for segment, start in zip(pin.segments, pin.stations, strict=False):
         if segment.connection:
@@ -219,8 +240,10 @@ def _stations(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[
 
 
 def _ring_ends(length: float, radius: float, count: int) -> Floats:
-    """Of the rings of a band, m: `count` on its flat part, and two in the rounding of each edge,
-    since the parabola of one would press on the pin.
+    """The ends of the rings of a band, m: `count` on its flat part, and two in the rounding of each
+    edge.
+
+    There are two since the parabola of one would press on the pin.
     """
     flat = length - 2.0 * radius
     inner = (
@@ -260,8 +283,8 @@ def _eye(
 
 
 def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra:
-    """With the clearance and rounding of the bore, times `scale`, shifted until the loaded side
-    touches.
+    """The mesh of a lug with clearance and rounding of the bore, times `scale`, shifted until its
+    loaded side touches.
     """
     x = mesh.nodes
     r = np.hypot(x[:, 0], x[:, 1])
@@ -281,27 +304,30 @@ def _opened(mesh: Hexahedra, lug: Lug, force: Floats, scale: float) -> Hexahedra
 def _read(
     pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str, scale: float
 ) -> JointOpinion:
-    """The results of a run. Raises: CalculixError."""
+    """The results of a run.
+
+    Raises: CalculixError.
+    """
     seconds = calculix.seconds_of(printed)
     mesh = deck.pin.mesh
     try:
-        found = contact_forces(folder / f"{calculix.JOB_NAME}.dat")
+        forces = contact_forces(folder / f"{calculix.JOB_NAME}.dat")
         stress = calculix.stresses(folder / f"{calculix.JOB_NAME}.frd")
         names = [slave(eye.part.name, k) for eye in deck.eyes for k in range(len(eye.rings))]
-        each = np.array([found[name] for name in names])
+        ring_forces = np.array([forces[name] for name in names])
     except (OSError, ValueError, IndexError, KeyError, StopIteration) as error:
         raise calculix.CalculixError(
             f"{calculix.CALCULIX_COMMAND} wrote no readable results ({error})", "unreadable-results"
         ) from None
-    if len(stress) != len(mesh.nodes) or not np.isfinite(each).all():
+    if len(stress) != len(mesh.nodes) or not np.isfinite(ring_forces).all():
         raise calculix.CalculixError(
             f"{calculix.CALCULIX_COMMAND} did not write finite results for the whole pin",
             "missing-nodes",
         )
     c, s = np.cos(angle), np.sin(angle)
     back = np.array([[c, s], [-s, c]])
-    each = each / scale
-    force, first = each[:, :2], np.stack([each[:, 4], -each[:, 3]], axis=1)
+    ring_forces = ring_forces / scale
+    force, first = ring_forces[:, :2], np.stack([ring_forces[:, 4], -ring_forces[:, 3]], axis=1)
     if deck.half:
         force, first = (2.0 * x * [1.0, 0.0] for x in (force, first))
     return JointOpinion(
@@ -342,7 +368,9 @@ def edges(pin: Pin) -> Floats:
 
 
 def contact_forces(dat: Path) -> dict[str, Floats]:
-    """By slave surface, force (3) N on it and moment (3) N m about the origin, from a .dat file."""
+    """The contact force (3), N, and moment (3), N m, about the origin on each slave surface, from a
+    .dat file.
+    """
     text, out = dat.read_text("ascii", "replace"), {}
     for block in text.split("statistics for slave set ")[1:]:
         _, numbers = block.split("(mx,my,mz)\n", 1)

@@ -31,8 +31,9 @@ WEAK_SPRING_STIFFNESS = 1e-7
 
 @dataclass(frozen=True)
 class Part:
-    """A body: its name in the deck, mesh and material. lining: what has another material, up to a
-    radius, m.
+    """A body of the deck: its name, mesh and material.
+
+    lining: the part with another material, up to a radius, m.
     """
 
     name: str
@@ -42,7 +43,9 @@ class Part:
 
     @property
     def materials(self) -> Iterator[tuple[str, Material, Ints]]:
-        """Of the elements, by their numbers in this body: name in the deck and material."""
+        """The elements by material, by their numbers in this body: name in the deck, material,
+        elements.
+        """
         if self.lining is None:
             yield self.name, self.material, np.arange(len(self.mesh.elements))
             return
@@ -54,8 +57,11 @@ class Part:
 
 @dataclass(frozen=True)
 class Eye:
-    """Support of a lug: force (2,) N of its link on it; tilt: N m/rad; inf, 0 as of fea.joint's
-    Lug. rings: the elements of the pin on each of its rings.
+    """The support of a lug.
+
+    force: (2,) N of its link on it.
+    tilt: N m/rad; inf, 0 as of fea.joint's Lug.
+    rings: the elements of the pin on each of its rings.
     """
 
     part: Part
@@ -68,8 +74,9 @@ class Eye:
 class JointDeck:
     """All bodies, in the pin's axes, or, when half of them lies in y > 0, in the loads' plane.
 
-    stiffness: of the contact, Pa/m. half: whether y = 0 is a plane of symmetry; forces and
-    stiffnesses of lugs are then those of the half.
+    stiffness: of the contact, Pa/m.
+    half: whether y = 0 is a plane of symmetry; forces and stiffnesses of lugs are then those of the
+    half.
     """
 
     pin: Part
@@ -100,7 +107,7 @@ class JointDeck:
 
     @property
     def axes(self) -> tuple[int, ...]:
-        """Across the pin, along which a lug may move: 1 and 2, or 1 of a half."""
+        """The transverse axes along which a lug may move: 1 and 2, or 1 for a half."""
         return (1,) if self.half else (1, 2)
 
     @property
@@ -108,7 +115,9 @@ class JointDeck:
         return (self.pin, *(eye.part for eye in self.eyes))
 
     def _first(self) -> list[tuple[int, int]]:
-        """Numbers of the first node and the first element of each part; last, of what follows."""
+        """The numbers of the first node and the first element of each part; last, those of what
+        follows.
+        """
         out = [(1, 1)]
         for part in self._parts:
             node, element = out[-1]
@@ -136,7 +145,7 @@ class JointDeck:
                 yield f"{slave(eye.part.name, k)}, BORE{eye.part.name}"
 
     def _auxiliary(self, b: int) -> tuple[int, int]:
-        """Nodes whose displacements are the mean shift of a lug and its tilt, in rad."""
+        """The nodes whose displacements are the mean shift of a lug and its tilt, rad."""
         return self._nodes + 1 + 2 * b, self._nodes + 2 + 2 * b
 
     def _holding(self, first: list[tuple[int, int]]) -> Iterator[str]:
@@ -171,7 +180,9 @@ class JointDeck:
             yield f"{stiffness:.10e}"  # without a point it would be read as another axis
 
     def _fixed(self, first: list[tuple[int, int]]) -> Iterator[str]:
-        """The first lug's shift, guided lugs' tilts, and what lies in the plane of symmetry."""
+        """The fixed components: the first lug's shift, guided lugs' tilts, and those of the plane
+        of symmetry.
+        """
         shift, _ = self._auxiliary(0)
         yield from (f"{shift}, {axis}" for axis in self.axes)
         for b, eye in enumerate(self.eyes):
@@ -187,8 +198,10 @@ class JointDeck:
                 yield from (f"{start + n}, 2" for n in flat)
 
     def _axial(self, first: list[tuple[int, int]]) -> Iterator[str]:
-        """No body moves along its axis or turns about it: by two opposite nodes, so that a tilt
-        does not shift it, which would move the edges of its contact.
+        """The constraints by which no body moves along its axis or turns about it.
+
+        Each holds two opposite nodes, so that a tilt does not shift the body, which would move the
+        edges of its contact.
         """
         for part, (start, _) in zip(self._parts, first, strict=True):
             one, other = _opposite(part.mesh)
@@ -218,7 +231,7 @@ class JointDeck:
 
 
 def slave(lug: str, ring: int) -> str:
-    """Name of the surface of a ring of the pin."""
+    """The name of the surface of a ring of the pin."""
     return f"PIN{lug}R{ring + 1}"
 
 
@@ -226,9 +239,11 @@ def _body(part: Part, node: int, element: int) -> Iterator[str]:
     yield f"*NODE, NSET={part.name}"
     for number, (x, y, z) in enumerate(part.mesh.nodes, node):
         yield f"{number}, {real(x)}, {real(y)}, {real(z)}"
-    for name, material, own in part.materials:
+    for name, material, elements in part.materials:
         yield f"*ELEMENT, TYPE=C3D20R, ELSET={name}"
-        for number, row in zip(own + element, part.mesh.elements[own] + node, strict=True):
+        for number, row in zip(
+            elements + element, part.mesh.elements[elements] + node, strict=True
+        ):
             text = [str(n) for n in row]
             yield f"{number}, " + ", ".join(text[:10]) + ","
             yield ", ".join(text[10:])
@@ -244,14 +259,14 @@ def _surface(name: str, elements: Ints, face: int) -> Iterator[str]:
 
 
 def _ends(mesh: Hexahedra) -> tuple[int, int]:
-    """Nodes of the pin at both ends, in the plane of symmetry."""
+    """The nodes of the pin at both ends, in the plane of symmetry."""
     x = mesh.nodes
     order = 1e-6 * np.abs(x[:, 1]) - 1e-7 * x[:, 0]
     return int(np.argmin(x[:, 2] + order)), int(np.argmin(order - x[:, 2]))
 
 
 def _opposite(mesh: Hexahedra) -> tuple[int, int]:
-    """Nodes inside of the wall, at half its length, on both sides of the axis along x."""
+    """The nodes inside the wall, at half its length, on both sides of the axis along x."""
     z, wall = mesh.nodes[:, 2], mesh.outer[mesh.outer > 0.0]
     middle = 0.5 * (z.min() + z.max()) + 1e-4 * np.ptp(z)  # between two nodes not their mean
     r = 0.5 * (mesh.inner[mesh.outer > 0.0].min() + wall.max())
@@ -260,8 +275,8 @@ def _opposite(mesh: Hexahedra) -> tuple[int, int]:
 
 
 def _equations(mesh: Hexahedra, first: int, axis: int, shift: int, tilt: int) -> Iterator[str]:
-    """The auxiliary nodes' displacements along an axis are the mean of those of the outer surface,
-    and their mean slope along z.
+    """The equations by which the auxiliary nodes' displacements along an axis are the mean of those
+    of the outer surface, and their mean slope along z.
     """
     nodes, weight = surface_weights(mesh)
     rows = weight / weight[:, 0].sum(), weight

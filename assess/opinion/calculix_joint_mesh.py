@@ -36,14 +36,16 @@ CORE_ROUNDNESS = 0.4  # how round the core is: 0 a square, 1 a circle
 
 @dataclass(frozen=True)
 class Fineness:
-    """How fine CalculiX's meshes are, and what its contact is.
+    """The fineness of CalculiX's meshes, and the constants of its contact.
 
-    rings: of a band between its rounded edges; parts: elements along each. sectors: round the
-    whole circle, a multiple of 8. layers: across the pin's wall, or from the core of a solid
-    one to its surface. eye: across the wall of a lug, besides one in a bushing. along: elements of
-    a segment without a lug, for every length of a diameter; at least two. stiffness: of the
-    contact, times Young's modulus of the pin over its smallest diameter. scale: of forces and gaps,
-    of which results are the same multiple where displacements are small.
+    rings: of a band between its rounded edges.
+    parts: elements along each ring.
+    sectors: over the whole circumference, a multiple of 8.
+    layers: elements through the pin's wall, or from the core of a solid one to its surface.
+    eye: elements through the wall of a lug, in addition to one in a bushing.
+    along: elements of a segment without a lug, for every length of a diameter; at least two.
+    stiffness: of the contact, times Young's modulus of the pin over its smallest diameter.
+    scale: of forces and gaps; results are the same multiple where displacements are small.
     """
 
     rings: int = 8
@@ -62,8 +64,12 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Hexahedra:
-    """nodes (N, 3) m; elements (M, 20), in the order of C3D20; layer (M,): along z; inner, outer
-    (M,): radii of the element where it is a ring's, m; 0 in the core.
+    """A mesh of hexahedra with 20 nodes.
+
+    nodes: (N, 3) m.
+    elements: (M, 20), in the order of C3D20.
+    layer: (M,), number along z.
+    inner, outer: (M,), radii of the element where it is a ring's, m; 0 in the core.
     """
 
     nodes: Floats
@@ -73,14 +79,18 @@ class Hexahedra:
     outer: Floats
 
     def face(self, elements: Ints, face: int) -> Ints:
-        """Nodes (K, 8) of a face of elements: corners, then the middles of its edges."""
+        """The nodes (K, 8) of a face of elements: corners, then the middles of its edges."""
         return self.elements[elements][:, FACE_NODES[face]]
 
 
 @dataclass(frozen=True)
 class _Section:
-    """points (P, 2) m, cells (Q, 4), anticlockwise, rings from their inner edge on; on: radius of
-    the circle of a point, 0 in the core; inner, outer: radii of the cells' circles.
+    """The cells of a cross-section.
+
+    points: (P, 2) m.
+    cells: (Q, 4), anticlockwise, rings from their inner edge on.
+    on: radius of the circle of a point, 0 in the core.
+    inner, outer: radii of the cells' circles.
     """
 
     points: Floats
@@ -91,7 +101,10 @@ class _Section:
 
 
 def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> Hexahedra:
-    """z: ends of the layers of each segment, m. half: only y > 0.
+    """The mesh of a pin.
+
+    z: ends of the layers of each segment, m.
+    half: only y > 0.
 
     Raises: ArgumentError for a pin with fillets, cones or rounded edges.
     """
@@ -111,8 +124,9 @@ def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> H
 
 
 def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: bool) -> Hexahedra:
-    """A lug of layers with ends z (m). radii: of its bore, of a bushing's outside if it has one,
-    and its own, m.
+    """The mesh of a lug of layers with ends z, m.
+
+    radii: of its bore, of a bushing's outside if it has one, and its own, m.
     """
     wall = (radii[-1] / radii[-2]) ** np.linspace(0.0, 1.0, fineness.eye + 1)
     section = _section(np.array([*radii[:-2], *radii[-2] * wall]), False, fineness.sectors, half)
@@ -121,7 +135,9 @@ def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: 
 
 
 def _radii(steps: list[float], solid: bool, layers: int) -> Floats:
-    """Of all circles: those of the outline, and between them, finer towards the larger one."""
+    """The radii of all circles: those of the outline, and between them, finer towards the larger
+    one.
+    """
     first = CORE_SIZE * steps[0] if solid else steps[0]
     whole = [first, *steps] if solid else steps
     widest = (steps[-1] - first) / layers
@@ -153,14 +169,14 @@ def _section(radii: Floats, solid: bool, sectors: int, half: bool) -> _Section:
         cells.append(np.stack([low, high, np.roll(high, -1), np.roll(low, -1)], axis=1))
     inner, outer = (np.repeat(r, sectors) for r in (radii[:-1], radii[1:]))
     none = np.zeros(len(core))
-    made = _Section(
+    section = _Section(
         points,
         np.concatenate([core, *cells]),
         on,
         np.concatenate([none, inner]),
         np.concatenate([none, outer]),
     )
-    return _upper(made) if half else made
+    return _upper(section) if half else section
 
 
 def _upper(section: _Section) -> _Section:
@@ -171,7 +187,7 @@ def _upper(section: _Section) -> _Section:
 
 
 def _core(sectors: int, radius: float) -> tuple[Floats, Ints]:
-    """Points of a square whose sides bulge, and their numbers (n + 1, n + 1) along x and y."""
+    """The points of a square whose sides bulge, and their numbers (n + 1, n + 1) along x and y."""
     n = sectors // 4
     u, v = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, n + 1)], indexing="ij")
     s = np.maximum(np.abs(u), np.abs(v))
@@ -187,24 +203,27 @@ def _core(sectors: int, radius: float) -> tuple[Floats, Ints]:
 
 
 def _edge(numbers: Ints) -> Ints:
-    """Numbers round the square, anticlockwise from the middle of its side at x > 0."""
+    """The numbers along the square's edge, anticlockwise from the middle of its side at x > 0."""
     n = len(numbers) - 1
     loop = np.concatenate([numbers[n, :-1], numbers[:0:-1, n], numbers[0, :0:-1], numbers[:-1, 0]])
     return np.roll(loop, -(n // 2))
 
 
 def _drawn(section: _Section, z: Floats, bore: Floats, outer: Floats) -> Hexahedra:
-    """Along z, (L + 1,) m, the cells between the radii bore and outer, (L,) m, of each layer."""
+    """The mesh of the cells drawn along z, (L + 1,) m.
+
+    bore, outer: radii between which cells exist, (L,) m, of each layer.
+    """
     tiny = 1e-9 * outer.max()
     count, elements, layer, inner, out = len(section.points), [], [], [], []
     for k in range(len(z) - 1):
         ring = (section.inner > bore[k] - tiny) & (section.outer < outer[k] + tiny)
-        there = np.where(section.outer == 0.0, bore[k] == 0.0, ring)
-        cells = section.cells[there] + k * count
+        present = np.where(section.outer == 0.0, bore[k] == 0.0, ring)
+        cells = section.cells[present] + k * count
         elements.append(np.concatenate([cells, cells + count], axis=1))
         layer.append(np.full(len(cells), k))
-        inner.append(section.inner[there])
-        out.append(section.outer[there])
+        inner.append(section.inner[present])
+        out.append(section.outer[present])
     corners = np.concatenate([np.column_stack([section.points, np.full(count, h)]) for h in z])
     nodes, quadratic = _quadratic(corners, np.concatenate(elements), np.tile(section.on, len(z)))
     return Hexahedra(
@@ -213,7 +232,10 @@ def _drawn(section: _Section, z: Floats, bore: Floats, outer: Floats) -> Hexahed
 
 
 def _quadratic(corners: Floats, elements: Ints, on: Floats) -> tuple[Floats, Ints]:
-    """With nodes in the middles of edges, on the circle where both ends are; nodes in use only."""
+    """The mesh with nodes in the middles of edges, without unused nodes.
+
+    A middle lies on the circle if both ends of the edge do.
+    """
     edges = np.sort(elements[:, C3D20_EDGES], axis=2).reshape(-1, 2)
     pairs, number = np.unique(edges, axis=0, return_inverse=True)
     middle = corners[pairs].mean(axis=1)

@@ -19,70 +19,78 @@ HEXAHEDRON_FACES = np.array(
 RELATIVE_LENGTH_TOLERANCE = 1e-9  # of lengths
 
 
-def section_of(found: JointOpinion, pin: Pin, material: Material) -> AtSection:
-    """The largest stress of its sections, by the forces of its rings."""
-    loads = ring_loads(found, pin)
-    return SectionField(on_rings(found, pin), material, (), [loads]).place(loads)
+def section_of(opinion: JointOpinion, pin: Pin, material: Material) -> AtSection:
+    """The largest stress of the pin's sections, by the forces of CalculiX's rings."""
+    loads = ring_loads(opinion, pin)
+    return SectionField(on_rings(opinion, pin), material, (), [loads]).place(loads)
 
 
-def free(found: JointOpinion) -> Mask:
-    """Which nodes (N,) are corners of elements on the pin's surface, none of which has a node
-    that is pressed: where s_rr on a ring is MIN_PRESSURE_SHARE of the largest there.
-    """
-    x, corners = found.nodes, found.elements[:, :8]
+def free(opinion: JointOpinion) -> Mask:
+    """A mask (N,) of the corner nodes on the pin's surface whose elements have no pressed node."""
+    x, corners = opinion.nodes, opinion.elements[:, :8]
     faces = corners[:, HEXAHEDRON_FACES].reshape(-1, 4)
-    each, count = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
-    outer = each[count == 1]
-    if found.half:  # without the plane of symmetry
+    unique_faces, count = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
+    outer = unique_faces[count == 1]
+    if opinion.half:  # without the plane of symmetry
         outer = outer[np.abs(x[outer, 1]).max(axis=1) > RELATIVE_LENGTH_TOLERANCE * np.abs(x).max()]
     surface = np.zeros(len(x), dtype=bool)
     surface[outer] = True
-    touched = pressed(found)[found.elements].any(axis=1)
+    touched = pressed(opinion)[opinion.elements].any(axis=1)
     surface[corners[touched]] = False
     return surface
 
 
-def pressed(found: JointOpinion) -> Mask:
-    """Which nodes (N,) are pressed."""
-    x = found.nodes
+def pressed(opinion: JointOpinion) -> Mask:
+    """A mask (N,) of the pressed nodes: those on a ring where s_rr is MIN_PRESSURE_SHARE of the
+    largest there.
+    """
+    x = opinion.nodes
     r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
     near = RELATIVE_LENGTH_TOLERANCE * float(np.ptp(z))
-    on = ((z[:, None] > found.ends[:, 0] - near) & (z[:, None] < found.ends[:, 1] + near)).any(1)
+    on = ((z[:, None] > opinion.ends[:, 0] - near) & (z[:, None] < opinion.ends[:, 1] + near)).any(
+        1
+    )
     layer = np.rint(z / near).astype(np.int64)
     _, number = np.unique(layer, return_inverse=True)
     largest = np.zeros(number.max() + 1)
     np.maximum.at(largest, number, r)
     on &= r > (1.0 - 1e-6) * largest[number]
     out = x[:, :2] / np.maximum(r, near)[:, None]
-    plane = found.stress[:, [[0, 5], [5, 1]]]
+    plane = opinion.stress[:, [[0, 5], [5, 1]]]
     across = np.where(on, np.einsum("ni,nij,nj->n", out, plane, out), 0.0)
     return np.asarray(across < MIN_PRESSURE_SHARE * across.min())
 
 
-def on_rings(found: JointOpinion, pin: Pin) -> Pin:
-    """The pin with its bands cut into these rings."""
-    return ringed(pin, {name: ends for name, _, ends in _by_band(found, pin)})
+def on_rings(opinion: JointOpinion, pin: Pin) -> Pin:
+    """The pin with its bands cut into CalculiX's rings."""
+    return ringed(pin, {name: ends for name, _, ends in _by_band(opinion, pin)})
 
 
-def ring_loads(found: JointOpinion, pin: Pin) -> PinLoads:
-    """Forces of the lugs on the rings, and their couples about the middles of these."""
-    names = [ring(name, k) for name, own, _ in _by_band(found, pin) for k in range(len(own))]
-    rows = np.concatenate([own for _, own, _ in _by_band(found, pin)])
-    force, middle = found.force[rows], found.ends[rows].mean(axis=1)[:, None]
-    x, y = (found.first[rows] - middle * force).T
+def ring_loads(opinion: JointOpinion, pin: Pin) -> PinLoads:
+    """The forces of the lugs on the rings, and their couples about the middles of these."""
+    names = [
+        ring(name, k)
+        for name, band_rows, _ in _by_band(opinion, pin)
+        for k in range(len(band_rows))
+    ]
+    rows = np.concatenate([band_rows for _, band_rows, _ in _by_band(opinion, pin)])
+    force, middle = opinion.force[rows], opinion.ends[rows].mean(axis=1)[:, None]
+    x, y = (opinion.first[rows] - middle * force).T
     about = np.stack([-y, x, 0.0 * x], axis=1)
     return PinLoads("CalculiX", tuple(names), np.pad(force, ((0, 0), (0, 1)))[None], about[None])
 
 
-def _by_band(found: JointOpinion, pin: Pin) -> list[tuple[str, Ints, Floats]]:
-    """Each band's name, rows of its rings in the order of z, and their ends along it, m."""
+def _by_band(opinion: JointOpinion, pin: Pin) -> list[tuple[str, Ints, Floats]]:
+    """The name of each band, the rows of its rings in the order of z, and their ends along it,
+    m.
+    """
     out, tiny = [], RELATIVE_LENGTH_TOLERANCE * pin.length
     for name in pin.connections:
         band = pin.band(name)
-        own = (found.ends[:, 0] > band.z0 - tiny) & (found.ends[:, 1] < band.z1 + tiny)
-        rows = np.flatnonzero(own)
-        rows = rows[np.argsort(found.ends[rows, 0])]
-        ends = np.append(found.ends[rows, 0], found.ends[rows[-1], 1]) - band.z0
+        within = (opinion.ends[:, 0] > band.z0 - tiny) & (opinion.ends[:, 1] < band.z1 + tiny)
+        rows = np.flatnonzero(within)
+        rows = rows[np.argsort(opinion.ends[rows, 0])]
+        ends = np.append(opinion.ends[rows, 0], opinion.ends[rows[-1], 1]) - band.z0
         ends[[0, -1]] = 0.0, band.length
         out.append((name, rows, ends))
     return out

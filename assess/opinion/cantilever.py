@@ -59,7 +59,9 @@ _UNIT_MATERIAL = Material("any", 1.0, 0.0)
 
 @dataclass(frozen=True)
 class BeamForces:
-    """Along z (m): shear (N), moment (N m) and axial stress (Pa) on the side that is in tension."""
+    """Results of a beam along z, m: shear, N, moment, N m, and axial stress, Pa, on the side in
+    tension.
+    """
 
     z: Floats
     shear: Floats
@@ -81,10 +83,10 @@ def cantilever(pin: Pin, forces: dict[str, float], z: Floats) -> BeamForces:
 def beam_check(
     pin: Pin, material: Material, loads: PinLoads, bore: float, points: int = 101
 ) -> BeamCheck:
-    """Compare a pin clamped at its start under transverse forces on one band, at the instant of the
-    largest.
+    """Compare with beam theory a pin clamped at its start under transverse forces on one band.
 
-    bore: diameter (m) of the thin bore on which the load also acts.
+    The comparison is at the instant of the largest force.
+    bore: diameter, m, of the thin bore on which the load also acts.
 
     Raises: MeshError, SolveError.
     """
@@ -116,8 +118,10 @@ def beam_check(
 
 
 def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats) -> Floats:
-    """Axial stress (Z,) in Pa at z (m) on the side in tension of a shaft of `radius` (m) clamped at
-    its start, for one newton across on the surface `loaded`.
+    """The axial stress (Z,), Pa, at z, m, on the side in tension of a shaft clamped at its start.
+
+    The load is one newton across on the surface `loaded`.
+    radius: of the shaft, m.
 
     Raises: MeshError, SolveError.
     """
@@ -149,8 +153,11 @@ def axis_load_term(nu: float) -> float:
 
 
 def constant_stress(k: float, load: float, radius: float) -> float:
-    """By how much (Pa) the axial stress in tension is below the beam's: term `k`, `load` in N/m,
-    `radius` in m.
+    """The amount, Pa, by which the axial stress in tension is below the beam's.
+
+    k: Michell's term.
+    load: N/m.
+    radius: m.
 
     Source: as the module.
     """

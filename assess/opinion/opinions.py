@@ -1,4 +1,4 @@
-"""What CalculiX finds for a pin in one case, compared with our own answer."""
+"""CalculiX's results for a pin in one case, compared with our own."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ MAX_MOMENT_DIFFERENCE, MAX_LOAD_DIFFERENCE = 0.05, 0.10
 
 @dataclass(frozen=True)
 class BandOpinion:
-    """Load per length along a band in the direction of its link's force, mean over each part
-    between `ends`, one more than there are parts: ours and CalculiX's.
+    """The load per length along a band in the direction of its link's force, ours and CalculiX's.
+
+    It is the mean over each part between `ends`, one more than there are parts.
     """
 
     name: str
@@ -41,9 +42,13 @@ class BandOpinion:
 
 @dataclass(frozen=True)
 class ContactOpinion:
-    """Contact with lugs. moment: the largest bending moment. bands: those that carry. coarser:
-    unknowns of CalculiX's coarser mesh; moment_change, stress_change: of its results from that to
-    the finer mesh, relative. tension: whether it found tension in the contact, and repeated it.
+    """The contact with lugs.
+
+    moment: the largest bending moment.
+    bands: those that carry load.
+    coarser: unknowns of CalculiX's coarser mesh.
+    moment_change, stress_change: relative change of its results from that to the finer mesh.
+    tension: whether it found tension in the contact, and repeated it.
     """
 
     bands: tuple[BandOpinion, ...]
@@ -61,19 +66,22 @@ class ContactOpinion:
 
     @property
     def elsewhere(self) -> float:
-        """The largest of the bands'."""
+        """The largest part of a band's load that the programs place in different parts of it."""
         return max((band.elsewhere for band in self.bands), default=0.0)
 
 
 @dataclass(frozen=True)
 class Opinion:
-    """Of one pin in one case: both programs on one mesh of `unknowns`, and the answer of the run.
+    """The opinion on one pin in one case: both programs on one mesh of `unknowns`, and the answer
+    of the run.
 
     displacement, stress: largest differences, relative to the largest displacement and von Mises
-    stress. ours, theirs: largest von Mises stress outside of singularities, both averaged
-    at the nodes, Pa. answer, error: the run's, Pa. failure: why there is none of this, or empty.
-    contact: of a pin in its lugs, which CalculiX solves on its own mesh of `unknowns`;
-    `theirs` is then its stress at the point of our maximum.
+    stress.
+    ours, theirs: largest von Mises stress outside of singularities, both averaged at the nodes, Pa.
+    answer, error: the run's, Pa.
+    failure: the reason why there is no comparison, or empty.
+    contact: of a pin in its lugs, which CalculiX solves on its own mesh of `unknowns`; `theirs` is
+    then its stress at the point of our maximum.
     """
 
     pin: str
@@ -90,7 +98,7 @@ class Opinion:
 
     @property
     def deviation(self) -> float | None:
-        """How far their maximum is from the run's answer, relative to it."""
+        """The deviation of their maximum from the run's answer, relative to it."""
         if self.theirs is None or not self.answer:
             return None
         return self.theirs / self.answer - 1.0
@@ -102,7 +110,7 @@ class Opinion:
 
     @property
     def complaint(self) -> str:
-        """What is beyond its limit, in words; empty when they agree."""
+        """The differences beyond their limits, in words; empty when both programs agree."""
         said = self._contact() if self.contact else self._same_mesh()
         return self.failure or "; ".join(said)
 

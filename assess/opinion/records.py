@@ -22,8 +22,9 @@ COMPARISON_WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and f
 
 @dataclass(frozen=True)
 class Difference:
-    """Of elasticity's stress from the beam's, as parts of the beam's peak: rms and largest within
-    the window, largest anywhere and its z.
+    """The difference of elasticity's stress from the beam's, as parts of the beam's peak.
+
+    It has the rms and the largest within the window, the largest anywhere and its z.
     """
 
     rms: float
@@ -34,12 +35,12 @@ class Difference:
 
 @dataclass(frozen=True)
 class BeamCheck:
-    """A cantilever pin's axial stress (Pa) on its line in tension along z (m), from the root to the
-    end of the load on a `band`: by beam theory, and by elasticity with the load on the band's
-    surface and on the axis (a bore of the diameter axis_bore).
+    """A cantilever pin's axial stress, Pa, on its line in tension along z, m.
 
-    expected_offset*: by how much exact elasticity is above beam theory while the load acts, away
-    from the ends (assess.opinion.cantilever), Pa.
+    It runs from the root to the end of the load on a `band`: by beam theory, and by elasticity with
+    the load on the band's surface and on the axis (a bore of the diameter axis_bore).
+    expected_offset*: how much exact elasticity is above beam theory while the load acts, away from
+    the ends (assess.opinion.cantilever), Pa.
     """
 
     pin: str
@@ -59,7 +60,7 @@ class BeamCheck:
     expected_offset_axis_load: Stress
 
     def difference(self, stress: Floats) -> Difference:
-        """How far `stress` is from the beam's."""
+        """The difference of `stress` from the beam's."""
         z, beam = self.z, self.beam_axial_stress
         error = (stress - beam) / beam.max()
         loaded = z[-1]
@@ -74,7 +75,9 @@ class BeamCheck:
 
     @property
     def rms(self) -> float:
-        """With the load on the band's surface, as are all that do not name the axis."""
+        """The rms difference with the load on the band's surface, as for all values that do not
+        name the axis.
+        """
         return self.difference(self.fea_axial_stress).rms
 
     @property
@@ -95,15 +98,15 @@ class BeamCheck:
 
     @property
     def largest_at(self) -> float:
-        """z of it."""
+        """The z of the largest difference, m."""
         return self.difference(self.fea_axial_stress).largest_at
 
     @property
     def rms_beyond_offset(self) -> float:
-        """Once the expected offset is added to the beam."""
+        """The rms difference after the expected offset is added to the beam."""
         return self.difference(self.fea_axial_stress - self.expected_offset).rms
 
     @property
     def rms_axis_load_beyond_offset(self) -> float:
-        found = self.fea_axial_stress_axis_load - self.expected_offset_axis_load
-        return self.difference(found).rms
+        stress = self.fea_axial_stress_axis_load - self.expected_offset_axis_load
+        return self.difference(stress).rms

@@ -17,8 +17,10 @@ LAYOUT_TOLERANCE = 0.05  # by which outer lugs may differ in force, width and ga
 
 @dataclass(frozen=True)
 class BendingArms:
-    """Largest moments along a pin at the governing instant: with even and with concentrated loads
-    on the bands, and by the joint model ("contact", "foundation"), if one supports the pin.
+    """The largest moments along a pin at the governing instant.
+
+    They are those with even and with concentrated loads on the bands, and by the joint model
+    ("contact", "foundation"), if one supports the pin.
     layout: of the bands.
     """
 
@@ -33,7 +35,7 @@ class BendingArms:
 
 
 def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
-    """s: at one instant."""
+    """The bending moments of a situation at one instant."""
     even, concentrated = section_forces(s)
     return BendingArms(
         s.pin.name,
@@ -48,8 +50,9 @@ def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
 
 
 def layout(s: Situation) -> str:
-    """What carries the pin at the first instant: "double shear" where the even moment is that of
-    EN 1993-1-8, figure 3.11.
+    """The layout of the bands at the first instant.
+
+    It is "double shear" where the even moment is that of EN 1993-1-8, figure 3.11.
     """
     if s.clamps:
         return "clamped"
@@ -72,7 +75,7 @@ def layout(s: Situation) -> str:
 
 
 def _opposed(force: np.ndarray) -> bool:
-    """Whether the middle one of three forces (3, 2) opposes both others."""
+    """Return whether the middle one of three forces (3, 2) opposes both others."""
     size = np.hypot(*force.T)
     if not size.all():
         return False

@@ -16,7 +16,7 @@ from assess.situation import Situation
 @check("limit load, collapse", "14 CFR 25.305", kind="collapse", takes="results", level="ultimate",
        dimension=RATIO_DIMENSION)  # fmt: skip
 def collapse(text: CheckText, s: Situation) -> list[Margin]:
-    """No collapse at ultimate load; nothing where no limit load was requested."""
+    """The margin against collapse at ultimate load; none where no limit load was requested."""
     limit = s.row.limit_load if s.row else None
     if s.row is None or limit is None:
         return []

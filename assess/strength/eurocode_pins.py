@@ -39,14 +39,22 @@ _by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics")
 
 
 def shear_resistance(area: Floats | float, ultimate: float) -> Floats | float:
-    """F_v,Rd in N of a shear plane of `area`, m^2, and ultimate strength, Pa."""
+    """The shear resistance F_v,Rd, N, of a shear plane.
+
+    area: m^2.
+    ultimate: ultimate strength, Pa.
+    """
     return 0.6 * area * ultimate / GAMMA_M2
 
 
 def bearing_resistance(
     thickness: Floats, diameter: Floats, strength: Floats, *, replaceable: bool = False
 ) -> Floats:
-    """F_b,Rd in N, or F_b,Rd,ser of a replaceable pin; m, and the lower yield strength in Pa."""
+    """The bearing resistance F_b,Rd, N, or F_b,Rd,ser of a replaceable pin.
+
+    thickness, diameter: m.
+    strength: the lower yield strength of pin and lug, Pa.
+    """
     part = 0.6 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0
     return part * thickness * diameter * strength
 
@@ -54,12 +62,20 @@ def bearing_resistance(
 def bending_resistance(
     modulus: Floats | float, strength: float, *, replaceable: bool = False
 ) -> Floats | float:
-    """M_Rd in N m, or M_Rd,ser of a replaceable pin; section modulus in m^3, yield in Pa."""
+    """The bending resistance M_Rd, N m, or M_Rd,ser of a replaceable pin.
+
+    modulus: section modulus, m^3.
+    strength: yield strength, Pa.
+    """
     return (0.8 / GAMMA_M6_SER if replaceable else 1.5 / GAMMA_M0) * modulus * strength
 
 
 def double_shear_moment(force: float, outer: float, middle: float, gap: float) -> float:
-    """M_Ed of figure 3.11, N m: F (b + 4 c + 2 a) / 8; a: outer, b: middle, c: gap, m."""
+    """The moment M_Ed of figure 3.11, N m: F (b + 4 c + 2 a) / 8.
+
+    force: F, N.
+    outer, middle, gap: a, b and c, m.
+    """
     return force * (middle + 4.0 * gap + 2.0 * outer) / 8.0
 
 
@@ -74,7 +90,7 @@ class PinInHole:
 
 
 def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
-    """sigma_h,Ed in Pa of a force in N."""
+    """The contact stress sigma_h,Ed, Pa, of a force, N."""
     play = np.asarray(at.hole) - at.diameter
     area = np.asarray(at.diameter) ** 2 * at.thickness
     return np.asarray(0.591 * np.sqrt(at.modulus * force * play / area))
@@ -148,8 +164,8 @@ def eurocode_contact_replaceable(text: CheckText, s: Situation) -> list[Margin]:
     stress = contact_stress(s.across[:, loose], at)
     allowed = 2.5 / GAMMA_M6_SER * np.array(strengths)[loose]
     names = tuple(s.loads.surfaces[k] for k in loose)
-    found = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
-    return [replace(found, factor=math.sqrt(found.factor))]
+    margin = text.worst(s, stress, allowed, names, "the factor is the root of that on loads")
+    return [replace(margin, factor=math.sqrt(margin.factor))]
 
 
 def _sheared(forces: SectionForces, ultimate: float) -> Floats:
@@ -172,13 +188,13 @@ def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
     """The lower yield strength of pin and lug at each band, and the keys that are missing."""
-    found, lacking = [], []
+    strengths, lacking = [], []
     for name in s.loads.surfaces:
         lug = s.lug(name)
         both = [s.material] if lug is None else [s.material, lug.bearing]
         lacking += [strength_key(m.name, "yield") for m in both if m.yield_strength is None]
-        found.append(min((m.yield_strength for m in both if m.yield_strength), default=0.0))
-    return found, list(dict.fromkeys(lacking))
+        strengths.append(min((m.yield_strength for m in both if m.yield_strength), default=0.0))
+    return strengths, list(dict.fromkeys(lacking))
 
 
 def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> list[Margin]:
@@ -198,7 +214,10 @@ def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
 
 
 def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:
-    """Diameters, thickness and E of the softer-side mean of pin and lug, as they are in series."""
+    """The diameters of pin and hole, the thickness, m, and Young's modulus, Pa.
+
+    The modulus is the harmonic mean of pin and lug, since these are in series.
+    """
     lug, band = s.lug(name), s.pin.band(name)
     assert lug is not None
     E = 2.0 / (1.0 / s.material.youngs_modulus + 1.0 / lug.bearing.youngs_modulus)

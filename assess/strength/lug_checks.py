@@ -42,7 +42,10 @@ BEARING = CheckText("lug, bearing", BEARING_SOURCE, "hand")
 
 
 def net_section_stress(force: float, outer: float, bore: float, thickness: float) -> float:
-    """Net-section tension at the bore, Pa; N, and diameters and thickness in m.
+    """The net-section tension at the bore, Pa.
+
+    force: N.
+    outer, bore, thickness: diameters and thickness, m.
 
     Raises: ArgumentError where the eye is not wider than its bore. Source: as the module.
     """
@@ -51,8 +54,9 @@ def net_section_stress(force: float, outer: float, bore: float, thickness: float
 
 
 def shear_out_stress(force: float, outer: float, bore: float, thickness: float) -> float:
-    """Shear on the two planes by which the pin would push out a piece of the eye, Pa; arguments,
-    Raises and Source as `net_section_stress`.
+    """The shear stress on the two planes by which the pin would push out a piece of the eye, Pa.
+
+    Arguments, errors and source as `net_section_stress`.
     """
     _require_eye(outer, bore)
     across, along = bore * math.sin(SHEAR_PLANE_ANGLE), bore * math.cos(SHEAR_PLANE_ANGLE)
@@ -61,14 +65,22 @@ def shear_out_stress(force: float, outer: float, bore: float, thickness: float) 
 
 
 def bearing_stress(force: float, diameter: float, thickness: float) -> float:
-    """On the projected area of what is in the bore, Pa. Source: as the module."""
+    """The bearing stress on the projected area in the bore, Pa.
+
+    force: N.
+    diameter, thickness: m.
+
+    Source: as the module.
+    """
     return force / (diameter * thickness)
 
 
 @check("lug", SHIGLEY_JOINTS, kind="hand", takes="loads")
 def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
-    """Net section, shear-out and bearing of every loaded lug whose size is given, at the instant
-    when the force across the pin is largest. The lug is as thick as its band is long.
+    """Net section, shear-out and bearing of every loaded lug whose size is given.
+
+    They are checked at the instant when the force across the pin is largest. The lug is as thick as
+    its band is long.
     """
     return [m for lug in s.sized if lug.connection in s.loads.surfaces for m in _of_lug(s, lug)]
 

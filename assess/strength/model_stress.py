@@ -22,8 +22,9 @@ YIELD_METHOD, RUPTURE_METHOD = "von Mises stress, yield", "von Mises stress, rup
 
 @check(YIELD_METHOD, CLAUSE, kind="model", takes="results")
 def model_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """Yield at limit load. The safety factor that the study requires counts in place of a smaller
-    factor at limit load.
+    """The margin against yield at limit load.
+
+    The safety factor that the study requires replaces a smaller factor at limit load.
     """
     if s.row is None:
         return []
@@ -33,7 +34,7 @@ def model_yield(text: CheckText, s: Situation) -> list[Margin]:
 
 @check(RUPTURE_METHOD, CLAUSE, kind="model", takes="results", level="ultimate")
 def model_rupture(text: CheckText, s: Situation) -> list[Margin]:
-    """Rupture at ultimate load."""
+    """The margin against rupture at ultimate load."""
     if s.row is None:
         return []
     return [_margin(text, s, s.row.peak, "ultimate", s.material.ultimate_strength)]
@@ -42,7 +43,10 @@ def model_rupture(text: CheckText, s: Situation) -> list[Margin]:
 def _margin(
     text: CheckText, s: Situation, peak: Maximum, which: str, strength: float | None
 ) -> Margin:
-    """which: the strength, as a study has it."""
+    """The margin of the peak's upper end against a strength.
+
+    which: the strength, as a study has it.
+    """
     if strength is None:
         return text.lacks(s, strength_key(s.material.name, which))
     if peak.max_von_mises is None:

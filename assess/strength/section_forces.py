@@ -76,9 +76,9 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     at_bands = _at_middles(s, forces, c)
     middles = np.repeat([b.middle for b in bands], 2)
     where = np.concatenate([z[~inside], middles])
-    there = np.concatenate([cells[~inside], _cells(forces, middles)])
+    station_cells = np.concatenate([cells[~inside], _cells(forces, middles)])
     both = np.concatenate([outside, at_bands], axis=1)
-    at_middles = _sized(s, forces, there, where, both)
+    at_middles = _sized(s, forces, station_cells, where, both)
     middles_of = "forces at the middles of bands"
     basis = even.basis.replace(EVEN_LOAD_BASIS, middles_of)
     return even, replace(at_middles, basis=basis, kind="concentrated")
@@ -112,8 +112,9 @@ def _values(forces: InternalForces, c: Floats, cells: Cells, z: Floats) -> Float
 
 
 def _at_middles(s: Situation, forces: InternalForces, c: Floats) -> Floats:
-    """Shear and moment on both sides of concentrated loads, (2, 2 C, T, 2): the shear there is
-    that beyond the band, at which the diagrams end anyway.
+    """Shear and moment on both sides of concentrated loads, (2, 2 C, T, 2).
+
+    The shear there is that beyond the band, at which the diagrams end anyway.
     """
     bands = [s.pin.band(name) for name in s.loads.surfaces]
     middles = np.array([b.middle for b in bands])

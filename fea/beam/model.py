@@ -24,7 +24,7 @@ from pinbase.arrays import Floats
 
 
 class BeamField:
-    """A pin as a beam, with the unit loads of a case."""
+    """The stress of a pin as a beam under the unit loads of a case."""
 
     def __init__(
         self, pin: Pin, material: Material, clamps: tuple[str, ...], case: PinLoads
@@ -34,16 +34,16 @@ class BeamField:
 
     @cached_property
     def estimate(self) -> BeamEstimate:
-        """Of the largest stress of the case."""
+        """The beam's estimate of the largest stress of the case."""
         return beam_estimate(self._beam, self.case, self.clamps)
 
     @property
     def points(self) -> Floats:
-        """Where its stress is, (S, 2): r, z in m."""
+        """The points at which stress is computed, (S, 2): r, z in m."""
         return self._beam.points
 
     def harmonics(self, loads: Loads) -> Floats:
-        """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
+        """The stress at the points, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
         return harmonics(self._beam, loads)
 
     def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
@@ -51,62 +51,65 @@ class BeamField:
         return np.asarray(von_mises_maxima(harmonics(self._beam, loads)).von_mises.max(axis=0))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the index of its instant."""
-        found = von_mises_maxima(harmonics(self._beam, loads))
-        point, instant = found.place
-        return float(found.von_mises[point, instant]), instant
+        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
+        maxima = von_mises_maxima(harmonics(self._beam, loads))
+        point, instant = maxima.place
+        return float(maxima.von_mises[point, instant]), instant
 
     def result(self, singularities: Sequence[Zone]) -> MeshMaximum:
-        """The largest stress outside the singular zones, as for the other models."""
-        found = von_mises_maxima(harmonics(self._beam, self.case))
+        """The largest stress outside the singular zones, in the form of the other models."""
+        maxima = von_mises_maxima(harmonics(self._beam, self.case))
         r, z = self._beam.points.T
-        value = np.where(outside(singularities, r, z)[:, None], found.von_mises, 0.0)
+        value = np.where(outside(singularities, r, z)[:, None], maxima.von_mises, 0.0)
         point, instant = (int(i) for i in np.unravel_index(value.argmax(), value.shape))
-        at, theta = float(r[point]), float(found.theta[point, instant])
+        at, theta = float(r[point]), float(maxima.theta[point, instant])
         location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))
         return MeshMaximum(0, float(value[point, instant]), instant, location)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
-        """None: a beam has no field over its surface."""
+        """Return None, since a beam has no field over its surface."""
         return None
 
     @property
     def strain_energy(self) -> float:
-        """Of the loads that have a resultant, at the instant of the largest stress, J."""
+        """The strain energy of the loads that have a resultant, at the instant of the largest
+        stress, J.
+        """
         coefficients = self.case.coefficients()
         felt = {unit: coefficients[unit] for unit in self._beam.loads}
         amounts = LoadAmounts(self.case.case, felt, len(self.case))
         return self._beam.energy.of(amounts, self.estimate.instant)
 
     def peak(self, tolerance: float, seconds: float, note: Reason, rise: float = 0.0) -> Maximum:
-        """The peak with the beam's own error; where it has none, an error of the whole value. rise:
-        by how much the maximum may be higher between instants, Pa.
+        """The peak with the beam's own error, which is the whole value where none is known.
+
+        rise: how much the maximum may be higher between instants, Pa.
         """
-        found = self.estimate
-        r, z = found.place
-        whole = found.maximum if found.error is None else found.error
+        estimate = self.estimate
+        r, z = estimate.place
+        whole = estimate.maximum if estimate.error is None else estimate.error
         parts = ErrorParts(mesh=0.0, time=rise, model=whole)
         error = parts.total
-        relative = error / found.maximum if found.maximum else 0.0
-        known = found.error is not None and relative <= tolerance
-        own = accuracy(relative, tolerance, known)
-        if found.without_factor:
-            notches = ", ".join(found.without_factor)
-            own = Reason(
+        relative = error / estimate.maximum if estimate.maximum else 0.0
+        known = estimate.error is not None and relative <= tolerance
+        verdict_reason = accuracy(relative, tolerance, known)
+        if estimate.without_factor:
+            notches = ", ".join(estimate.without_factor)
+            verdict_reason = Reason(
                 f"no notch factor is available for {notches}, so the stress there is not included",
                 ("no-notch-factor",),
             )
-        own = own + Reason(f". {found.leaves_out.rstrip('.')}") + note
+        verdict_reason = verdict_reason + Reason(f". {estimate.leaves_out.rstrip('.')}") + note
         return Maximum(
             pin=self.pin.name,
             case=self.case.case,
             model="beam",
             verdict="converged" if known else "unconverged",
-            note=own.text,
-            max_von_mises=found.maximum,
+            note=verdict_reason.text,
+            max_von_mises=estimate.maximum,
             error_estimate=error,
-            location=(r * math.cos(found.theta), r * math.sin(found.theta), z),
-            history=(Refinement(0, found.maximum, seconds, self.strain_energy),),
+            location=(r * math.cos(estimate.theta), r * math.sin(estimate.theta), z),
+            history=(Refinement(0, estimate.maximum, seconds, self.strain_energy),),
             parts=parts,
-            reasons=own.codes,
+            reasons=verdict_reason.codes,
         )

@@ -9,16 +9,17 @@ from fea.core.strain_energy import StrainEnergy
 
 Point = tuple[float, float, float]
 
-FEATURE_READING_DISTANCE = (
-    0.1  # of a feature: a singularity governs if the stress at this distance is the largest
-)
+# Of a feature: a singularity governs if the stress at this distance is the largest
+FEATURE_READING_DISTANCE = 0.1
 
 
 @dataclass(frozen=True)
 class SingularIntensity:
-    """Of a singularity, by which notches are judged: von Mises stress along the free surface is
-    `along` * distance^-exponent close to it, Pa m^exponent, with the exponent of theory. notch: the
-    notch stress intensity factor, of a corner between free surfaces (fea.singular.williams).
+    """The intensity of a singularity, by which notches are judged.
+
+    along: von Mises stress on the free surface is `along` * distance^-exponent close to it, Pa
+    m^exponent, with the exponent of theory.
+    notch: notch stress intensity factor, of a corner between free surfaces (fea.singular.williams).
     """
 
     along: Annotated[float, "strength"]
@@ -33,11 +34,15 @@ class SingularIntensity:
 
 @dataclass(frozen=True)
 class ZoneMaximum:
-    """Of a singularity: the largest von Mises stress in it (Pa), which only says how fine the
-    mesh is, where (x, y, z in m); felt: the largest farther away than FEATURE_READING_DISTANCE of
-    its feature; and the exponent with which stress was seen to grow, None where that could not be
-    measured. acts: false where only other cases of the pin load the singularity, so that stress
-    has a bound there. strength: of the singularity, where the exponent was measured.
+    """The largest stress in the zone of a singularity.
+
+    maximum: largest von Mises stress in the zone, Pa, which only shows how fine the mesh is.
+    felt: the largest farther away than FEATURE_READING_DISTANCE of its feature, Pa.
+    location: (x, y, z) of the maximum, m.
+    exponent: measured exponent of the growth of stress, None where it could not be measured.
+    acts: false where only other cases of the pin load the singularity, so that stress is bounded
+    there.
+    strength: intensity of the singularity, where the exponent was measured.
     """
 
     maximum: float
@@ -50,18 +55,24 @@ class ZoneMaximum:
 
 @dataclass(frozen=True)
 class MeshMaximum:
-    """maximum: largest von Mises stress (Pa) outside all singularities, at `location` (m) at the
-    governing `instant`. singularities: what is inside of each.
+    """The maximum of one mesh in one case.
 
-    scatter: of the maximum by the mesh alone, where it was seen, Pa. left_out: by how much the
-    harmonics of a bearing pressure that are not taken may change the maximum, Pa. between: by how
-    much it may be higher between two instants, Pa. high: points (r, z) of a section, m, where a
-    finer mesh may find the maximum; local_high: the same about cuts, (x, y, z). truncated: by how
-    much the ends of a local solid may change the maximum, Pa, with what other local solids do
-    (beside). quiet: fillets, as numbers of
-    corners, where none will (fea.harmonic.quiet_corners). interval: the maximum if half and twice
-    the distance is left out of what governs, Pa; None where nothing in them does. energy: under any
-    of the case's loads. at_once: the most unknowns that are solved together, 0 for all.
+    maximum: largest von Mises stress, Pa, outside all singularities, at `location` (m) at the
+    governing `instant`.
+    singularities: the maximum inside each of them.
+    scatter: scatter of the maximum from the mesh alone, where it was measured, Pa.
+    left_out: how much the truncated harmonics of a bearing pressure may change the maximum, Pa.
+    between: how much higher the maximum may be between two instants, Pa.
+    high: points (r, z) of a section, m, where a finer mesh may find the maximum; local_high: the
+    same about cuts, (x, y, z).
+    truncated: how much the ends of a local solid may change the maximum, and the effect of other
+    local solids (beside), Pa.
+    quiet: fillets, as numbers of corners, where no finer mesh will find the maximum
+    (fea.harmonic.quiet_corners).
+    interval: the maximum if half and twice the distance is excluded at the governing zones, Pa;
+    None if no zone governs.
+    energy: strain energy under any of the case's loads.
+    at_once: the most unknowns that are solved together, 0 for all.
     """
 
     unknowns: int
@@ -83,12 +94,12 @@ class MeshMaximum:
 
     @property
     def governed(self) -> tuple[ZoneMaximum, ...]:
-        """Those in which stress is felt to be larger than outside, so that the maximum depends on
-        the distance that is left out.
+        """The zones in which stress is larger than outside, so that the maximum depends on the
+        excluded distance.
         """
         return tuple(s for s in self.singularities if s.acts and s.felt > self.maximum)
 
     @property
     def singular(self) -> bool:
-        """Whether stress has no bound where it is the largest."""
+        """Whether stress is unbounded at the point where it is largest."""
         return bool(self.governed)

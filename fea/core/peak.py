@@ -16,7 +16,7 @@ Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
 @dataclass(frozen=True)
 class Reason:
-    """Text for people, and the reasons that it states by their codes, for programs."""
+    """A human-readable text, and the codes of the reasons that it states, for programs."""
 
     text: str = ""
     codes: tuple[str, ...] = ()
@@ -30,8 +30,10 @@ NO_REASON = Reason()
 
 @dataclass(frozen=True)
 class Refinement:
-    """One mesh of the sequence: unknowns, maximum (Pa), solution time (s), and strain energy (J) of
-    the pin under the loads that govern on the last mesh, None where the model gives none.
+    """One mesh of the sequence: unknowns, maximum, Pa, and solution time, s.
+
+    energy: strain energy, J, of the pin under the loads that govern on the last mesh; None where
+    the model gives none.
     """
 
     dofs: int
@@ -44,13 +46,18 @@ class Refinement:
 class SingularZone:
     """A circle near which stress is unbounded.
 
-    location: (x, y, z), m, of the point on it where stress is largest. kind: its cause, as text.
-    between: the surfaces that meet there. exponent: stress grows as distance^-exponent, as
-    measured, None where it was not; exponent_theory: 0 for a logarithm. excluded: distance (m)
-    within which stress is excluded. governs: whether the stress inside (max_von_mises, Pa, which
-    depends on the mesh) exceeds that outside of all zones. advice: what to do about it. strength:
-    of the singularity, where the exponent was measured. felt: the largest stress inside but next to
-    its very edge, Pa, which does not depend on the mesh; 0 where that is not known.
+    location: (x, y, z), m, of the point on it where stress is largest.
+    kind: its cause, as text.
+    between: the surfaces that meet there.
+    exponent: stress grows as distance^-exponent, as measured, None where it was not;
+    exponent_theory: 0 for a logarithm.
+    excluded: distance, m, within which stress is excluded.
+    governs: whether the stress inside (max_von_mises, Pa, which depends on the mesh) exceeds that
+    outside of all zones.
+    advice: how to remove it.
+    strength: intensity of the singularity, where the exponent was measured.
+    felt: the largest stress inside but next to its very edge, Pa, which does not depend on the
+    mesh; 0 where that is not known.
     """
 
     location: Point
@@ -68,10 +75,11 @@ class SingularZone:
 
 @dataclass(frozen=True)
 class ErrorParts:
-    """The parts of an error, Pa: from the mesh; from the time between instants; from the truncated
-    harmonics of a bearing pressure; from what a model neglects (a beam; contact without holes);
-    from the cells of contact pressure; from the ends of a local solid. None includes the modelling
-    of the joint.
+    """The parts of an error, Pa.
+
+    They come from the mesh; from the time between instants; from the truncated harmonics of a
+    bearing pressure; from what a model neglects (a beam; contact without holes); from the cells of
+    contact pressure; from the ends of a local solid. None includes the modelling of the joint.
     """
 
     mesh: float
@@ -89,19 +97,23 @@ class ErrorParts:
 
 @dataclass(frozen=True)
 class Maximum:
-    """max_von_mises and error_estimate in Pa, None when the pin is `rigid` or its numerics
-    `failed`.
+    """The maximum of a pin in one case, with its error and verdict.
 
-    location: (x, y, z) in the pin's axes, m. governing: the loads at the governing instant. note:
-    one sentence on the verdict, for people. why: the model used and the reason, for people.
-    reasons: the codes of everything that note and why state. singular_at: zones of unbounded
-    stress; where one governs (`singular`) the maximum is that outside all of them, which depends on
-    the excluded distance: `interval` is the maximum over half and twice that distance with its
-    error, Pa, and error_estimate covers both of its ends. parts: of the error on the meshes and
-    instants. imbalance: of an unconstrained pin, what its bands react: the force over the largest
-    load, and the couple over that load times the length. solids: between which z (m) local solids
-    are, of a pin with cuts. places: surface, section and contact, of which the maximum is the
-    larger of the first two.
+    max_von_mises, error_estimate: Pa, None when the pin is `rigid` or its solution `failed`.
+    location: (x, y, z) in the pin's axes, m.
+    governing: the loads at the governing instant.
+    note: one sentence on the verdict, for people.
+    why: the model used and the reason, for people.
+    reasons: the codes of everything that note and why state.
+    singular_at: zones of unbounded stress; where one governs (`singular`) the maximum is that
+    outside all of them, which depends on the excluded distance.
+    interval: the maximum over half and twice that distance with its error, Pa; error_estimate
+    covers both of its ends.
+    parts: of the error on the meshes and instants.
+    imbalance: of an unconstrained pin, the part that its bands react: the force over the largest
+    load, and the couple over that load times the length.
+    solids: between which z, m, local solids are, of a pin with cuts.
+    places: surface, section and contact, of which the maximum is the larger of the first two.
     """
 
     pin: str
@@ -125,7 +137,7 @@ class Maximum:
 
     @property
     def time(self) -> float | None:
-        """Of the governing instant, s; None without a motion."""
+        """The time of the governing instant, s; None without a motion."""
         if self.governing is None or self.governing.times is None:
             return None
         return float(self.governing.times[0])
@@ -146,7 +158,7 @@ class Maximum:
 
     @property
     def own_error(self) -> float | None:
-        """On meshes and between instants, Pa, without the effect of the excluded distance."""
+        """The error of meshes and instants, Pa, without the effect of the excluded distance."""
         return self.error_estimate if self.parts is None else self.parts.total
 
     @property
@@ -167,7 +179,7 @@ class Maximum:
 
 
 def meets_limit(peak: Maximum, limit: float) -> bool | None:
-    """Whether the maximum stays below a limit (Pa); None if not decided.
+    """Return whether the maximum stays below a limit, Pa; None if not decided.
 
     A maximum is compared with its error, whatever its verdict: one that straddles the limit decides
     nothing. A singular one exceeds the limit if its whole interval does; it never stays below,

@@ -21,16 +21,19 @@ DECIDED_TEXT = "its error does not affect whether the required factor is reached
 class Requirement:
     """Requirements on a solution.
 
-    tolerance: of the maximum, relative. model: the one to use. goal: "value" asks for the maximum
-    to the tolerance, "decide" only whether the `required` safety factor is met. distance: excluded
-    around singularities, as a fraction of the local diameter. meshes: maximum number of meshes, by
-    default that of the model. memory: limit for a mesh in MB, by default most of the free memory.
-    joints: how lugs hold a pin. cells: of contact with lugs, these alone; None: until they are fine
-    enough.
+    tolerance: of the maximum, relative.
+    model: the one to use.
+    goal: "value" asks for the maximum to the tolerance, "decide" only whether the `required` safety
+    factor is met.
+    distance: excluded around singularities, as a fraction of the local diameter.
+    meshes: maximum number of meshes, by default that of the model.
+    memory: limit for a mesh in MB, by default most of the free memory.
+    joints: the model of the lugs that hold a pin.
+    cells: of contact with lugs, these alone; None: until they are fine enough.
 
-    A support adds what it knows. elsewhere: by case, stress (Pa) that sections have: a surface that
-    surely has less needs no finer mesh. besides: by case, the error, relative, that comes to that
-    of meshes and instants.
+    A support adds what it knows:
+    elsewhere: by case, stress, Pa, of sections; a surface that surely has less needs no finer mesh.
+    besides: by case, the relative error in addition to that of meshes and instants.
     """
 
     tolerance: float = 0.02
@@ -46,41 +49,44 @@ class Requirement:
     besides: Mapping[str, float] = field(default_factory=dict)
 
     def left(self, case: str) -> float:
-        """What meshes and instants of a case may take of the tolerance, MIN_TOLERANCE_SHARE of it
-        in any case.
+        """The part of the tolerance that meshes and instants of a case may use, at least
+        MIN_TOLERANCE_SHARE of it.
         """
         return max(
             self.tolerance - self.besides.get(case, 0.0), MIN_TOLERANCE_SHARE * self.tolerance
         )
 
 
-def decided(asked: Requirement, material: Material, low: float, high: float) -> bool:
-    """Whether a maximum between two stresses (Pa) decides if the required factor is reached."""
-    limit = _limit(asked, material)
+def decided(requirement: Requirement, material: Material, low: float, high: float) -> bool:
+    """Return whether a maximum between two stresses, Pa, decides if the required factor is
+    reached.
+    """
+    limit = _limit(requirement, material)
     return limit is not None and (high < limit or low > limit)
 
 
-def _limit(asked: Requirement, material: Material) -> float | None:
-    """Maximum (Pa) with the required factor, if that is to be decided."""
-    strength, required = material.yield_strength, asked.required
-    if asked.goal != "decide" or strength is None or required is None:
+def _limit(requirement: Requirement, material: Material) -> float | None:
+    """The maximum, Pa, that gives the required factor; None unless the goal is to decide it."""
+    strength, required = material.yield_strength, requirement.required
+    if requirement.goal != "decide" or strength is None or required is None:
         return None
     return strength / required
 
 
-def accurate_enough(asked: Requirement, material: Material, seen: MeshHistory) -> bool:
-    """Whether these meshes are accurate enough, or decide the required factor. Fewer never tell
-    how large a maximum is, for they can agree by chance.
+def accurate_enough(requirement: Requirement, material: Material, seen: MeshHistory) -> bool:
+    """Return whether these meshes are accurate enough, or decide the required factor.
+
+    Fewer meshes than the model's minimum never are, since they can agree by chance.
     """
     if len(seen.results) < seen.meshes.min_meshes:
         return False
     return (
-        seen.known(asked.left(seen.case))
-        or decided(asked, material, *seen.range)
-        or below_sections(asked, seen)
+        seen.known(requirement.left(seen.case))
+        or decided(requirement, material, *seen.range)
+        or below_sections(requirement, seen)
     )
 
 
-def below_sections(asked: Requirement, seen: MeshHistory) -> bool:
-    """Whether sections have more stress than the surface may have."""
-    return bool(seen.range[1] <= asked.elsewhere.get(seen.case, 0.0))
+def below_sections(requirement: Requirement, seen: MeshHistory) -> bool:
+    """Return whether sections surely have more stress than the surface."""
+    return bool(seen.range[1] <= requirement.elsewhere.get(seen.case, 0.0))

@@ -11,11 +11,15 @@ from pinbase.arrays import Floats, Ints, Mask
 
 @dataclass(frozen=True)
 class Picture:
-    """A mesh with results at its N nodes at one instant: points (N, 3) m; cells (M, 10), in VTK's
-    order of "tetra10", or (M, 4), "quad"; displacement (N, 3) m; stress (N, 6) Pa: xx, yy, zz, yz,
-    xz, xy; envelope (N,): the largest von Mises stress over all instants, Pa, NaN inside the body.
-    pressed: (N,) where lugs press on what is shown of the surface; there the envelope is that of
-    the instants at which they do not, NaN if they always do. None without lugs.
+    """A mesh with results at its N nodes at one instant.
+
+    points: (N, 3) m.
+    cells: (M, 10), in VTK's order of "tetra10", or (M, 4), "quad".
+    displacement: (N, 3) m.
+    stress: (N, 6) Pa: xx, yy, zz, yz, xz, xy.
+    envelope: (N,), the largest von Mises stress over all instants, Pa, NaN inside the body.
+    pressed: (N,), true where lugs press on the surface shown; there the envelope is that of the
+    instants at which they do not, NaN if they always do. None without lugs.
     """
 
     points: Floats
@@ -28,11 +32,14 @@ class Picture:
 
 
 class StressField(Protocol):
-    """What a model found for a pin, for any loads made of the same unit loads."""
+    """The stress that a model has computed for a pin, for any combination of the same unit
+    loads.
+    """
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside all singularities; where it
-        does not exceed `least`, Pa, any value up to that.
+        """The largest von Mises stress (T,) Pa at every instant outside all singularities.
+
+        least: where the stress does not exceed this, Pa, any value up to it may be returned.
         """
         ...
 
@@ -41,5 +48,7 @@ class StressField(Protocol):
         ...
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
-        """The pin at one instant, with its envelope over all; None for a model without fields."""
+        """The pin at one instant, with its envelope over all instants; None for a model without
+        fields.
+        """
         ...

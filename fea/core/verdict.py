@@ -29,8 +29,11 @@ KIND_ARTICLES = {
 
 @dataclass(frozen=True)
 class MeshHistory:
-    """The meshes of one case so far, coarse to fine. seconds: the time of each. meshes: how they
-    are refined. first: how many meshes of a run are coarser than the first of these.
+    """The meshes of one case so far, from coarse to fine.
+
+    seconds: solution time of each.
+    meshes: how they are refined.
+    first: how many meshes of a run are coarser than the first of these.
     """
 
     pin: str
@@ -42,7 +45,7 @@ class MeshHistory:
     first: int = 0
 
     def appended(self, result: MeshMaximum, spent: float) -> MeshHistory:
-        """With one more mesh, on which s were spent."""
+        """The history with the result of one more mesh, which took `spent` seconds."""
         return replace(self, results=(*self.results, result), seconds=(*self.seconds, spent))
 
     @property
@@ -54,7 +57,7 @@ class MeshHistory:
         )
 
     def under(self, loads: PinLoads) -> tuple[Refinement, ...]:
-        """The history with the strain energy of each mesh under loads, of one instant."""
+        """The history with the strain energy of each mesh under loads of one instant."""
         return tuple(
             replace(step, strain_energy=result.energy.of(loads) if result.energy else None)
             for step, result in zip(self.history, self.results, strict=True)
@@ -67,8 +70,10 @@ class MeshHistory:
 
     @property
     def parts(self) -> ErrorParts:
-        """Parts of the error of the last maximum: that of the mesh from the sequence of meshes, but
-        never less than the scatter with the positions of nodes.
+        """The parts of the error of the last maximum.
+
+        That of the mesh follows from the sequence of meshes, but is never less than the scatter
+        with the positions of nodes.
         """
         last = self.results[-1]
         if len(self.results) == 1:
@@ -89,9 +94,11 @@ class MeshHistory:
 
     @property
     def range(self) -> tuple[float, float]:
-        """Bounds of the maximum, Pa: from its error; where stress is larger in an excluded zone,
-        from half and twice the excluded distance, with the error, and with what both have changed
-        from the mesh before: so near to the zone they are known less well than the maximum.
+        """The bounds of the maximum, Pa, from its error.
+
+        Where stress is larger in an excluded zone, they are those of half and twice the excluded
+        distance, with the error, and with the change of both from the mesh before: so near to the
+        zone they are known less well than the maximum.
         """
         last = self.results[-1]
         if not last.governed:
@@ -104,12 +111,12 @@ class MeshHistory:
         return max(0.0, low * (1.0 - self.relative)), high * (1.0 + self.relative)
 
     def known(self, tolerance: float) -> bool:
-        """Whether the error is within `tolerance`."""
+        """Return whether the error is within `tolerance`, relative."""
         return len(self.results) >= self.meshes.min_meshes and self.relative <= tolerance
 
 
 def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZone, ...]:
-    """The zones to report."""
+    """The singular zones to report."""
     return tuple(
         SingularZone(
             location=inside.location,
@@ -132,7 +139,9 @@ def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZ
 def judge(
     seen: MeshHistory, singularities: Sequence[Zone], tolerance: float, note: Reason = NO_REASON
 ) -> Maximum:
-    """The peak of a case; `note` is appended to that of the verdict.
+    """The peak of a case with its verdict.
+
+    note: appended to the note of the verdict.
 
     Raises: SolveError when the stress is not finite.
     """
@@ -141,15 +150,15 @@ def judge(
         raise SolveError(
             f"pin {seen.pin}, case {seen.case}: the stress is not finite", "not-finite"
         )
-    found = zones(last, singularities)
-    governing = [zone for zone in found if zone.governs]
+    reported = zones(last, singularities)
+    governing = [zone for zone in reported if zone.governs]
     known = seen.known(tolerance)
     verdict: Verdict = "converged" if known else "unconverged"
-    own = accuracy(seen.relative, tolerance, known)
+    verdict_reason = accuracy(seen.relative, tolerance, known)
     if len(seen.results) < seen.meshes.min_meshes and not known:
         meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
         text = f"only {meshes} solved, too few to estimate the error"
-        own = Reason(text, ("too-few-meshes",))
+        verdict_reason = Reason(text, ("too-few-meshes",))
     error, interval = seen.error, None
     if governing:
         verdict = "singular"
@@ -157,24 +166,24 @@ def judge(
         interval = seen.range
         error = max(last.maximum - interval[0], interval[1] - last.maximum)
         ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
-        outside = "" if known else f"; outside, {own.text}"
+        outside = "" if known else f"; outside, {verdict_reason.text}"
         text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
-        own = Reason(text, own.codes)
-    own = own + note
+        verdict_reason = Reason(text, verdict_reason.codes)
+    verdict_reason = verdict_reason + note
     return Maximum(
         pin=seen.pin,
         case=seen.case,
         model=seen.model,
         verdict=verdict,
-        note=own.text,
+        note=verdict_reason.text,
         max_von_mises=last.maximum,
         error_estimate=error,
         location=last.location,
         history=seen.history,
-        singular_at=found,
+        singular_at=reported,
         interval=interval,
         parts=seen.parts,
-        reasons=own.codes,
+        reasons=verdict_reason.codes,
     )
 
 
@@ -184,7 +193,7 @@ def _nowhere(zone: SingularZone) -> str:
     if zone.exponent_theory == 0.0:
         return f"no maximum exists: at {where} stress grows as log(1/distance)"
     exponents = ((zone.exponent, "measured"), (zone.exponent_theory, "theoretical"))
-    found = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
-    if not found:
+    listed = ", ".join(f"{s:.2f} {how}" for s, how in exponents if s is not None)
+    if not listed:
         return f"no maximum exists: at {where} stress grows without bound"
-    return f"no maximum exists: at {where} stress grows as distance^-s, s = {found}"
+    return f"no maximum exists: at {where} stress grows as distance^-s, s = {listed}"

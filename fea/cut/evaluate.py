@@ -61,9 +61,11 @@ MIN_UNIT_WEIGHT = 1e-3  # of the stress: what brings less is solved as if it bro
 
 @dataclass(frozen=True)
 class CutSolution:
-    """The uncut pin, whose stress where it is cut does not count, and the pieces about the cuts.
-    uncut: the fields of the first, where that counts, too. reactions: motions of redundant clamps
-    that go with loads; held: its first support, if any.
+    """The solution of a cut pin: the uncut pin, and the local solids about the cuts.
+
+    section: the uncut pin, where its stress counts; uncut: its fields also where it is cut.
+    reactions: motions of redundant clamps that go with loads.
+    held: its first support, if any.
     """
 
     section: HarmonicSolution
@@ -78,8 +80,8 @@ class CutSolution:
         return tuple(c.singularity for piece in self.pieces for c in piece.corners)
 
     def idle(self, results: Sequence[tuple[PinLoads, MeshMaximum]]) -> tuple[LocalFields, ...]:
-        """Pieces that need no finer mesh: in no case may their stress reach the largest one, nor
-        swing as much as in another piece.
+        """The pieces that need no finer mesh: in no case may their stress reach the largest one, or
+        vary as much as in another piece.
         """
         out = set(range(len(self.pieces)))
         for loads, result in results:
@@ -103,23 +105,26 @@ def cut_solution(
     bands: Sequence[tuple[float, float]] = (),
     distance: float = 0.1,
     finer: LocalFineness | None = None,
-    kept: Sequence[LocalFields] = (),
+    reused: Sequence[LocalFields] = (),
 ) -> CutSolution:
-    """As fea.harmonic.evaluate.harmonic_solution, on mesh number `level` of section and pieces.
-    bands: loaded ones with cuts in them (fea.cut.region.loaded_bands); distance: as
-    fea.cut.inner_corners; finer: of the pieces, in place of the level's; kept: what is
-    known of pieces that this mesh need not know better.
+    """Solve all unit loads on mesh number `level` of the section and of the pieces.
+
+    The arguments are those of fea.harmonic.evaluate.harmonic_solution, and:
+    bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
+    distance: as in fea.cut.inner_corners.
+    finer: fineness of the pieces, instead of that of the level.
+    reused: fields of pieces that need no finer mesh.
 
     Raises: MeshError, SolveError.
     """
     material, clamps, cases = problem.material, problem.clamps, problem.cases
     high = [p for result in before for p in result.local_high]
     finer = finer or LocalFineness.of(level)
-    known = [next((k for k in kept if k.piece == piece), None) for piece in pieces]
+    known = [next((k for k in reused if k.piece == piece), None) for piece in pieces]
     models = [
         mesh_of(piece, material, clamps, finer, high, bands)
-        for piece, there in zip(pieces, known, strict=True)
-        if there is None
+        for piece, reused_piece in zip(pieces, known, strict=True)
+        if reused_piece is None
     ]
     points = [section_points(model) for model in models]
     supports = _supports(problem)
@@ -137,23 +142,23 @@ def cut_solution(
         local_fields(model, section.fields, stress, units, problem.singularities, distance, weight)
         for model, stress in zip(models, at[:-1], strict=True)
     )
-    found = tuple(there or next(new) for there in known)
+    local = tuple(reused_piece or next(new) for reused_piece in known)
     uncut = section.fields
     fields = _without(uncut, [zone(piece) for piece in pieces])
     section = replace(section, fields=fields, elsewhere=NO_POINTS)
     held = next(iter(supports), None)
-    return CutSolution(section, found, uncut, reactions(supports, found), held)
+    return CutSolution(section, local, uncut, reactions(supports, local), held)
 
 
 def _supports(problem: SectionProblem) -> list[ClampReaction]:
     """The clamps of a section in the order of z."""
     cut = CutPin(problem.pin)
-    found = [ClampReaction(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
-    return sorted(found, key=lambda support: support.z)
+    reactions = [ClampReaction(name, 0.5 * sum(surface_ends(cut, name))) for name in problem.clamps]
+    return sorted(reactions, key=lambda support: support.z)
 
 
 def _fine(piece: Piece, level: int) -> Grade:
-    """How fine the section is about a piece's cuts."""
+    """The fineness of the section about a piece's cuts."""
     radius = piece.profile.largest_diameter / 2.0
     low, high = zone(piece)
     places = np.linspace(low, high, max(2, round((high - low) / radius)))
@@ -167,29 +172,30 @@ def _fine(piece: Piece, level: int) -> Grade:
 
 
 def _units(cases: tuple[PinLoads, ...]) -> tuple[Unit, ...]:
-    """Unit loads in the phases in which they ever act, of a motion in all."""
-    found: dict[Unit, None] = {}
+    """The unit loads in the phases in which they ever act; in all phases for a motion."""
+    units: dict[Unit, None] = {}
     for case in cases:
         for load, amounts in case.coefficients().items():
-            found |= {
+            units |= {
                 (load, p): None
                 for p in load.phases
                 if case.times is not None or amounts[:, p].any()
             }
-    return tuple(found)
+    return tuple(units)
 
 
 def _weight(cases: tuple[PinLoads, ...], units: tuple[Unit, ...], fields: MeridianFields) -> Floats:
-    """How much of the stress in any case a unit load brings, (L,): 1 the most; of one whose amount
-    is not known here, 1, too.
+    """The relative stress of each unit load, the largest over all cases, (L,).
+
+    It is 1 for the load with the largest stress, and for a load whose amount is not known here.
     """
-    own = [fields.loads.index(load) for load, _ in units]
-    stress, out = np.abs(fields.stress).max(axis=(0, 1))[own], np.zeros(len(units))
+    columns = [fields.loads.index(load) for load, _ in units]
+    stress, out = np.abs(fields.stress).max(axis=(0, 1))[columns], np.zeros(len(units))
     for case in cases:
         amounts = case.coefficients()
         most = np.array([np.abs(amounts[u][:, p]).max() if u in amounts else 0.0 for u, p in units])
-        each = most * stress
-        out = np.maximum(out, each / (each.max() or 1.0))
+        shares = most * stress
+        out = np.maximum(out, shares / (shares.max() or 1.0))
     known = {load for case in cases for load in case.coefficients()}
     return np.where([u in known for u, _ in units], np.maximum(out, MIN_UNIT_WEIGHT), 1.0)
 
@@ -202,8 +208,10 @@ def _without(fields: MeridianFields, zones: Sequence[tuple[float, float]]) -> Me
 
 @dataclass(frozen=True)
 class CutMesh:
-    """A mesh solved with local solids (fea.core.model.MeshSolution). reach: how far these go past
-    the cuts; spacing: how far from each other cuts are in one (fea.cut.region.pieces).
+    """A mesh solved with local solids (fea.core.model.MeshSolution).
+
+    reach: how far the solids extend beyond the cuts.
+    spacing: the distance up to which cuts share a solid (fea.cut.region.pieces).
     """
 
     problem: MeshProblem
@@ -213,11 +221,11 @@ class CutMesh:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """Those of the problem, and the sharp corners of the cuts."""
+        """The zones of the problem, and the sharp corners of the cuts."""
         return (*self.problem.zones, *self.solution.corners)
 
     def field(self, case: str) -> CutField:
-        """Stress as one case sees it."""
+        """The stress as one case sees it."""
         return CutField(self.solution, self.problem.zones_of(case))
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -228,9 +236,11 @@ class CutMesh:
 
 
 class LocalSolids:
-    """A body of revolution with cuts, solid about these (fea.core.model.Model). A problem's pin is
-    that without cuts. cut: the pin with them; bands: loaded ones with cuts in them
-    (fea.cut.region.loaded_bands).
+    """The model of a body of revolution with cuts, solid about these (fea.core.model.Model).
+
+    The pin of a problem is the one without cuts.
+    cut: the pin with them.
+    bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
     """
 
     name: Literal["harmonic+local"] = "harmonic+local"
@@ -245,17 +255,19 @@ class LocalSolids:
         self._cut, self._bands, self._first = cut, bands, first
 
     def solve(self, problem: MeshProblem, level: int, before: MeshBefore | None = None) -> CutMesh:
-        """As of every model. Local solids grow where their ends or each other disturb the maximum
-        on the mesh before, and those whose stress matters in no case are taken from it.
+        """Solve one mesh, as every model does.
+
+        Local solids grow where their ends or each other disturb the maximum on the mesh before;
+        those whose stress matters in no case are reused from it.
         """
         reach, spacing = PIECE_REACH, 1.0
-        kept: tuple[LocalFields, ...] = ()
+        reused: tuple[LocalFields, ...] = ()
         results = () if before is None else tuple(before.results)
         below = None if before is None else before.solution
         if isinstance(below, CutMesh) and before is not None:
             reach, spacing = below.reach, below.spacing
             cases = [(case, before.maxima[case.case]) for case in problem.cases]
-            kept = below.solution.idle(cases)
+            reused = below.solution.idle(cases)
             most = TRUNCATION_SHARE * problem.tolerance
             if any(r.beside > most * r.maximum for r in results):
                 spacing *= PIECE_SPACING_FACTOR
@@ -264,13 +276,13 @@ class LocalSolids:
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
         posed = section_problem(problem, self._first)
         solution = cut_solution(
-            posed, local, level, results, self._bands, problem.distance, kept=kept
+            posed, local, level, results, self._bands, problem.distance, reused=reused
         )
         return CutMesh(problem, solution, reach, spacing)
 
 
 class CutField:
-    """What a solution says of any loads made of its unit loads (fea.core.solution)."""
+    """The stress of a cut pin under any combination of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: CutSolution, singularities: tuple[Zone, ...]) -> None:
         self.solution, self.singularities = solution, singularities
@@ -294,30 +306,32 @@ class CutField:
         return value, instant
 
     def beneath(self, loads: PinLoads) -> Beneath:
-        """What lies beneath contact (fea.harmonic.beneath): of the pin without cuts, where it is
-        cut, too, and at the surface about these.
+        """The largest stress beneath contact (fea.harmonic.beneath): in the pin without cuts, also
+        where it is cut, and at the surface about the cuts.
         """
         assert loads.pressed is not None
-        found = beneath(self.solution.uncut, loads, self.singularities)
+        deepest = beneath(self.solution.uncut, loads, self.singularities)
         for piece in self.solution.pieces:
             value, point = piece.beneath(loads, loads.pressed)
             t = int(value.argmax())
-            if value[t] > found.value:
+            if value[t] > deepest.value:
                 x, y, z = piece.points[point[t]].tolist()
-                found = Beneath(float(value[t]), (x, y, z), t)
-        return found
+                deepest = Beneath(float(value[t]), (x, y, z), t)
+        return deepest
 
     def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
-        """How far from pressed cells stress reaches at an instant (fea.harmonic.beneath)."""
+        """The distances from pressed cells at which stress is reached at an instant
+        (fea.harmonic.beneath).
+        """
         pressed = loads.pressed
         assert pressed is not None
-        found = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
+        steps = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
         for piece in self.solution.pieces:
-            found += piece.depths(loads, pressed, instant, least)
-        return stairs(*np.array(found).reshape(-1, 2).T)
+            steps += piece.depths(loads, pressed, instant, least)
+        return stairs(*np.array(steps).reshape(-1, 2).T)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The surface at one instant, with its envelope over all."""
+        """The surface at one instant, with its envelope over all instants."""
         surface, c = self.surface, self.coefficients(loads)
         if loads.pressed is not None:
             stress, envelope, pressed = free_picture(surface, c, loads.pressed, instant)
@@ -326,9 +340,9 @@ class CutField:
                 surface.points, surface.triangles, "triangle", moved, stress, envelope, pressed
             )
         largest = np.zeros(len(surface.points))
-        found = squares(surface.stress)
+        envelope_squared = squares(surface.stress)
         for k in range(0, len(c), 64):
-            np.maximum(largest, found(c[k : k + 64]).max(axis=1), out=largest)
+            np.maximum(largest, envelope_squared(c[k : k + 64]).max(axis=1), out=largest)
         return Picture(
             points=surface.points,
             cells=surface.triangles,
@@ -339,12 +353,12 @@ class CutField:
         )
 
     def coefficients(self, loads: Loads) -> Floats:
-        """How much of each unit load of the surface acts at each instant, (T, L)."""
+        """The amount of each unit load of the surface at each instant, (T, L)."""
         return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
 
     @cached_property
     def surface(self) -> ShownCut:
-        """The pieces in place, the uncut pin between them, held as its first clamp is."""
+        """The pieces in place and the uncut pin between them, held as its first clamp is."""
         return shown(self.section, self.solution.pieces, self.solution.held)
 
 
@@ -352,13 +366,15 @@ def cut_result(
     solution: CutSolution,
     singularities: tuple[Zone, ...],
     loads: PinLoads,
-    own: Collection[Zone] | None = None,
+    case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
-    """Maximum outside the singularities, of the uncut pin away from its cuts and about these."""
+    """The maximum outside the singularities, of the uncut pin away from its cuts and of the solids
+    about them.
+    """
     held = solution.reactions.held(loads)
     assert isinstance(held, PinLoads)
     loads = held
-    result = harmonic_result(solution.section, singularities, loads, own)
+    result = harmonic_result(solution.section, singularities, loads, case_zones)
     high: list[tuple[float, float, float]] = []
     highest, whole = None, result.maximum
     for piece in solution.pieces:

@@ -35,15 +35,11 @@ FIRST_MESH_SIZE = SectionSize()  # of the first mesh
 BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
 LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
 MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere
-SERIES_REMAINDER_RATIO = (
-    0.6  # of a pressure's last harmonic, at most what follows it: terms go as +-1/(n^2 - 1)
-)
+# The remainder of a pressure's series over its last harmonic, at most: terms go as +-1/(n^2 - 1).
+SERIES_REMAINDER_RATIO = 0.6
 LOW_STRESS_POWER = 0.5  # power of the refinement where stresses are low
-REFINE_ABOVE, MIN_SPACING, MAX_PLACES = (
-    0.95,
-    0.1,
-    3,
-)  # places where they are: of the maximum, of r apart, so many
+# Places of high stress: least stress, of the maximum; least distance, of r; their number at most.
+REFINE_ABOVE, MIN_SPACING, MAX_PLACES = 0.95, 0.1, 3
 RING_END_ELEMENT = 0.25  # of a ring of contact pressure: the elements at its ends
 # The scatter was measured on random shoulders (benchmarks coverage). Nodes lie on the edges of
 # zones, so that the maximum outside converges at least linearly.
@@ -57,10 +53,13 @@ PATCH_ELEMENTS = 2.0  # elements of the first mesh about such a place, in which 
 
 @dataclass(frozen=True)
 class HarmonicSolution:
-    """Fields on one mesh, how fine (of its scale) that mesh is at each singularity, and
-    Poisson's ratio. quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
-    elsewhere: stress (P, 6, K) Pa at the points that were asked for. ends: where pressures end on
-    the outline, (r, z) in m.
+    """The fields of a body of revolution on one mesh.
+
+    close: element size at each singularity, relative to its scale.
+    nu: Poisson's ratio.
+    ends: where pressures end on the outline, (r, z) in m.
+    quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
+    elsewhere: stress (P, 6, K) Pa at the points that were requested.
     """
 
     fields: MeridianFields
@@ -72,16 +71,18 @@ class HarmonicSolution:
 
     @property
     def mesh(self) -> MeridianMesh:
-        """Of the section."""
+        """The mesh of the section."""
         assert self.fields.mesh is not None
         return self.fields.mesh
 
 
 @dataclass(frozen=True)
 class SectionProblem:
-    """A body of revolution of a material, clamped at surfaces (by name), in some cases, with the
-    singularities of any of these. first: where the first mesh is kept for other loads. besides:
-    unit loads that are solved, too.
+    """A body of revolution of a material, clamped at surfaces (by name), in some cases.
+
+    singularities: those of any of the cases.
+    first: where the first mesh is kept for other loads.
+    besides: additional unit loads to be solved.
     """
 
     pin: Pin
@@ -101,11 +102,13 @@ def harmonic_solution(
     elsewhere: Floats = NO_POINTS,
     grades: Sequence[Grade] = (),
 ) -> HarmonicSolution:
-    """All unit loads of the cases on mesh number `level`, each `ratio` times finer than the one
-    before, from which the mesh results `before` are: where these have high stresses, that is, and
-    elsewhere by the root of that; all over, without mesh results before. elsewhere: points (P, 2),
-    r and z in m, at which stress is read too, but no maximum looked for; grades: how fine the mesh
-    is there.
+    """Solve all unit loads of the cases on mesh number `level`, each `ratio` times finer than the
+    one before.
+
+    before: mesh results from which to refine: by the ratio where they have high stresses, by its
+    root elsewhere; without any, everywhere.
+    elsewhere: points (P, 2), r and z in m, at which stress is read too, but no maximum is searched.
+    grades: fineness of the mesh at these points.
 
     Raises: MeshError, SolveError.
     """
@@ -163,19 +166,22 @@ def harmonic_solution(
 
 
 def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
-    """Without the first points after those that have a displacement, and the stress at these."""
+    """The fields without the first points after those that have a displacement, and the stress at
+    these.
+    """
     if not count:
         return fields, np.zeros((0, *fields.stress.shape[1:]))
     first = len(fields.displacement)
     here, rest = slice(first, first + count), np.r_[:first, first + count : len(fields.points)]
     unread = np.flatnonzero(np.isin(rest, fields.unread))
-    kept = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
-    return kept, fields.stress[here]
+    body = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
+    return body, fields.stress[here]
 
 
 def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
-    """How fine the mesh is at the ends of rings of contact pressure, so that the elements that feel
-    its steps (fea.core.pressed) are beside them.
+    """The fineness of the mesh at the ends of rings of contact pressure.
+
+    It is such that the elements that feel the steps of pressure (fea.core.pressed) lie beside them.
     """
     bands = (pin.band(name) for name in rings)
     return [
@@ -196,13 +202,13 @@ def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
 
 @lru_cache(64)
 def _rims(pin: Pin, singularities: tuple[Zone, ...]) -> Floats:
-    """Points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
+    """The points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
     read = [rim(pin, p, d) for p in singularities for d in _distances(p)]
     return np.concatenate([NO_POINTS, *read])
 
 
 def _distances(singularity: Zone) -> tuple[float, ...]:
-    """From a singularity, m, at which stress is read on a circle about it."""
+    """The distances from a singularity, m, at which stress is read on a circle about it."""
     radii = (singularity.varied(times).radius for times in (1.0, *DISTANCE_VARIATIONS))
     return tuple(dict.fromkeys((*radii, FEATURE_READING_DISTANCE * singularity.feature)))
 
@@ -210,8 +216,10 @@ def _distances(singularity: Zone) -> tuple[float, ...]:
 def _ends(
     pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
 ) -> tuple[tuple[float, float], ...]:
-    """Where a pressure ends on a smooth surface, (r, z) in m. That of contact does not end where a
-    cell does: its steps are those of the cells, and are not read.
+    """The places where a pressure ends on a smooth surface, (r, z) in m.
+
+    Contact pressure does not end where a cell does: its steps belong to the cells, and are not
+    read.
     """
     pushed = {name for load in loads if load.kind == "pressure" for name in load.surfaces}
     if not clamps and any(load.n <= 1 and not load.shears for load in loads):
@@ -227,8 +235,8 @@ def _spots(
     close: tuple[float, ...],
     factor: float,
 ) -> list[Spot]:
-    """At singularities, with elements `close` (of their scale), and at edges of bands, `factor`
-    times finer than on the first mesh.
+    """The spots where the mesh is refined: singularities, with elements `close` (of their scale),
+    and edges of bands, `factor` times finer than on the first mesh.
     """
     spots = [
         _spot(p, near if p.measured else CORNER_ELEMENT_SIZES[0] / factor, factor)
@@ -244,7 +252,10 @@ def _spots(
 
 
 def _spot(singularity: Zone, near: float, factor: float) -> Spot:
-    """near: the element there, of the singularity's scale."""
+    """The spot at a singularity.
+
+    near: size of the element there, of the singularity's scale.
+    """
     p = singularity
     size = near * p.scale
     if p.kind == "edge of a load":
@@ -253,7 +264,7 @@ def _spot(singularity: Zone, near: float, factor: float) -> Spot:
 
 
 def _matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
-    """Whether stress in a singularity is so large that it may govern, so that its growth is
+    """Return whether stress in a singularity is so large that it may govern, so that its growth is
     measured.
     """
     return any(
@@ -271,11 +282,11 @@ class HarmonicMesh:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """Those of the problem."""
+        """The zones of the problem."""
         return self.problem.zones
 
     def field(self, case: str) -> HarmonicField:
-        """Stress as one case sees it."""
+        """The stress as one case sees it."""
         return HarmonicField(self.solution, self.problem.zones_of(case))
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -286,8 +297,10 @@ class HarmonicMesh:
 
 
 class Harmonic:
-    """Any body of revolution (fea.core.model.Model). first: what was solved on the first mesh
-    before. pressed: whether pressures of contact act.
+    """The harmonic model of any body of revolution (fea.core.model.Model).
+
+    first: the solution on the first mesh of an earlier run.
+    pressed: whether contact pressures act.
     """
 
     name = "harmonic"
@@ -299,14 +312,17 @@ class Harmonic:
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> HarmonicMesh:
-        """As of every model."""
+        """Solve one mesh, as every model does."""
         posed = section_problem(problem, self._first)
         results = () if before is None else before.results
         return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
 
 
 def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> SectionProblem:
-    """A problem as its sections are solved. Raises: ArgumentError for what is not turned."""
+    """The problem of a pin's section.
+
+    Raises: ArgumentError for a pin that is not a body of revolution.
+    """
     pin = problem.pin
     if not isinstance(pin, Pin):
         raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
@@ -316,15 +332,15 @@ def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> Sec
 
 
 class HarmonicField:
-    """What a solution says of any loads made of its unit loads (fea.core.solution)."""
+    """The stress of a section under any combination of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: HarmonicSolution, singularities: tuple[Zone, ...]) -> None:
         self.solution, self.singularities = solution, singularities
         self.fields = solution.fields
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities; `least`
-        where it does not exceed that.
+        """The largest von Mises stress (T,) Pa at every instant outside the singularities, or
+        `least` where it does not exceed that.
         """
         around = self.reader(loads)
         return around.maxima(around.fields.outside(self.singularities), least)
@@ -336,11 +352,13 @@ class HarmonicField:
         return top.value, top.instant
 
     def reader(self, loads: Loads) -> Circumference:
-        """Where their largest stress is looked for (fea.harmonic.free_surface)."""
+        """The points and angles at which the largest stress under these loads is searched
+        (fea.harmonic.free_surface).
+        """
         return reader(self.fields, loads, self.solution.nu)
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The surface at one instant, with its envelope over all."""
+        """The surface at one instant, with its envelope over all instants."""
         return revolve(self.fields, loads, instant, self.solution.nu)
 
 
@@ -348,15 +366,16 @@ def harmonic_result(
     solution: HarmonicSolution,
     singularities: tuple[Zone, ...],
     loads: PinLoads,
-    own: Collection[Zone] | None = None,
+    case_zones: Collection[Zone] | None = None,
 ) -> MeshMaximum:
-    """Maximum outside the singularities, and what is inside them. own: those of this case, where
-    others have more; all by default.
+    """The maximum outside the singularities, and that inside each of them.
+
+    case_zones: the singularities of this case, where others have more; all by default.
     """
     around = reader(solution.fields, loads, solution.nu)
     fields = around.fields
-    mine = singularities if own is None else own
-    among = fields.outside(mine)
+    excluded = singularities if case_zones is None else case_zones
+    among = fields.outside(excluded)
     top = around.top(among)
     result = MeshMaximum(
         unknowns=fields.unknowns,
@@ -364,7 +383,7 @@ def harmonic_result(
         instant=top.instant,
         location=_location(fields.points[top.point], top.angle),
         singularities=tuple(
-            replace(inside(fields, around, p, close, solution.nu), acts=p in mine)
+            replace(inside(fields, around, p, close, solution.nu), acts=p in excluded)
             for p, close in zip(singularities, solution.close, strict=True)
         ),
         left_out=_left_out(around, loads, top),
@@ -372,7 +391,9 @@ def harmonic_result(
         quiet=solution.quiet,
         energy=fields.energy,
     )
-    return replace(result, interval=interval(fields, around, mine)) if result.governed else result
+    return (
+        replace(result, interval=interval(fields, around, excluded)) if result.governed else result
+    )
 
 
 def around_governing(
@@ -381,7 +402,7 @@ def around_governing(
     loads: Loads,
     maximum: float,
 ) -> tuple[float, float] | None:
-    """The interval of a mesh result without the rest of it, of which the maximum (Pa) is known."""
+    """The interval of a mesh result alone, given its maximum, Pa."""
     around = reader(solution.fields, loads, solution.nu)
     if not felt_beyond(around.fields, around, singularities, maximum):
         return None
@@ -391,27 +412,30 @@ def around_governing(
 def high_places(
     around: Circumference, points: Floats, among: Mask, top: Crest, least: float = REFINE_ABOVE
 ) -> tuple[tuple[float, float], ...]:
-    """Points (r, z) where stress is nearly the maximum, `least` of it at least, the highest first,
-    well apart.
+    """Points (r, z) where stress is nearly the maximum, the highest first, well apart.
+
+    least: the least stress there, as a fraction of the maximum.
     """
     rows = np.flatnonzero(among)
     now = slice(top.instant, top.instant + 1)
     for bound in (around.reach, around.bound):
         rows = rows[bound(rows, now)[:, 0] >= least * top.value]
     value, _ = around.round(rows, np.full(len(rows), top.instant))
-    found: list[Floats] = []
+    places: list[Floats] = []
     for k in np.argsort(-value, kind="stable"):
-        if value[k] < least * top.value or len(found) == MAX_PLACES:
+        if value[k] < least * top.value or len(places) == MAX_PLACES:
             break
         at = points[rows[k]]
-        if all(np.hypot(*(at - other)) > MIN_SPACING * at[0] for other in found):
-            found.append(at)
-    return tuple((float(r), float(z)) for r, z in found)
+        if all(np.hypot(*(at - other)) > MIN_SPACING * at[0] for other in places):
+            places.append(at)
+    return tuple((float(r), float(z)) for r, z in places)
 
 
 def _left_out(around: Circumference, loads: PinLoads, top: Crest) -> float:
-    """Of a bearing pressure's series, by its last harmonic at the maximum (a thin tube that becomes
-    oval feels more of it than a solid pin).
+    """The error from truncating the series of a bearing pressure, Pa, by its last harmonic at the
+    maximum.
+
+    A thin tube that becomes oval feels more of that harmonic than a solid pin.
     """
     n, largest = around.last(np.array([top.point]))
     if loads.distribution != "cosine" or n != loads.terms:

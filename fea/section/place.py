@@ -19,7 +19,7 @@ FLEXIBILITY_ERROR = 0.001
 
 @dataclass(frozen=True)
 class FoundSection:
-    """The largest stress of sections, the parts of its error (Pa), and the loads at its instant."""
+    """The largest stress of sections, the parts of its error, Pa, and the loads at its instant."""
 
     at: AtSection
     parts: ErrorParts
@@ -27,25 +27,28 @@ class FoundSection:
 
     @property
     def time(self) -> float | None:
-        """s; None without a motion."""
+        """The time of the instant, s; None without a motion."""
         return None if self.loads.times is None else float(self.loads.times[0])
 
     @property
     def lower_end(self) -> float:
-        """Less the error, Pa."""
+        """The stress less its error, Pa."""
         return max(0.0, self.at.value - self.parts.total)
 
     @property
     def upper_end(self) -> float:
-        """With the error, Pa."""
+        """The stress plus its error, Pa."""
         return self.at.value + self.parts.total
 
     def known(self, tolerance: float) -> bool:
-        """Whether the error is within a tolerance, relative."""
+        """Return whether the error is within a tolerance, relative."""
         return self.parts.total <= tolerance * self.at.value
 
     def place(self, tolerance: float, used: float | None) -> SectionPlace:
-        """As results have it. used: of a fully plastic section."""
+        """The largest stress of sections as a place of the results.
+
+        used: part of the fully plastic section that is used.
+        """
         at = self.at
         return SectionPlace(
             at.value, self.parts.total, "converged" if self.known(tolerance) else "unconverged",
@@ -61,9 +64,10 @@ def found_section(
     tolerance: float,
     cells: float | None = None,
 ) -> FoundSection:
-    """Over a case, and between its instants where it is a motion. cells: of contact that the forces
-    are from, their error, relative; None where the forces are given. Statics alone has these exact;
-    between two clamps they have the error of a beam.
+    """The largest stress of sections over a case, also between its instants where it is a motion.
+
+    cells: relative error from the contact cells that the forces come from; None where the forces
+    are given. Statics alone gives those exactly; between two clamps they have the error of a beam.
     """
     rise = 0.0
     if between is not None and len(loads) > 1:

@@ -22,8 +22,9 @@ def row_of(
     tolerance: float,
     links: PinLoads | None = None,
 ) -> Maximum:
-    """A surface's peak with its section's: what governs is the row. links: the loads of the links
-    at the section's instant, if they are not the section's own.
+    """The row of a surface's peak and its section's: the one that governs.
+
+    links: loads of the links at the section's instant, if they are not the section's own.
     """
     if surface.max_von_mises is None or surface.error_estimate is None:
         return surface
@@ -52,8 +53,8 @@ def _surface(peak: Maximum) -> SurfacePlace:
 
 
 def _looser(peak: Maximum, error: float, tolerance: float) -> Maximum:
-    """With an error (Pa) that the other place may add: a row is as uncertain as the larger of both
-    may be.
+    """The peak with the error, Pa, that the other place may add: a row is as uncertain as the
+    larger of both.
     """
     largest = peak.max_von_mises or 0.0
     if error <= (peak.error_estimate or 0.0) or not largest:
@@ -74,7 +75,9 @@ def _looser(peak: Maximum, error: float, tolerance: float) -> Maximum:
 
 
 def _at_least(peak: Maximum, low: float) -> Maximum:
-    """With an interval that begins at a stress (Pa), if it has one: sections have that much."""
+    """The peak with an interval, if it has one, that begins at a stress, Pa, which sections surely
+    have.
+    """
     if peak.interval is None:
         return peak
     largest, (first, last) = peak.max_von_mises or 0.0, peak.interval
@@ -88,11 +91,11 @@ def _by_section(
 ) -> Maximum:
     at, relative = section.at, section.parts.total / section.at.value
     known = section.known(tolerance)
-    own = accuracy(relative, tolerance, known)
+    verdict_reason = accuracy(relative, tolerance, known)
     singular = surface.verdict == "singular"
     _, more, rest = surface.note.partition("; ")
     others = tuple(code for code in surface.reasons if code not in SURFACE_CODES)
-    note = Reason("", SECTION_CODES) + own + Reason(more + rest, others)
+    note = Reason("", SECTION_CODES) + verdict_reason + Reason(more + rest, others)
     row = replace(
         surface,
         max_von_mises=at.value,
@@ -117,7 +120,7 @@ def _by_section(
 
 
 def with_contact(peak: Maximum, contact: ContactPlace) -> Maximum:
-    """With what only contact has."""
+    """The peak with the places that only contact has."""
     if peak.places is None:
         return peak
     return replace(peak, places=replace(peak.places, contact=contact))

@@ -33,18 +33,18 @@ from pinbase.arrays import Floats, Mask
 
 SECTIONS_BETWEEN_STATIONS = 9  # sections between two stations, both ends included
 WALL_FRACTIONS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
-CLOSER_POINTS = (
-    33  # points between two of these, about the angle, and along the pin, near the largest
-)
+# Points between two of these, about the angle, and along the pin, near the largest
+CLOSER_POINTS = 33
 MIN_SECTION_GAIN = 1e-9  # relative: a section must have so much more than another
 CLOSER_ANGLE = np.radians(2.0)  # of that angle
 
 
 @dataclass(frozen=True)
 class AtSection:
-    """The largest stress of sections, Pa, at an instant (its number): z, radius (m) and angle (rad)
-    of the point, in a cell of the beam; axial and shear force (N), bending moment and torque (N m)
-    there.
+    """The largest stress of sections, Pa, at an instant (its number).
+
+    z, r, angle: of the point, m, m, rad, in a cell of the beam.
+    The axial and shear forces, N, bending moment and torque, N m, are those at the point.
     """
 
     value: float
@@ -60,14 +60,18 @@ class AtSection:
     section: Circle
 
     def plastic_use(self, strength: float) -> float:
-        """Which part of what the fully plastic section carries is used, of a yield strength, Pa."""
+        """The part of the fully plastic section's resistance that is used.
+
+        strength: yield strength, Pa.
+        """
         forces = self.shear_force, self.bending_moment, abs(self.axial_force), abs(self.torque)
         return plastic_use(self.section, *forces, strength)
 
 
 class SectionField:
-    """Of a pin clamped at surfaces (by its own names), or in balance, under any loads made of the
-    unit loads of some cases (fea.core.solution: Answer).
+    """The stress of a pin's sections under any combination of the unit loads of some cases.
+
+    The pin is clamped at surfaces (by its own names), or in balance (fea.core.solution: Answer).
 
     Raises: as fea.beam.timoshenko.stepped_beam.
     """
@@ -89,9 +93,9 @@ class SectionField:
         """Stress of each unit load at points of the sections, section by section."""
         inside = self.forces.inside(self._cells, self._z)
         sections = sections_at(self.pin, self.forces, self._cells, self._z)
-        each = {s: _at_radii(s, WALL_FRACTIONS, self.nu) for s in set(sections)}
-        radii = np.array([each[s][0] for s in sections])
-        per_force = np.array([each[s][1] for s in sections])
+        by_section = {s: _at_radii(s, WALL_FRACTIONS, self.nu) for s in set(sections)}
+        radii = np.array([by_section[s][0] for s in sections])
+        per_force = np.array([by_section[s][1] for s in sections])
         stress = np.einsum("srcq,sqk->srck", per_force, inside)
         z = np.broadcast_to(self._z[:, None], radii.shape)
         points = np.stack([radii, z], axis=2).reshape(-1, 2)
@@ -106,13 +110,13 @@ class SectionField:
         )
 
     def _felt(self, loads: Loads) -> LoadAmounts:
-        """Loads without what no section notices."""
+        """The loads without those that cause no section forces."""
         known = set(self.forces.loads)
-        found = {load: x for load, x in loads.coefficients().items() if load in known}
-        return LoadAmounts(loads.case, found, len(loads))
+        amounts = {load: x for load, x in loads.coefficients().items() if load in known}
+        return LoadAmounts(loads.case, amounts, len(loads))
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """Largest stress (T,) Pa at every instant, `least` where it does not exceed that."""
+        """The largest stress (T,) Pa at every instant, or `least` where it does not exceed that."""
         return self.around(loads).maxima(self.all, least)
 
     def largest(self, loads: Loads) -> tuple[float, int]:
@@ -121,23 +125,23 @@ class SectionField:
         return top.value, top.instant
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
-        """None: sections have no surface."""
+        """Return None, since sections have no surface."""
         return None
 
     @property
     def all(self) -> Mask:
-        """All points of the sections."""
+        """A mask of all points of the sections."""
         return np.ones(len(self.fields.points), dtype=bool)
 
     def around(self, loads: Loads) -> Circumference:
-        """A case on these points."""
+        """The case on these points."""
         return Circumference(self.fields, self._felt(loads))
 
     def _top(self, loads: Loads) -> Crest:
         return self.around(loads).top(self.all)
 
     def place(self, loads: Loads) -> AtSection:
-        """Where and when the largest is, and what acts there."""
+        """The place and instant of the largest stress, and the section forces there."""
         top = self._top(loads)
         row = top.point // len(WALL_FRACTIONS)
         cell = self._cells[row]
@@ -147,24 +151,26 @@ class SectionField:
         inside = self.forces.inside(cells, z)
         forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
         both = zip(sections, forces, strict=True)
-        found = [self._closer(section, tuple(x), top) for section, x in both]
-        values = np.array([value for value, _, _ in found])
+        crests = [self._closer(section, tuple(x), top) for section, x in both]
+        values = np.array([value for value, _, _ in crests])
         k = int(values.argmax()) if values.max() > (1.0 + MIN_SECTION_GAIN) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
-        value, r, angle = found[k]
+        value, r, angle = crests[k]
         return AtSection(
             value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
             float(np.hypot(*M)), float(T[1]), sections[k],
         )  # fmt: skip
 
     def held_twice(self, at: AtSection) -> float:
-        """The relative error of what acts there since it is between two clamps; else 0."""
+        """The relative error of the section forces there if the point is between two clamps; else
+        0.
+        """
         spans = self.forces.spans
         (span,) = (s for s in spans if s.first <= at.cell < s.last)
         return between_clamps(self.forces, span)
 
     def _closer_z(self, row: int) -> Floats:
-        """A section by its number, and others near it between the same stations, m."""
+        """The z of a section, by its number, and of others near it between the same stations, m."""
         z, cell = float(self._z[row]), self._cells[row]
         start, end = self.forces.stations[cell : cell + 2]
         step = (end - start) / (SECTIONS_BETWEEN_STATIONS - 1)
@@ -197,7 +203,7 @@ class SectionField:
 
 
 def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
-    """Radii (R,), m, at parts of the way from bore to outside, and stress there per V, M, N, T,
+    """Radii (R,), m, at parts of the way from bore to outside, and the stress there per V, M, N, T,
     (R, 6, 4).
     """
     radii = section.inner + parts * (section.outer - section.inner)
@@ -207,11 +213,13 @@ def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats
 def sections_at(
     pin: Pin, forces: InternalForces, cells: NDArray[np.intp], z: Floats
 ) -> list[Circle]:
-    """Of a pin at z (S,), m, each as seen from the cell (S,) of the beam that it is in; those of a
-    cone as they are there.
+    """The sections of a pin at z (S,), m, each as seen from the cell (S,) of the beam that it is
+    in.
+
+    Those of a cone have its diameter at z.
     """
     starts, stations = np.array(pin.stations), forces.stations
     middle = 0.5 * (stations[cells] + stations[cells + 1])
     which = np.clip(np.searchsorted(starts, middle) - 1, 0, len(pin.segments) - 1)
-    each = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
-    return [thinnest_section(pin.segments[i], x, x) for i, x in each]
+    positions = zip(which.tolist(), (z - starts[which]).tolist(), strict=True)
+    return [thinnest_section(pin.segments[i], x, x) for i, x in positions]

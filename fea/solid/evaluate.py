@@ -39,8 +39,9 @@ GIVEN_SOLID_MESHES = replace(SOLID_MESHES, ratio=2.0)
 
 @dataclass(frozen=True)
 class SolidSolution:
-    """Unit fields on one mesh, and which of their points are in each singularity; varied: which
-    are in none if half and twice the distance is left out.
+    """The unit fields on one mesh, and which of their points are in each singularity.
+
+    varied: the points that are in none if half and twice the distance is excluded.
     """
 
     fields: UnitFields
@@ -50,7 +51,7 @@ class SolidSolution:
 
     @property
     def outside(self) -> Mask:
-        """Points that are in no singularity."""
+        """The points that are in no singularity."""
         return _in_none(self.within, len(self.fields.points))
 
 
@@ -72,10 +73,13 @@ def solid_solution(
     element: Element = "curved",
     memory: float | None = None,
 ) -> SolidSolution:
-    """All unit loads of the cases on a mesh, which is finer at edges of bands and clamps.
+    """Solve all unit loads of the cases on a mesh that is finer at edges of bands and clamps.
 
-    singularities: of a body of revolution; those of any other are found on its mesh, `distance` (of
-    the diameter) wide. memory: as in fea.solve.solve.Asked. Raises: MeshError, SolveError.
+    singularities: those of a body of revolution; those of any other body are found on its mesh,
+    `distance` (of the diameter) wide.
+    memory: as in fea.solve.solve.Asked.
+
+    Raises: MeshError, SolveError.
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
@@ -93,7 +97,7 @@ def solid_solution(
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
         r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
         within, *varied = ([~outside((p,), r, z) for p in here] for here in near)
-        found = list(singularities)
+        zones = list(singularities)
     else:
         fields = model.solve(units)
         limit = partial(free_of_arcs, profile) if isinstance(profile, Pin) else None
@@ -103,17 +107,19 @@ def solid_solution(
             for times in (1.0, *DISTANCE_VARIATIONS)
         ]
         within, *varied = ([mask for _, mask in here] for here in at)
-        found = [singularity for singularity, _ in at[0]]
+        zones = [singularity for singularity, _ in at[0]]
     count = len(fields.points)
     return SolidSolution(
-        fields, tuple(found), tuple(within), tuple(_in_none(masks, count) for masks in varied)
+        fields, tuple(zones), tuple(within), tuple(_in_none(masks, count) for masks in varied)
     )
 
 
 @dataclass(frozen=True)
 class SolidMeshSolution:
-    """A mesh solved as a solid (fea.core.model.MeshSolution). ratio, before: how much coarser the
-    mesh below is, and its maxima by case, from which the growth of stress in zones follows.
+    """A mesh solved as a solid (fea.core.model.MeshSolution).
+
+    ratio: how much coarser the mesh before is.
+    before: its maxima by case, from which the growth of stress in zones follows.
     """
 
     solution: SolidSolution
@@ -122,11 +128,13 @@ class SolidMeshSolution:
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """Of a body of revolution those of the problem, of any other those found on the mesh."""
+        """The zones of the problem for a body of revolution; those found on the mesh for any
+        other.
+        """
         return self.solution.singularities
 
     def field(self, case: str) -> SolidField:
-        """Stress; every case sees the same zones."""
+        """The stress of a case; every case has the same zones."""
         return SolidField(self.solution)
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
@@ -135,8 +143,9 @@ class SolidMeshSolution:
 
 
 class Solid:
-    """Any body, by tetrahedra (fea.core.model.Model). given: whether its mesh comes from a file,
-    which only halving its elements refines.
+    """The model of any body by tetrahedra (fea.core.model.Model).
+
+    given: whether its mesh comes from a file, which can only be refined by halving its elements.
     """
 
     name = "solid"
@@ -148,7 +157,7 @@ class Solid:
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> SolidMeshSolution:
-        """As of every model."""
+        """Solve one mesh, as every model does."""
         solution = solid_solution(
             problem.pin, problem.material, problem.clamps, problem.cases, problem.zones,
             MeshSize().finer(self.meshes.ratio**level), problem.distance, self._element,
@@ -159,7 +168,7 @@ class Solid:
 
 
 class SolidField:
-    """What a solution says of any loads made of its unit loads (fea.core.solution)."""
+    """The stress of a solid under any combination of its unit loads (fea.core.solution)."""
 
     def __init__(self, solution: SolidSolution) -> None:
         self.solution = solution
@@ -174,7 +183,7 @@ class SolidField:
         return top.maximum, top.instant
 
     def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The body at one instant, with its envelope over all."""
+        """The body at one instant, with its envelope over all instants."""
         fields = self.solution.fields
         top = envelope(fields, loads)
         c = fields.coefficients(loads)[instant]
@@ -193,8 +202,10 @@ class SolidField:
 def solid_result(
     solution: SolidSolution, earlier: Mapping[str, MeshMaximum], ratio: float, loads: PinLoads
 ) -> MeshMaximum:
-    """Maximum outside the singularities and what is inside; exponents from the growth since the
-    `earlier` mesh result at the same case, on a mesh `ratio` times coarser.
+    """The maximum outside the singularities and that inside each of them.
+
+    Exponents follow from the growth since the `earlier` mesh result of the same case, on a mesh
+    `ratio` times coarser.
     """
     fields, before = solution.fields, earlier.get(loads.case)
     top = envelope(fields, loads, solution.outside, solution.within)

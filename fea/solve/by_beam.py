@@ -23,7 +23,10 @@ def by_beam(
     requirement: Requirement,
     remark: Reason = NO_REASON,
 ) -> Solution:
-    """The solution of a case, with the beam's own error. remark: appended to its note."""
+    """The solution of a case by the beam model, with its own error.
+
+    remark: appended to its note.
+    """
     start, rise, pin = time.perf_counter(), 0.0, held.pin
     assert isinstance(pin, Pin)
     note = held.notes.get(case.case, NO_REASON) + remark

@@ -51,8 +51,9 @@ BEAM_DECIDES = Reason(f"beam: {DECIDED_TEXT}", ("beam-decides",))
 
 @dataclass(frozen=True)
 class Attempt:
-    """A held pin, the cases that are left to solve, and what is required of them. failure: of the
-    step before, if that failed.
+    """A held pin, the cases that are left to solve, and the requirement on them.
+
+    failure: the failure of the step before, if it failed.
     """
 
     held: HeldPin
@@ -62,15 +63,17 @@ class Attempt:
     failure: Exception | None = None
 
     def refined(self, model: Model, why: Reason | None = None) -> dict[str, Solution]:
-        """The cases on finer and finer meshes of a model."""
+        """Solve the cases on finer and finer meshes of a model."""
         why = why or _chosen(self.requirement, model.name)
         return refine(model, self.held, self.problem, self.requirement, why, self.progress)
 
 
 @dataclass(frozen=True)
 class Rung:
-    """One step of the choice. solve: gives the cases that this step answers well enough. trial: a
-    failure goes on to the next step.
+    """One step of the choice.
+
+    solve: returns the cases that this step answers well enough.
+    trial: whether a failure goes on to the next step.
     """
 
     support: Support
@@ -159,7 +162,7 @@ def _beam(at: Attempt) -> dict[str, Solution]:
 
 
 def _beam_instead(at: Attempt) -> dict[str, Solution]:
-    """Beams, with their own error, where no harmonic mesh could be solved."""
+    """The beam solutions, with their own error, where no harmonic mesh could be solved."""
     remark = Reason(f"; the harmonic model failed: {at.failure}")
     why = Reason("beam: the harmonic model failed", ("harmonic-failed",))
     return {
@@ -188,7 +191,10 @@ def _solid(at: Attempt) -> dict[str, Solution]:
 
 
 def _local_solids(at: Attempt) -> LocalSolids:
-    """Solids about the cuts of a pin, alone. Raises: Refused where they will not do."""
+    """The model with solids about the cuts of a pin.
+
+    Raises: Refused where it does not apply.
+    """
     pin, clamps, problem = at.held.pin, at.held.clamps, at.problem
     assert isinstance(pin, CutPin)
     whole = unringed(pin)
@@ -204,7 +210,10 @@ def _local_solids(at: Attempt) -> LocalSolids:
 
 
 def _contact(at: Attempt) -> dict[str, Solution]:
-    """The cases whose cells are fine enough, solved; and kept where these leave nothing open."""
+    """The cases whose contact cells are fine enough, solved.
+
+    The held pin is returned too where these leave no case open.
+    """
     held, requirement = at.held, at.requirement
     assert isinstance(held, HeldContact)
     cases = at.problem.cases
@@ -237,7 +246,7 @@ def _contact(at: Attempt) -> dict[str, Solution]:
 
 
 def _limit(problem: PinProblem, requirement: Requirement) -> float | None:
-    """Stress with the required factor, Pa, if only that is to be decided."""
+    """The stress with the required factor, Pa, if only that is to be decided."""
     strength, required = problem.material.yield_strength, requirement.required
     if requirement.goal == "value" or strength is None or required is None:
         return None
@@ -253,8 +262,10 @@ def _foundation_requested(at: Attempt) -> dict[str, Solution]:
 
 
 def _foundation(at: Attempt) -> dict[str, Solution]:
-    """The cases that beams on foundations answer within the tolerance, or that they show to be safe
-    whatever contact does. Of a pin that fails it matters by how much.
+    """The cases that beams on foundations answer within the tolerance, or show to be safe whatever
+    contact does.
+
+    A pin that fails is left to contact, since the amount of its overload matters.
     """
     assert isinstance(at.held, HeldFoundation)
     out, limit = {}, _limit(at.problem, at.requirement) or 0.0
@@ -270,7 +281,7 @@ def _foundation(at: Attempt) -> dict[str, Solution]:
 
 
 def with_reason(solution: Solution, why: Reason) -> Solution:
-    """With the reason for its model, if that gave an answer."""
+    """The solution with the reason for its model, if the model gave an answer."""
     peak = solution.peak
     if solution.answer is None:
         return solution
@@ -278,7 +289,7 @@ def with_reason(solution: Solution, why: Reason) -> Solution:
 
 
 def _chosen(requirement: Requirement, model: str) -> Reason:
-    """Why this model and no smaller one."""
+    """The reason why this model, and no smaller one, is used."""
     if requirement.model == model:
         return Reason(f"{model}: requested", ("requested",))
     if model == "solid":

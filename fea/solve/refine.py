@@ -36,14 +36,14 @@ NO_MESHES = MeshSequence(MESH_RATIO, 0.0, 1, 0, 0.0)  # of a model without any
 
 
 def sequence_of(pin: PinLike, model: str) -> MeshSequence:
-    """How a model, by its name, refines the meshes of a pin."""
+    """The sequence of meshes by which a model, given by its name, refines a pin."""
     solid = GIVEN_SOLID_MESHES if pin.meshed else SOLID_MESHES
     sequences = {"harmonic": SECTION_MESHES, LOCAL_MODEL: LOCAL_MESHES, "solid": solid}
     return sequences.get(model, NO_MESHES)
 
 
 def count_loads(cases: tuple[PinLoads, ...]) -> int:
-    """Unit loads of all the cases, at least one."""
+    """The number of unit loads of all the cases, at least one."""
     return max(1, len({load for case in cases for load in case.coefficients()}))
 
 
@@ -54,15 +54,19 @@ def zones_of(
     cases: tuple[PinLoads, ...],
     requirement: Requirement,
 ) -> tuple[Zone, ...]:
-    """Zones of unbounded stress in any of the cases; of a pin with cuts those of its profile, which
-    end where its cuts begin.
+    """Zones of unbounded stress in any of the cases.
+
+    Those of a pin with cuts are the zones of its profile, which end where its cuts begin.
     """
+    # Only the profile of a pin with cuts is a body of revolution, for which zones are known. Where
+    # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
     turned, openings = pin, tuple[tuple[float, float], ...]()
     if isinstance(pin, CutPin) and not pin.revolved:
         turned, openings = pin.profile, tuple(c.opens for c in unringed(pin).cuts.values())
-    found = singularities_of(turned, material, clamps, cases, requirement.distance)
+    profile_zones = singularities_of(turned, material, clamps, cases, requirement.distance)
     return tuple(
-        p.up_to(*(begins(max(a - p.z, p.z - b), (b - a) / 2.0) for a, b in openings)) for p in found
+        zone.up_to(*(begins(max(a - zone.z, zone.z - b), (b - a) / 2.0) for a, b in openings))
+        for zone in profile_zones
     )
 
 
@@ -74,9 +78,11 @@ def refine(
     why: Reason,
     progress: Progress,
 ) -> dict[str, Solution]:
-    """Finer and finer meshes until every case is converged or decided, or a limit is reached.
+    """Solve finer and finer meshes until every case is converged or decided, or a limit is reached.
 
-    why: the reason for the model. Raises: MeshError, SolveError.
+    why: the reason for the model.
+
+    Raises: MeshError, SolveError.
     """
     meshes, material = model.meshes, problem.material
     posed = _posed(model, held, problem, requirement)
@@ -86,6 +92,8 @@ def refine(
     notes = dict(held.notes)
     before: MeshBefore | None = None
     for level in range(requirement.meshes or meshes.max_meshes):
+        # Stop before a mesh that is too large, by the unknowns that the model is likely to need
+        # next.
         if before is not None:
             next_mesh = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
             if next_mesh > meshes.max_unknowns:
@@ -98,6 +106,8 @@ def refine(
         progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
         mesh = model.solve(posed, level, before)
+        # The first mesh shows between which instants of a motion the maximum may lie; these are
+        # added for all meshes.
         if not level:
             posed = replace(posed, cases=_through_time(held, problem, mesh, posed))
         for case in posed.cases:
@@ -106,7 +116,9 @@ def refine(
             start = end
         if all(accurate_enough(requirement, material, s) for s in seen.values()):
             break
+        # The results show the model where the next mesh must be finer.
         before = MeshBefore(mesh, {case: s.results[-1] for case, s in seen.items()})
+    # Verdicts come last, since the instant of the maximum is refined on the last mesh alone.
     out = {}
     for case in posed.cases:
         between = _between(held, problem, case.case)
@@ -121,7 +133,9 @@ def refine(
 def _posed(
     model: Model, held: HeldPin, problem: PinProblem, requirement: Requirement
 ) -> MeshProblem:
-    """A held pin as models take it: with local solids the profile of the one with cuts."""
+    """The problem of a held pin as models take it; with local solids, of the profile of a pin with
+    cuts.
+    """
     pin, clamps, material = held.pin, held.clamps, problem.material
     cases = tuple(held.start(case.case) for case in problem.cases)
     turned = pin.profile if isinstance(pin, CutPin) and model.name == LOCAL_MODEL else pin
@@ -136,7 +150,7 @@ def _posed(
 
 
 def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reason:
-    """Why the meshes of a case were enough, or were all there are."""
+    """The reason why the meshes of a case were enough, or why there are no more."""
     if seen.known(requirement.tolerance):
         meshes = f"its error is within the tolerance on {len(seen.results)} meshes"
         return Reason(f"; {meshes}", ("mesh-converged",))
@@ -150,14 +164,16 @@ def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reas
 
 
 def _too_much_memory(problem: MeshProblem, model: Model, unknowns: float) -> str | None:
-    """Why a mesh with so many unknowns takes more memory than there is, if it does."""
+    """The reason why a mesh with so many unknowns takes more memory than there is; None if it does
+    not.
+    """
     units = count_loads(problem.cases)
     section, local = (units if model.name == m else 0 for m in ("harmonic", LOCAL_MODEL))
     return too_much(unknowns, problem.memory, section, local)
 
 
 def _between(held: HeldPin, problem: PinProblem, case: str) -> Between | None:
-    """What acts on the pin at any times of a motion."""
+    """The loads on the pin at any times of a motion; None without a motion."""
     links = problem.between.get(case)
     return None if links is None else lambda times: held.press(links(times))
 
@@ -178,9 +194,13 @@ def _through_time(
 def _at_crest(
     mesh: MeshSolution, case: PinLoads, seen: MeshHistory, between: Between | None
 ) -> tuple[PinLoads, MeshHistory]:
-    """With the instant at which the last mesh has its maximum, and the rise between instants."""
+    """The loads with the instant at which the last mesh has its maximum, and the history with the
+    rise between instants.
+    """
     if between is None:
         return case, seen
+    # The error between instants is how much higher the maximum may be than at the instants solved,
+    # the crest included; a crest that is no new instant leaves the mesh result as it is.
     field, last = mesh.field(case.case), seen.results[-1]
     more = with_crest(field, case, between)
     if len(more) > len(case):

@@ -28,8 +28,9 @@ from geometry.mesh.elements import Element
 
 @dataclass(frozen=True)
 class Problem:
-    """A pin, clamped at surfaces (by the pin's names), in one case; distance: as in
-    fea.solve.solve.
+    """A pin, clamped at surfaces (by the pin's names), in one case.
+
+    distance: as in fea.solve.solve.
     """
 
     pin: PinLike
@@ -40,15 +41,19 @@ class Problem:
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:
-        """Where stress is not read; of a body of revolution only, others find theirs."""
+        """The zones where stress is not read, of a body of revolution; other bodies find theirs on
+        the mesh.
+        """
         return singularities_of(self.pin, self.material, self.clamps, (self.loads,), self.distance)
 
 
 @dataclass(frozen=True)
 class ModelMesh:
-    """A mesh of a model. element: of the solid model; level: 0 is the first mesh of a run, each
-    further one finer by the square root of 2 (with local solids by
-    fea.cut.local_fields.LOCAL_MESH_RATIO), those below 0 coarser.
+    """A mesh of a model.
+
+    element: of the solid model.
+    level: 0 is the first mesh of a run; each further one is finer by the square root of 2 (with
+    local solids by fea.cut.local_fields.LOCAL_MESH_RATIO), those below 0 are coarser.
     """
 
     model: Literal["beam", "harmonic", "harmonic+local", "solid"]
@@ -59,8 +64,10 @@ class ModelMesh:
 def result_on(
     problem: Problem, rung: ModelMesh, before: tuple[MeshMaximum, ...] = ()
 ) -> MeshMaximum:
-    """The maximum on one mesh. before: the mesh result of the harmonic model, with local solids or
-    not, at the level below, where a run has one, by which it decides where its elements are small.
+    """The maximum on one mesh.
+
+    before: the mesh result of the harmonic model, with local solids or not, at the level below,
+    where a run has one, by which it decides where its elements are small.
 
     Raises: MeshError, SolveError; ValueError for a beam or section of a pin that is not a body of
     revolution and for loads that a beam cannot take.
@@ -77,7 +84,7 @@ def result_on(
 
 
 def _posed(problem: Problem, rung: ModelMesh) -> tuple[Model, MeshProblem]:
-    """A model, and the problem as it takes it."""
+    """The model, and the problem as it takes it."""
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     posed = MeshProblem(
         pin, material, clamps, (loads,), problem.singularities, distance=problem.distance
@@ -88,6 +95,6 @@ def _posed(problem: Problem, rung: ModelMesh) -> tuple[Model, MeshProblem]:
         return Harmonic(), posed
     if not isinstance(pin, CutPin):
         raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
-    found = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
+    zones = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
     bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
-    return LocalSolids(pin, bands), replace(posed, pin=pin.profile, zones=found)
+    return LocalSolids(pin, bands), replace(posed, pin=pin.profile, zones=zones)

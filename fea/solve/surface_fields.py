@@ -24,14 +24,18 @@ _EVEN_COMPONENTS = (True,) * EVEN_COUNT + (False,) * (5 - EVEN_COUNT) + (True, F
 
 @dataclass(frozen=True)
 class UnitSurface:
-    """Fields of K unit loads at P points of the surface.
+    """The fields of K unit loads at P points of the surface.
 
     points: (P, 3) m; of a body of revolution those of its meridian at theta = 0, edge by edge in
-    their order (the last of an edge is where the next begins), and `triangles` is empty. triangles:
-    (M, 3) points of any other. n: (K,) harmonics. stress: (P, 5, K) Pa, five numbers whose squares
-    sum to von Mises squared; displacement: (P, 3, K) m along r, theta, z (x, y, z). Under a load of
-    the amounts a, b (its two phases) what is `even` (of the eight, stress first) is at an angle
-    theta a cos + b sin of n theta times the number here, the rest a sin - b cos.
+    their order (the last of an edge is where the next begins), and `triangles` is empty.
+    triangles: (M, 3) points of any other body.
+    n: (K,) harmonics.
+    stress: (P, 5, K) Pa, five numbers whose squares sum to von Mises squared.
+    displacement: (P, 3, K) m along r, theta, z (x, y, z).
+
+    Under a load of the amounts a, b (its two phases) a component that is `even` (of the eight,
+    stress first) is at an angle theta a cos + b sin of n theta times the number here, any other a
+    sin - b cos.
 
     Where K loads of a solid are of one phase each they have n = 0, are even, and b = 0.
     """
@@ -45,7 +49,7 @@ class UnitSurface:
 
     @property
     def revolved(self) -> bool:
-        """Whether it is a meridian."""
+        """Whether the surface is the meridian of a body of revolution."""
         return not len(self.triangles)
 
 
@@ -87,7 +91,7 @@ def unit_surface(answer: StressField) -> UnitSurface | None:
 
 
 def amounts(answer: StressField, loads: PinLoads) -> Floats:
-    """How much of each unit load of the surface acts at each instant, by phase: (T, K, 2)."""
+    """The amount of each unit load of the surface at each instant, by phase: (T, K, 2)."""
     if isinstance(answer, SolidField | CutField):
         known = answer.solution.fields if isinstance(answer, SolidField) else answer
         one = known.coefficients(loads)
@@ -99,7 +103,7 @@ def amounts(answer: StressField, loads: PinLoads) -> Floats:
 
 
 def excluded(answer: StressField) -> Mask:
-    """Which points of the surface (P,) lie in a singularity, where the maximum is not read."""
+    """A mask (P,) of the points of the surface in a singularity, where the maximum is not read."""
     if isinstance(answer, CutField):
         return ~answer.surface.read
     if isinstance(answer, SolidField):
@@ -111,8 +115,10 @@ def excluded(answer: StressField) -> Mask:
 
 
 def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
-    """Von Mises stress (P,) Pa at the surface's points at an instant, of a meridian the largest
-    about the axis where it is read (fea.harmonic.free_surface), 0 where it is not.
+    """The von Mises stress (P,) Pa at the surface's points at an instant.
+
+    On a meridian it is the largest about the axis where it is read (fea.harmonic.free_surface), 0
+    where it is not.
     """
     if isinstance(answer, SolidField | CutField):
         if isinstance(answer, CutField):
@@ -123,15 +129,16 @@ def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
         return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
     assert isinstance(answer, HarmonicField)
     skin = np.arange(answer.fields.skin)
-    found, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
-    return found
+    largest, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
+    return largest
 
 
 def largest_at(
     answer: StressField, loads: PinLoads, instant: int
 ) -> tuple[float, float, float] | None:
-    """Where (x, y, z), m, the largest stress of what is read of a section is at an instant; None of
-    other models.
+    """The location (x, y, z), m, of the largest stress that is read in a section at an instant.
+
+    None for other models.
     """
     if not isinstance(answer, HarmonicField):
         return None
@@ -142,8 +149,11 @@ def largest_at(
 
 
 def unread(answer: StressField, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
-    """Where points (J,) of the surface are not read, for lugs press on them or beside: (T, J, A) at
-    all instants and angles (rad). None where no lugs press on a body of revolution.
+    """A mask of the points (J,) of the surface that are not read, since lugs press on them or
+    beside.
+
+    It has the shape (T, J, A) for all instants and `angles` (A,), rad; None where no lugs press on
+    a body of revolution.
     """
     if not isinstance(answer, HarmonicField) or loads.pressed is None:
         return None
@@ -158,7 +168,9 @@ def unread(answer: StressField, loads: PinLoads, points: Ints, angles: Floats) -
 
 
 def _shown(surface: SurfaceMesh) -> tuple[Ints, Ints]:
-    """Nodes (P,), sorted, and plane triangles (M, 3) of them; of a fine mesh the corners alone."""
+    """The nodes (P,), sorted, and the plane triangles (M, 3) of a surface; of a fine mesh the
+    corners alone.
+    """
     corners = surface.corners
     if len(surface.nodes) > MAX_SHOWN_NODES:
         corners = corners[:, :3]

@@ -13,10 +13,14 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Bands:
-    """The rings (R,) of all bands, in their order: z of the middle and length, m; radius, m; band:
-    the number of each ring's band; gap: clearance and rounding of the edge, on the radius, m. link:
-    (B,) the number of the link to which each band's lug belongs, each to its own by default; lugs
-    of one link shift together, and share its force as they can.
+    """The rings (R,) of all bands, in their order.
+
+    z, length: middle and length of a ring, m.
+    radius: m.
+    band: the number of each ring's band.
+    gap: clearance and rounding of the edge, on the radius, m.
+    link: (B,) the number of the link to which each band's lug belongs, by default one for each.
+    Lugs of one link shift together, and share its force as they can.
     """
 
     z: Floats
@@ -31,12 +35,12 @@ class Bands:
 
     @cached_property
     def links(self) -> NDArray[np.int64]:
-        """(B,) the number of each band's link."""
+        """The number of each band's link, (B,)."""
         return np.arange(len(self)) if self.link is None else self.link
 
     @cached_property
     def middles(self) -> Floats:
-        """z of the bands' middles, (B,) m."""
+        """The z of the bands' middles, (B,) m."""
         ends = [
             (self.z - self.length / 2.0)[self.band == b].min()
             + (self.z + self.length / 2.0)[self.band == b].max()

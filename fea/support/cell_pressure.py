@@ -15,8 +15,9 @@ RING_RADIUS_TOLERANCE = 1e-6  # of the radius: how far off its ring a point may 
 
 @dataclass(frozen=True)
 class CellPressure:
-    """Pressure (R, M) Pa on the M sectors of the rings of all bands, the middle of the first at an
-    angle, rad, from x.
+    """Pressure (R, M), Pa, on the M sectors of the rings of all bands.
+
+    angle: of the middle of the first sector from the x axis, rad.
     """
 
     bands: Bands
@@ -24,7 +25,7 @@ class CellPressure:
     angle: float = 0.0
 
     def rings(self, points: Floats) -> NDArray[np.int64]:
-        """Numbers of the rings on which points (N, 3) m lie, (N,); -1 on none."""
+        """The numbers of the rings on which points (N, 3), m, lie, (N,); -1 on none."""
         near = RING_RADIUS_TOLERANCE * self.bands.radius
         half = 0.5 * self.bands.length + near
         r = np.hypot(points[:, 0], points[:, 1])[:, None]
@@ -34,7 +35,7 @@ class CellPressure:
         return np.where(on.any(axis=1), on.argmax(axis=1), -1)
 
     def at(self, points: Floats) -> Floats:
-        """At points (N, 3) m, (N,) Pa; zero where nothing is in contact."""
+        """The pressure (N,), Pa, at points (N, 3), m; zero where nothing is in contact."""
         rings, sectors = self.rings(points), self.pressure.shape[1]
         turns = (np.arctan2(points[:, 1], points[:, 0]) - self.angle) / (2.0 * np.pi)
         sector = np.rint(turns * sectors).astype(np.int64) % sectors

@@ -22,7 +22,7 @@ MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not
 
 
 class PrescribedSupport:
-    """Clamps and prescribed tractions (fea.support.support.Support)."""
+    """A support by clamps and prescribed tractions (fea.support.support.Support)."""
 
     def hold(
         self,
@@ -31,7 +31,7 @@ class PrescribedSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldPrescribed:
-        """The pin as it is; a case out of balance is rigid, unless bands can react it."""
+        """Hold the pin as it is; a case out of balance is rigid, unless bands can react it."""
         if isinstance(coarser, HeldPrescribed):
             return coarser
         pin = problem.pin
@@ -58,11 +58,11 @@ class HeldPrescribed:
 
     @property
     def clamps(self) -> tuple[str, ...]:
-        """Those of the problem, by the names of surfaces."""
+        """The clamps of the problem, by the names of surfaces."""
         return tuple(self.pin.surface(name) for name in self.problem.clamps)
 
     def start(self, case: str) -> PinLoads:
-        """The loads that are given."""
+        """The prescribed loads."""
         (loads,) = (loads for loads in self.problem.cases if loads.case == case)
         return loads
 
@@ -71,15 +71,17 @@ class HeldPrescribed:
         return links
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Nothing is discretised."""
+        """Return True, since nothing is discretised."""
         return True
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
-        """All of it: the loads have no error."""
+        """The whole requirement, since the loads have no error."""
         return requirement
 
     def finished(self, solution: Solution, requirement: Requirement) -> Solution:
-        """With the place in sections, where the pin is a body of revolution."""
+        """The solution with the largest stress of sections, where the pin is a body of
+        revolution.
+        """
         peak, loads = solution.peak, solution.loads
         case = peak.case
         if case in self.imbalance:
@@ -105,8 +107,10 @@ class HeldPrescribed:
 def balanced(
     pin: PinLike, material: Material, cases: Sequence[PinLoads], model: str
 ) -> tuple[dict[str, Maximum], dict[str, tuple[float, float] | None], dict[str, Reason]]:
-    """What the loads on an unclamped pin lack of equilibrium, by case: maxima of those that its
-    bands cannot react, the imbalance that they do react, and the note on it.
+    """Check the equilibrium of the loads on an unclamped pin.
+
+    Returns, by case, the maxima of those that its bands cannot react, the imbalance that they do
+    react, and the note on it.
     """
     balances = {case.case: _balance(pin, case, material) for case in cases}
     shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
@@ -122,7 +126,9 @@ def balanced(
 
 
 def _balance(pin: PinLike, case: PinLoads, material: Material) -> Balance:
-    """Of the loads as they are given; couples of pressures are those that contact has found."""
+    """The balance of the loads as they are given; couples of pressures are those that contact has
+    found.
+    """
     pressed = case.links is not case
     carried = Carried(couple=True) if pressed else NO_SUPPORT
     return out_of_balance(pin, case, material.density, carried)

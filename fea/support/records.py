@@ -1,4 +1,4 @@
-"""What is known of a pin's joint at the governing instant of a case: loads of its lugs, range."""
+"""Results of a pin's joint at the governing instant of a case: loads of its lugs, and the range."""
 
 from __future__ import annotations
 
@@ -13,11 +13,16 @@ Couple = Annotated[float, "moment"]
 
 @dataclass(frozen=True)
 class BandContact:
-    """A band in its lug. force: of the link on the pin. contact_angle: half of the arc in contact,
-    degrees, where it is widest. line_load: pairs of z and of the load per length there (mean over a
-    ring) in the direction of the force; negative: the other side of the bore carries. couple: what
-    the lug's tilt reacts, a moment on the link. clearance, outer_diameter: of the lug. ends: z of
-    the rings' ends, one more than there are rings; none where load is not given by rings.
+    """A band in its lug.
+
+    force: of the link on the pin.
+    contact_angle: half of the arc in contact, degrees, where it is widest.
+    line_load: pairs of z and of the load per length there (mean over a ring) in the direction of
+    the force; where it is negative the other side of the bore carries.
+    couple: reaction of the lug's tilt, a moment on the link.
+    clearance, outer_diameter: of the lug.
+    ends: z of the rings' ends, one more than there are rings; empty where load is not given by
+    rings.
     mean_pressure: the force over diameter and length.
     """
 
@@ -34,10 +39,13 @@ class BandContact:
 
 @dataclass(frozen=True)
 class Variation:
-    """The maximum with something of the joint changed: what, and to what value or way, in words;
-    length: the value where it is one, the largest if it differs from lug to lug. interval: of the
-    maximum with the error of the model, where that is part of the range. beneath: the largest
-    stress beneath the contact then (fea.core.places), None where only the maximum is known.
+    """The maximum with one property of the joint changed.
+
+    what, value: the property, and its value or state, in words.
+    length: the value where it is one, the largest if it differs from lug to lug.
+    interval: of the maximum with the error of the model, where that is part of the range.
+    beneath: the largest stress beneath the contact then (fea.core.places), None where only the
+    maximum is known.
     """
 
     what: str
@@ -50,8 +58,10 @@ class Variation:
 
 @dataclass(frozen=True)
 class JointRange:
-    """The maximum over what is not known of the joint, from the least to the largest. model:
-    "contact" or "foundation", whose error is included. assumed: whether no lugs were given.
+    """The range of the maximum over the uncertain properties of the joint.
+
+    model: "contact" or "foundation", whose error is included.
+    assumed: whether no lugs were given.
     """
 
     max_von_mises: tuple[Stress, Stress]
@@ -62,8 +72,11 @@ class JointRange:
 
 @dataclass(frozen=True)
 class JointForces:
-    """Shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the case;
-    times: (T,), None without a motion. forces: of the lugs on the pin along x and y, (T, L, 2).
+    """The shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the
+    case.
+
+    times: (T,), None without a motion.
+    forces: of the lugs on the pin along x and y, (T, L, 2).
     """
 
     z: Lengths
@@ -76,10 +89,13 @@ class JointForces:
 
 @dataclass(frozen=True)
 class JointResult:
-    """How the pin sits in its lugs. model: "contact", "foundation" or "prescribed", with a range
-    alone. bending_moment: the largest along the pin; bending_moments: pairs of z and moment. range:
-    None where it was not found. remark: why not, or what it leaves out. along: the pin at all
-    instants, None of a prescribed joint.
+    """The contact of the pin with its lugs.
+
+    model: "contact", "foundation" or "prescribed", with a range alone.
+    bending_moment: the largest along the pin; bending_moments: pairs of z and moment.
+    range: None where it was not computed.
+    remark: why not, or what it leaves out.
+    along: the pin at all instants, None for a prescribed joint.
     """
 
     model: str

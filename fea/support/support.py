@@ -1,4 +1,4 @@
-"""The interface of supports: what the links of a pin do to it, as loads on its surface."""
+"""The interface of supports: the loads of a pin's links, as loads on its surface."""
 
 from __future__ import annotations
 
@@ -29,10 +29,13 @@ def silent(_: str) -> None:
 class PinProblem:
     """A pin to be solved under the loads of its links.
 
-    lugs: that hold it in contact; without any, clamps (surfaces by the pin's names) and prescribed
-    loads do. cases: loads of the links. between: of the cases that are motions, the loads at any
-    times; in others only the given instants count. also: by case, other loads under which its
-    stress will be asked for. first: what was solved on the first mesh before.
+    lugs: those that hold it in contact; without any it has clamps (surfaces by the pin's names) and
+    prescribed loads.
+    cases: loads of the links.
+    between: for the cases that are motions, the loads at any times; in others only the given
+    instants count.
+    also: by case, other loads under which its stress will be requested.
+    first: the solution on the first mesh of an earlier run.
     """
 
     pin: PinLike
@@ -50,7 +53,7 @@ class HeldPin(Protocol):
 
     @property
     def pin(self) -> PinLike:
-        """What is meshed: bands are cut into rings where pressure varies along them."""
+        """The pin that is meshed: bands are cut into rings where pressure varies along them."""
         ...
 
     @property
@@ -60,45 +63,52 @@ class HeldPin(Protocol):
 
     @property
     def failures(self) -> Mapping[str, Maximum]:
-        """By case: why it cannot be held, with the verdict "rigid" or "failed"."""
+        """The cases that cannot be held, with the verdict "rigid" or "failed" and its reason."""
         ...
 
     @property
     def notes(self) -> Mapping[str, Reason]:
-        """By case: what the reader of its maximum must know of the support."""
+        """The notes on the support, by case, that belong to the maximum."""
         ...
 
     @property
     def finest(self) -> bool:
-        """Whether a finer resolution may not follow."""
+        """Whether no finer resolution may follow."""
         ...
 
     def start(self, case: str) -> PinLoads:
-        """What acts on the pin at the instants from which the solution of a case starts."""
+        """The loads on the pin at the instants from which the solution of a case starts."""
         ...
 
     def press(self, links: PinLoads) -> PinLoads:
-        """What acts on the pin under loads of its links. Raises: SolveError."""
+        """The loads on the pin under loads of its links.
+
+        Raises: SolveError.
+        """
         ...
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Whether a finer resolution could not change the answer, before stress is refined."""
+        """Return whether a finer resolution could not change the answer, before stress is
+        refined.
+        """
         ...
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
-        """What the meshes must meet, the support's own error being known."""
+        """The requirement on the meshes, given the support's own error."""
         ...
 
     def finished(self, solution: Solution, requirement: Requirement) -> Solution:
-        """A case with what the support adds to it: its part of the error, sections, contact, and
-        the range over what is not known of the joint. All of these follow from the loads at one
-        instant, which are found once.
+        """The solution of a case with the results of the support.
+
+        These are its part of the error, sections, contact, and the range over the uncertain
+        properties of the joint. All of them follow from the loads at one instant, which are found
+        once.
         """
         ...
 
 
 class Support(Protocol):
-    """How pins are held. It turns what links do to a pin into loads on its surface."""
+    """An interface that turns the loads of a pin's links into loads on its surface."""
 
     def hold(
         self,
@@ -107,8 +117,10 @@ class Support(Protocol):
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldPin:
-        """The pin, held. coarser: the same pin on the resolution before, whose candidates for the
-        governing instant are kept.
+        """Hold the pin.
+
+        coarser: the same pin on the resolution before, whose candidates for the governing instant
+        are kept.
 
         Raises: ArgumentError for lugs that do not fit; MeshError, SolveError where no case can be
         held.
@@ -120,8 +132,10 @@ class Support(Protocol):
 class Solution:
     """A case: its maximum and the stress behind it, None for a pin that cannot be solved.
 
-    loads: on the pin, with the instants added to find the maximum; instant: index of the governing
-    one. held: how the pin is held. joint, pressure: what contact has at the governing instant.
+    loads: on the pin, with the instants added to find the maximum.
+    instant: index of the governing one.
+    held: the held pin.
+    joint, pressure: the results of contact at the governing instant.
     """
 
     peak: Maximum
@@ -133,7 +147,7 @@ class Solution:
     pressure: CellPressure | None = None
 
     def pressed(self, links: PinLoads) -> PinLoads:
-        """What acts on the pin under other loads of its links."""
+        """The loads on the pin under other loads of its links."""
         return links if self.held is None else self.held.press(links)
 
     @property

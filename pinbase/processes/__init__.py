@@ -1,1 +1,1 @@
-"""What depends on the operating system: processes, signals, threads."""
+"""Services that depend on the operating system: processes, signals, threads."""

@@ -1,5 +1,5 @@
-"""Work of engines that may take their process with them (V8 of Vega, typst, VTK): it is done in
-processes of its own, so that whatever happens there costs that piece of work alone.
+"""Run engines that may take their process with them (V8 of Vega, typst, VTK) in processes of their
+own, so that a crash costs that piece of work alone.
 """
 
 from __future__ import annotations
@@ -21,7 +21,11 @@ NO_MEMORY_REASON = "there was not enough memory"
 
 @dataclass(frozen=True)
 class Failed:
-    """What comes of work that failed, and why. damaged: whether a file that it read is."""
+    """The outcome of work that failed.
+
+    reason: why it failed.
+    damaged: whether a file that it read is damaged.
+    """
 
     reason: str
     damaged: bool = False
@@ -33,36 +37,41 @@ class _Made(Generic[T]):
 
 
 def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T | Failed]:
-    """What each of the functions returns, by names for messages. Where processes are started anew
-    the functions must pickle. What they print is dropped. seconds: of processor time that each may
-    take; what hangs would take all.
+    """Run functions in processes of their own and return their results or failures.
+
+    work: names for messages, and functions; these must pickle where processes are started anew.
+    Anything that they print is dropped.
+    seconds: processor time that each function may take, s; one that hangs would take all of it.
 
     Raises: KeyboardInterrupt.
     """
     limits = Limits(seconds)
-    return guarded([Job(name, partial(_untold, made), limits) for name, made in work])
+    return guarded([Job(name, partial(_untold, function), limits) for name, function in work])
 
 
 def guarded(
     jobs: Sequence[Job[T]], anew: bool = False, watch: Watch | None = None
 ) -> list[T | Failed]:
-    """The same of jobs, which may report progress; anew, watch: as `in_parallel` has them."""
+    """Run jobs, which may report progress, as `apart` runs functions.
+
+    anew, watch: as in `in_parallel`.
+    """
     inner: list[Job[_Made[T] | Failed]] = [
         Job(job.name, partial(_guarded, job.work), job.limits) for job in jobs
     ]
     try:
         # Two at a time: one would be this process.
-        found = in_parallel(inner, 2, anew=anew or not can_fork(), watch=watch)
+        outcomes = in_parallel(inner, 2, anew=anew or not can_fork(), watch=watch)
     except (OSError, MemoryError) as error:  # no further process can be started
         why = NO_MEMORY_REASON if isinstance(error, MemoryError) else str(error.strerror)
         return [Failed(f"no process could be started for it ({why})") for _ in jobs]
-    told: list[T | Failed] = []
-    for one in found:
+    results: list[T | Failed] = []
+    for one in outcomes:
         if isinstance(one, ProcessDied):
-            told.append(Failed(_reason(one)))
+            results.append(Failed(_reason(one)))
         else:
-            told.append(one.value if isinstance(one, _Made) else one)
-    return told
+            results.append(one.value if isinstance(one, _Made) else one)
+    return results
 
 
 def _reason(died: ProcessDied) -> str:
@@ -76,7 +85,7 @@ def _untold(work: Callable[[], T], _: Tell) -> T:
 
 
 def _guarded(work: Callable[[Tell], T], tell: Tell) -> _Made[T] | Failed:
-    """Done in the other process."""
+    """Run the work in the other process and return its result or failure."""
     _quiet()
     try:
         return _Made(work(tell))
@@ -99,7 +108,7 @@ def _first_line(error: BaseException) -> str:
 
 
 def _quiet() -> None:
-    """Let nothing that a library prints reach the terminal: what happened is returned."""
+    """Keep libraries from printing to the terminal; the outcome is returned instead."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     for descriptor in (1, 2):
         os.dup2(nothing, descriptor)

@@ -1,7 +1,8 @@
-"""Nothing is imported or run from the folder that the user is in: a `pyvista.py` in a study's
-folder is no library of ours. Python itself puts that folder first with `-m` and `-c`, and so does
-an empty entry of PYTHONPATH, as in `PYTHONPATH=$PYTHONPATH:/some/where`; one of PATH does it for
-programs.
+"""Keep Python from importing or running anything from the user's current folder.
+
+A `pyvista.py` in a study's folder is no library of ours. Python itself puts that folder first with
+`-m` and `-c`, and so does an empty entry of PYTHONPATH, as in `PYTHONPATH=$PYTHONPATH:/some/where`;
+an empty entry of PATH does it for programs.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ IMPORT_FOLDER = os.path.dirname(os.path.dirname(PROCESSES_FOLDER))  # that we ar
 
 
 def trusted_path() -> list[str]:
-    """Where this process imports from, less the current folder, unless that is where pinstress is
-    imported from: a checkout.
+    """Return the import path of this process without the current folder, unless pinstress itself is
+    imported from that folder (a checkout).
     """
     return [
         p for p in sys.path if os.path.isabs(p) and (_same(p, IMPORT_FOLDER) or not _same(p, "."))
@@ -27,7 +28,7 @@ def trusted_path() -> list[str]:
 
 
 def leave_out_current_folder() -> None:
-    """Import nothing from the current folder from now on, and find no programs there."""
+    """Stop importing modules and finding programs in the current folder."""
     sys.path[:] = trusted_path()
     entries = os.environ.get("PATH", os.defpath).split(os.pathsep)
     os.environ["PATH"] = os.pathsep.join(p for p in entries if os.path.isabs(p))
@@ -35,8 +36,10 @@ def leave_out_current_folder() -> None:
 
 @contextmanager
 def elsewhere() -> Iterator[None]:
-    """In our own folder meanwhile: matplotlib, when it is imported, takes its settings from a
-    `matplotlibrc` in the current one. For a process without other threads.
+    """Work in our own folder inside the block.
+
+    When it is imported, matplotlib takes its settings from a `matplotlibrc` in the current folder.
+    The process must have no other threads.
     """
     if portable():
         with chdir(PROCESSES_FOLDER):

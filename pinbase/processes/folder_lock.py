@@ -1,4 +1,4 @@
-"""A lock on a folder that its owner gives back however it ends."""
+"""A lock on a folder that is released however its owner ends."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Release = Callable[[], None]
 
 
 def lock(folder: Path) -> Release:
-    """Lock a folder; what gives it back.
+    """Lock a folder and return the function that releases it.
 
     Raises: BlockingIOError when another process has locked it, FileNotFoundError when it is gone,
     NotADirectoryError for a link or a file, OSError.
@@ -45,9 +45,10 @@ def _by_kernel(folder: Path) -> Release:
 
 
 def _by_database(folder: Path) -> Release:
-    """By SQLite, which locks files on every system. Its file, empty, stays with the user's
-    temporary ones: were it in the folder, Windows could not rename that, and were it removed, two
-    processes could each lock one.
+    """Lock a folder by SQLite, which locks files on every system.
+
+    Its file, empty, stays with the user's temporary files: were it in the folder, Windows could not
+    rename the folder, and were it removed, two processes could each lock one.
     """
     import sqlite3
 

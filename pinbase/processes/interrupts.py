@@ -1,4 +1,4 @@
-"""Interrupts: that one came is remembered, because not every library lets it through.
+"""Interrupts are recorded, because not every library lets them through.
 
 C code that is imported or called turns a KeyboardInterrupt into an error of its own, or drops it.
 """
@@ -18,43 +18,43 @@ _deferred = False
 
 
 class Unfinished(KeyboardInterrupt):
-    """An interrupt of work that can go on later; the message says how."""
+    """An interrupt of work that can be resumed later; the message says how."""
 
 
 def listen() -> None:
-    """From now on interrupts raise KeyboardInterrupt, the first of them; forget earlier ones."""
+    """Raise KeyboardInterrupt at the first interrupt from now on, and forget earlier ones."""
     forget()
-    for each in INTERRUPT_SIGNALS:
-        if signal.getsignal(each) != signal.SIG_IGN:  # nohup, or a job in the background
-            signal.signal(each, _interrupt)
+    for number in INTERRUPT_SIGNALS:
+        if signal.getsignal(number) != signal.SIG_IGN:  # nohup, or a job in the background
+            signal.signal(number, _interrupt)
 
 
 def forget() -> None:
-    """What came has been answered: what this process does next is not to end for it."""
+    """Forget the interrupts that have been handled, so that later work does not end for them."""
     global _came
     _came = False
 
 
 def ignore() -> None:
-    """From now on no interrupt changes anything."""
-    for each in INTERRUPT_SIGNALS:
-        signal.signal(each, signal.SIG_IGN)
+    """Ignore all interrupts from now on."""
+    for number in INTERRUPT_SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
 
 
 def came() -> bool:
-    """Whether one came."""
+    """Return whether an interrupt has come."""
     return _came
 
 
 def require_none() -> None:
-    """Raises: KeyboardInterrupt once more if an interrupt came and something has dropped it."""
+    """Raise KeyboardInterrupt again if an interrupt came and a library has dropped it."""
     if _came:
         raise KeyboardInterrupt
 
 
 @contextmanager
 def deferred() -> Iterator[None]:
-    """Interrupts wait meanwhile, once `listen` was called."""
+    """Defer interrupts inside the block, once `listen` was called."""
     global _deferred
     _deferred = True
     try:
@@ -66,8 +66,8 @@ def deferred() -> Iterator[None]:
 
 @contextmanager
 def blocked() -> Iterator[None]:
-    """Around a fork: interrupts of this process wait meanwhile, those of the child until it has
-    handlers of its own and calls `unblock`.
+    """Block interrupts around a fork: those of this process inside the block, those of the child
+    until it has handlers of its own and calls `unblock`.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPT_SIGNALS)
     try:
@@ -77,7 +77,7 @@ def blocked() -> Iterator[None]:
 
 
 def unblock() -> None:
-    """Let interrupts through again, where they can be blocked."""
+    """Let interrupts through again, on systems that can block them."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, INTERRUPT_SIGNALS)
 

@@ -1,4 +1,4 @@
-"""Limits of a piece of work: kept by the kernel on Linux, by a thread elsewhere."""
+"""Limits on a piece of work: enforced by the kernel on Linux, by a thread elsewhere."""
 
 from __future__ import annotations
 
@@ -24,9 +24,11 @@ EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = (
 
 @dataclass(frozen=True)
 class Limits:
-    """seconds: of processor time. clock: in all, s, since other programs run too, but nothing may
-    wait without end. memory: above what the process has when the work begins, bytes; kept on Linux
-    only.
+    """Limits on time and memory.
+
+    seconds: processor time, s.
+    clock: elapsed time, s; other programs run too, but nothing may wait without end.
+    memory: bytes above those that the process has when the work begins; enforced on Linux only.
     """
 
     seconds: float
@@ -36,8 +38,9 @@ class Limits:
 
 @contextmanager
 def limited(limits: Limits | None) -> Iterator[None]:
-    """End this process, which does nothing else meanwhile, when its work passes a limit; where
-    there is no more memory, MemoryError.
+    """End this process, which must do nothing else inside the block, when its work passes a limit.
+
+    Raises: MemoryError where the limit of memory is reached.
     """
     if limits is None:
         yield
@@ -91,7 +94,7 @@ def _watch(limits: Limits, done: threading.Event) -> None:
 
 
 def passed(status: int, limits: Limits) -> str:
-    """Which limit a process passed that ended with this status; empty if none."""
+    """Name the limit that a process passed which ended with this status; empty if none."""
     seconds, clock = EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED
     if not portable():
         seconds, clock = -signal.SIGPROF, -signal.SIGALRM

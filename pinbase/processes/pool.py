@@ -1,15 +1,14 @@
-"""Jobs side by side, in as many processes, each of which takes one job after another over a pipe.
+"""Jobs in parallel processes, each of which takes one job after another over a pipe.
 
-Forked on Linux, because a child then has every library imported (two seconds otherwise) and all
-that it needs without anything being sent. A fork is safe while no other thread runs, so
-`hold_threads` comes before the numeric libraries, and whoever shows progress must not do so from a
-thread. On other systems processes are started anew (pinbase.processes.worker) and sent the
-jobs, which must pickle. One thread costs nothing that was measured: of a solid with 185,000
-unknowns neither time nor any bit of the answer changed. A crash inside a mesher ends its process
-and costs the job that was being done; another process goes on with the rest. Not a process for
-every job: the memory that each touches anew took a sixth of all the time of many small pins. No
-socket is opened that another process could find: whoever is neither this process nor its child
-cannot send a job.
+On Linux they are forked, because a child then has every library imported (two seconds otherwise)
+and all that it needs without anything being sent. A fork is safe while no other thread runs, so
+`hold_threads` comes before the numeric libraries, and progress must not be shown from a thread. On
+other systems processes are started anew (pinbase.processes.worker) and sent the jobs, which must
+pickle. One thread costs nothing measurable: for a solid with 185,000 unknowns neither time nor any
+bit of the answer changed. A crash inside a mesher ends its process and costs the job that was
+running; another process goes on with the rest. Processes are reused, because the memory that each
+touches anew took a sixth of all the time of many small pins. No socket is opened that another
+process could find: only this process and its children can send a job.
 """
 
 from __future__ import annotations
@@ -48,8 +47,11 @@ _preloaded: list[str] = []
 
 @dataclass(frozen=True)
 class Job(Generic[T_co]):
-    """Work under a name; it gets a function to report its progress. What it returns must be small:
-    it is sent from process to process. limits: which end its process, where that is not this one.
+    """A named piece of work.
+
+    work: is called with a function to report its progress; its result must be small, since it is
+    sent from process to process.
+    limits: limits that end its process, where that is not this one.
     """
 
     name: str
@@ -59,8 +61,11 @@ class Job(Generic[T_co]):
 
 @dataclass(frozen=True)
 class ProcessDied:
-    """What comes of a job during which its process ended by itself, and why. status: as
-    subprocess has it, negative for a signal. limited: whether it passed a limit.
+    """The outcome of a job whose process ended by itself.
+
+    reason: why it ended.
+    status: as in subprocess, negative for a signal.
+    limited: whether it passed a limit.
     """
 
     reason: str
@@ -69,15 +74,17 @@ class ProcessDied:
 
 
 def cores() -> int:
-    """How many this process may use."""
+    """Return the number of cores that this process may use."""
     return (os.cpu_count() or 1) if portable() else len(os.sched_getaffinity(0))
 
 
 def processes(asked: int | None) -> int:
-    """How many jobs at a time: as many as are requested, or as there are cores. One, in this
-    process, where other threads run: a forked process would wait for them forever.
+    """Return the number of jobs to run at a time: the number requested, or that of the cores.
 
-    Raises: InputError for what is no number of jobs.
+    It is one, in this process, where other threads run: a forked process would wait for them
+    forever.
+
+    Raises: InputError for an invalid number of jobs.
     """
     if portable():
         return asked or cores()
@@ -85,13 +92,17 @@ def processes(asked: int | None) -> int:
 
 
 def can_fork() -> bool:
-    """Whether that is safe: with other threads, the child could wait for their locks forever."""
+    """Return whether a fork is safe: with other threads, the child could wait for their locks
+    forever.
+    """
     return not portable() and len(os.listdir("/proc/self/task")) == 1
 
 
 def preload(*modules: str) -> None:
-    """Import what jobs will need once for all of them; what is missing they miss themselves.
-    Processes that are started anew import it when they begin.
+    """Import modules that jobs need once for all of them.
+
+    A missing module is left for the job to report. Processes that are started anew import them when
+    they begin.
     """
     _preloaded.extend(modules)
     load(modules)
@@ -104,18 +115,19 @@ def in_parallel(
     anew: bool = False,
     watch: Watch | None = None,
 ) -> list[T | ProcessDied]:
-    """What the jobs return, in their order; they start in that order, at most so many at a time.
+    """Run jobs, which start in their order, and return their results in that order.
 
-    With `most` 1 they are done in this process. progress: called with what is being done and the
-    part of the jobs that is behind. anew: whether processes are started anew on Linux too. watch:
-    as `served` has it.
+    most: number of jobs at a time; 1 runs them in this process.
+    progress: called with the jobs that are running and the part of the jobs that is done.
+    anew: whether processes are started anew on Linux too.
+    watch: as in `served`.
 
     Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
     """
     if most == 1:
         return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
     waiting = list(reversed(range(len(jobs))))
-    found: dict[int, T | ProcessDied] = {}
+    results: dict[int, T | ProcessDied] = {}
     sends = anew or portable()
 
     def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
@@ -129,15 +141,15 @@ def in_parallel(
         limits = jobs[number].limits
         if isinstance(value, ProcessDied) and limits and (limit := passed(value.status, limits)):
             value = ProcessDied(limit, value.status, limited=True)
-        found[number] = value
+        results[number] = value
 
     serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
 
     def show(doing: str) -> None:
-        progress(doing, len(found) / len(jobs))
+        progress(doing, len(results) / len(jobs))
 
     served(serve, take, give, most, show, lambda: not sends, watch)
-    return [found[i] for i in range(len(jobs))]
+    return [results[i] for i in range(len(jobs))]
 
 
 def served(
@@ -149,11 +161,14 @@ def served(
     forks: Callable[[], bool] = can_fork,
     watch: Watch | None = None,
 ) -> None:
-    """Have processes serve items, at most so many at a time, until none is left. take: the name of
-    the next item and the item, None while there is none. give: called with each and what came of
-    it; there may be further items then. progress: called with what is being done. forks: whether
-    the next process is forked, by default where that is safe. watch: called often with the number
-    of each process and what it has reported last; ends a process for the reason that it returns.
+    """Have processes serve items, at most `most` at a time, until none is left.
+
+    take: returns the name of the next item and the item, None while there is none.
+    give: called with each item and its result; there may be further items then.
+    progress: called with the names of the items that are running.
+    forks: whether the next process is forked, by default where that is safe.
+    watch: called often with the number of each process and its last report; a reason that it
+    returns ends the process.
 
     A process that is not forked is started anew and sent `serve`; items are always sent.
 
@@ -219,13 +234,13 @@ class _Child:
     doing: str = ""
 
     def take(self, name: str, item: object) -> None:
-        """Do this next."""
+        """Send the process its next item."""
         self.item, self.doing = item, name
         with suppress(OSError):  # it has ended meanwhile, as `next` will tell
             self.pipe.send((name, item))
 
     def next(self) -> tuple[str, Any]:
-        """What it says next: "tells", "raises", "returns" or "dies", and what."""
+        """Return its next message: "tells", "raises", "returns" or "dies", and the content."""
         try:
             kind, data = self.pipe.recv()
             return kind, pickle.loads(data)
@@ -243,7 +258,7 @@ class _Child:
         self.process.kill() if number == KILL_SIGNAL else self.process.terminate()
 
     def close(self) -> None:
-        """Have it end, and wait for that."""
+        """Tell the process to end, and wait until it has."""
         with suppress(OSError):
             self.pipe.send(None)
         self.process.join()
@@ -252,7 +267,7 @@ class _Child:
 
 
 def ended(status: int) -> str:
-    """A process's end in words."""
+    """Describe in words how a process ended."""
     if status >= 0:
         return f"its process ended with status {status}"
     text = f"its process was ended by signal {-status} ({signal.strsignal(-status)})"
@@ -260,7 +275,7 @@ def ended(status: int) -> str:
 
 
 def _end(children: list[_Child]) -> None:
-    """End processes: those inside a library's own code do not hear that they should."""
+    """End processes by signals: those inside a library's own code read no messages."""
     for child in children:
         child.send(signal.SIGTERM)
     for child in children:

@@ -1,4 +1,4 @@
-"""One thread per process, as forked processes and equal numbers on all machines want it."""
+"""One thread per process, as forked processes and equal results on all machines require."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ _first: threadpool_limits | None = None  # of those inside, which knows what was
 
 
 def hold_threads() -> None:
-    """One thread in every numeric library that is imported from now on, and in Mesa's renderer."""
+    """Set one thread for every numeric library imported from now on, and for Mesa's renderer."""
     os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
 
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """One thread in every numeric library that is already imported, for users of Python, whose
-    environment is theirs. Each thread that leaves restores what was there before the first came:
-    the number is the process's in some libraries, the thread's in others.
+    """Use one thread in every numeric library that is already imported.
+
+    This is for users of Python, whose environment is theirs. Each thread that leaves restores the
+    state before the first came: the number belongs to the process in some libraries, to the thread
+    in others.
     """
     from threadpoolctl import threadpool_limits
 

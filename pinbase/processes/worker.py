@@ -32,10 +32,10 @@ PARENT_DEATH = 1  # PR_SET_PDEATHSIG
 def start_worker(
     serve: Serve[Item, T], forks: bool, libraries: tuple[str, ...]
 ) -> tuple[BaseProcess, Connection]:
-    """Start a process that serves items; returns it with the pipe over which it gets them.
+    """Start a process that serves items; return it with the pipe over which it gets them.
 
-    forks: whether it is forked; otherwise it is a new Python, which is sent `serve`. libraries:
-    which a new Python imports first.
+    forks: whether it is forked; otherwise it is a new Python, which is sent `serve`.
+    libraries: modules that a new Python imports first.
     """
     ours, theirs = multiprocessing.Pipe()
     context = multiprocessing.get_context("fork" if forks else "spawn")
@@ -56,8 +56,9 @@ def start_worker(
 
 
 def load(modules: Iterable[str]) -> None:
-    """Import what work will need; what is missing it misses itself. Interrupts wait until then: one
-    in the middle of VTK's import crashes it.
+    """Import modules that work needs; a missing one is left for the work to report.
+
+    Interrupts are deferred: one in the middle of VTK's import crashes it.
     """
     with interrupts.deferred(), elsewhere():
         for name in modules:
@@ -67,8 +68,10 @@ def load(modules: Iterable[str]) -> None:
 
 @contextmanager
 def _without_main() -> Iterator[None]:
-    """No main module meanwhile: the new process would run the user's script once more, up to where
-    it starts processes. Nothing of ours is in it.
+    """Hide the main module inside the block.
+
+    Otherwise the new process would run the user's script once more, up to where it starts
+    processes. Nothing of ours is in it.
     """
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
@@ -80,7 +83,7 @@ def _without_main() -> Iterator[None]:
 
 @contextmanager
 def _trusting() -> Iterator[None]:
-    """An environment in which a new Python imports nothing from the current folder."""
+    """Set an environment in which a new Python imports nothing from the current folder."""
     wanted = {"PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(trusted_path())}
     before = {name: os.environ.get(name) for name in wanted}
     os.environ.update(wanted)
@@ -97,7 +100,7 @@ def _trusting() -> Iterator[None]:
 def _serve(
     serve: Serve[Item, T], pipe: Connection, parent: int, libraries: tuple[str, ...]
 ) -> None:
-    """What the process does: the items that it is sent, until there is none."""
+    """Serve the items that the process is sent, until there are no more."""
     hold_threads()  # of a user of Python, whose environment does not say so
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
     signal.signal(signal.SIGTERM, _leave)
@@ -135,8 +138,8 @@ def _leave(*_: object) -> None:
 
 
 def _end_with_parent(parent: int) -> None:
-    """End this process when the one that started it, `parent`, has ended, however that ends; now if
-    it has.
+    """End this process when `parent`, the process that started it, has ended in any way; at once if
+    it has already.
     """
     if portable():
         threading.Thread(target=_wait_for_parent, daemon=True).start()
@@ -149,7 +152,7 @@ def _end_with_parent(parent: int) -> None:
 
 
 def _wait_for_parent() -> None:
-    """For processes that multiprocessing has spawned, which know a handle of their parent."""
+    """Wait for the parent in a process that multiprocessing has spawned, and end with it."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

@@ -1,10 +1,10 @@
-"""What was solved before, found again by the content of what was asked: a folder of files, each
-named by the SHA-256 of everything its answer depends on.
+"""Cache of earlier solutions: a folder of files, each named by the SHA-256 of everything on which
+its content depends.
 
 A file is a line with our name, the hash of its own name and its content, and the content
-(pinstress.analysis.serialise). One that is damaged, renamed or of another type is as good as
-none, and so is a folder that cannot be written. Other programs, too, name files by hashes: only
-what has our line is ever removed.
+(pinstress.analysis.serialise). A file that is damaged, renamed or of another type counts as
+missing, and so does a folder that cannot be written. Other programs, too, name files by hashes:
+only files that begin with our line are ever removed.
 """
 
 from __future__ import annotations
@@ -59,20 +59,20 @@ class OutcomeStore(Protocol):
 
 @dataclass(frozen=True)
 class Cache:
-    """A folder, for answers of one `program` (by the hash of its versions and source)."""
+    """A folder of answers of one `program` (identified by the hash of its versions and source)."""
 
     folder: Path
     program: str
     limit: int = MAX_CACHE_SIZE
 
     def key(self, asked: object) -> str:
-        """The name of the answer to what is asked (of what pinstress.analysis.serialise
-        takes).
+        """Return the name of the answer to a question (a value that pinstress.analysis.serialise
+        packs).
         """
         return hashlib.sha256(self.program.encode() + pack(asked)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:
-        """What was written, a `kind`; None when there is nothing that can be trusted."""
+        """Return the stored answer as a `kind`; None when there is none that can be trusted."""
         path = self._path(key)
         try:
             if not path.is_file():
@@ -89,7 +89,7 @@ class Cache:
         return value
 
     def write(self, key: str, value: object) -> None:
-        """Keep an answer, if that is possible; its file is complete or absent."""
+        """Store an answer if possible; its file is complete or absent."""
         path = self._path(key)
         try:
             content = pack(value)
@@ -108,17 +108,19 @@ class Cache:
             log.debug("%s is not written: %s", path, error)
 
     def trim(self) -> None:
-        """Remove what was longest not used until all is within the limit; partial files too, which
-        killed runs leave, and nothing that has another name than ours.
+        """Remove the least recently used files until the rest is within the limit.
+
+        Partial files, which killed runs leave, count too; files with other names than ours are
+        kept.
         """
-        found, room = [], self.limit
+        files, room = [], self.limit
         with suppress(OSError):  # it is not there, or not ours
             for entry in os.scandir(self.folder):
                 if CACHE_FILE_PATTERN.fullmatch(entry.name) and _ours(entry.path):
                     with suppress(FileNotFoundError):  # another run was quicker
                         seen = entry.stat(follow_symlinks=False)
-                        found.append((seen.st_mtime_ns, seen.st_size, entry.path))
-            for _, size, path in sorted(found, reverse=True):
+                        files.append((seen.st_mtime_ns, seen.st_size, entry.path))
+            for _, size, path in sorted(files, reverse=True):
                 room -= size
                 if room < 0:
                     Path(path).unlink(missing_ok=True)
@@ -130,8 +132,10 @@ class Cache:
 
 
 def user_cache() -> Cache | None:
-    """The user's: in the folder that PINSTRESS_CACHE names, else where the system keeps caches
-    (XDG_CACHE_HOME). None when it is switched off or there is no such folder.
+    """Return the user's cache, None when it is switched off or there is no folder for it.
+
+    The folder is the one that PINSTRESS_CACHE names, else in the system's folder of caches
+    (XDG_CACHE_HOME).
     """
     named = os.environ.get(CACHE_VARIABLE)
     if named is not None and named.strip().lower() in ("", CACHE_OFF):
@@ -151,21 +155,24 @@ def _usual() -> Path:
 
 
 def program() -> str:
-    """Hash of what results depend on in addition to the task: versions, and the source itself, so
-    that whoever changes a formula does not meet the answers of the old one.
+    """Return the hash of versions and source, on which results depend in addition to the task.
+
+    The source is included so that a changed formula never meets answers of the old one.
     """
     made_by = [(name, _version(name)) for name in REQUIRED_PACKAGES], portable()
-    found = hashlib.sha256(repr(made_by).encode())
+    digest = hashlib.sha256(repr(made_by).encode())
     root = Path(__file__).parents[2]
     for room in SOURCE_PACKAGES:
         for path in sorted((root / room).rglob("*.py")):
             name = path.relative_to(root).as_posix()
-            found.update(name.encode() + hashlib.sha256(path.read_bytes()).digest())
-    return found.hexdigest()
+            digest.update(name.encode() + hashlib.sha256(path.read_bytes()).digest())
+    return digest.hexdigest()
 
 
 def _version(name: str) -> str | None:
-    """None of a package that is not there, as pymetis is not on every system."""
+    """Return the version of a package, None where it is not installed: pymetis is not on every
+    system.
+    """
     try:
         return version(name)
     except PackageNotFoundError:
@@ -184,7 +191,7 @@ def _split(data: bytes) -> tuple[bytes, bytes]:
 
 
 def _ours(path: str) -> bool:
-    """Whether a file of such a name is ours: it begins so, or is partial, as only we call it."""
+    """Return whether a file is ours, by its first line or by the suffix of partial files."""
     if path.endswith(PARTIAL_SUFFIX):
         return True
     try:

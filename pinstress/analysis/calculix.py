@@ -1,4 +1,4 @@
-"""CalculiX's opinion on every row of a run, pin by pin."""
+"""CalculiX's second opinion on every row of a run, pin by pin."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from pinstress.study.model.tasks import Task
 
 
 def ask_calculix(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
-    """Solve the rows of a task once more; for the task's own process."""
+    """Solve the rows of a task once more with CalculiX; called in the task's own process."""
     return _in_lugs(task, solved, tell) if task.lugs else _alone(plan, task, solved, tell)
 
 
 def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
-    """Of a pin with prescribed clamps and loads."""
+    """Return the opinions on a pin with prescribed clamps and loads."""
     distance = plan.asked.distance
     try:
         return second_opinions(
@@ -33,7 +33,7 @@ def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opin
 
 
 def _in_lugs(task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
-    """Of the rows that something loads."""
+    """Return the opinions on the loaded rows of a pin in lugs."""
     if not isinstance(task.pin, Pin):
         why = "contact of a pin with holes is not compared with CalculiX"
         return tuple(
@@ -48,5 +48,5 @@ def _in_lugs(task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
 
 
 def slow_rows(plan: Plan) -> list[tuple[str, str]]:
-    """Pin and case of those that take CalculiX minutes."""
+    """Return the pin and case of the rows that take CalculiX minutes."""
     return [(t.pin.name, loads.case) for t in plan.tasks if t.lugs for loads in t.loads]

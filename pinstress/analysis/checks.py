@@ -17,7 +17,7 @@ from reports.data import results as plain
 
 
 def require_cantilever(study: Study, task: Task, case: str) -> None:
-    """Raises: InputError if the pin of the beam check is no cantilever with one load."""
+    """Raise InputError unless the pin of the beam check is a cantilever with one load."""
     loads = next(c for c in task.loads if c.case == case)
     turned = isinstance(task.pin, Pin)
     if not turned or task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
@@ -29,7 +29,7 @@ def require_cantilever(study: Study, task: Task, case: str) -> None:
 
 
 def beam_check(study: Study, task: Task) -> BeamCheck:
-    """The beam check of a pin at the instant of its largest force."""
+    """Return the beam check of a pin at the instant of its largest force."""
     check, pin = study.table.beam_check, task.pin
     assert check is not None
     assert isinstance(pin, Pin)
@@ -40,7 +40,7 @@ def beam_check(study: Study, task: Task) -> BeamCheck:
 def motion_check(
     study: Study, loads: dict[str, CaseLoads], published: Published
 ) -> plain.MotionCheck | None:
-    """A joint's speed and acceleration and the closed form; None if not requested."""
+    """Return a joint's speed and acceleration beside the closed form; None if not requested."""
     check = study.table.motion_check
     case = loads.get(check.case) if check else None
     if check is None or case is None:
@@ -55,13 +55,13 @@ def motion_check(
     speed, acceleration = np.linalg.norm(v, axis=1), np.linalg.norm(a, axis=1)
     rows = []
     for t, their_v, their_a in published.motion:
-        there = at_time(case, t * unit("time"))
-        if there is None or there.dynamics is None:
+        instant_loads = at_time(case, t * unit("time"))
+        if instant_loads is None or instant_loads.dynamics is None:
             raise study.error(
                 f"published.motion: time {t:g} {study.system.time} is outside case {check.case}",
                 code="time-outside",
             )
-        _, *rates = there.dynamics.motion.joint(check.joint)
+        _, *rates = instant_loads.dynamics.motion.joint(check.joint)
         at_v, at_a = (float(np.linalg.norm(x)) for x in rates)
         rows.append((t, their_v, their_a, at_v, at_a))
     return plain.MotionCheck(

@@ -30,10 +30,10 @@ def field(
     also: ExtraFields = None,
     pressure: CellPressure | None = None,
 ) -> plain.Field | None:
-    """A pin's field at its governing instant; None if not solved, or if the model has none.
+    """Return a pin's field at its governing instant; None if not solved, or if the model has none.
 
-    also: with the other instants, at most MAX_STILLS of them, or with all of a revolved pin.
-    pressure: of contact with its lugs.
+    also: adds the other instants, at most MAX_STILLS of them, or the whole of a revolved pin.
+    pressure: contact pressure of its lugs.
     """
     peak = solution.peak
     solution = at_samples(solution, case)
@@ -74,7 +74,7 @@ def field(
 
 
 def _volume(answer: StressField, loads: PinLoads, instant: int) -> plain.Volume | None:
-    """All of a revolved pin; a solid model's field has it already."""
+    """Return the whole of a revolved pin; None for a solid model, whose field has it already."""
     if not isinstance(answer, HarmonicField):
         return None
     shown = revolve_solid(answer.fields, loads, instant, answer.solution.nu)
@@ -90,13 +90,13 @@ def _volume(answer: StressField, loads: PinLoads, instant: int) -> plain.Volume 
 
 
 def instants(count: int, governing: int) -> list[int]:
-    """At most MAX_STILLS of `count` instants, evenly, and the governing one."""
+    """Return at most MAX_STILLS of `count` instants, evenly spaced, and the governing one."""
     even = np.linspace(0, count - 1, min(count, MAX_STILLS)).round().astype(int)
     return sorted({*even.tolist(), governing})
 
 
 def at_samples(solution: Solution, case: CaseLoads) -> Solution:
-    """With its loads at the case's samples and the governing instant alone."""
+    """Return a solution with its loads at the case's samples and the governing instant only."""
     if solution.loads.times is None or case.reactions.times is None:
         return solution
     samples = np.flatnonzero(np.isin(solution.loads.times, case.reactions.times))
@@ -121,7 +121,7 @@ def _still(
 
 
 def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, ...]:
-    """Every band on which a link bears; those that are held carry no load here."""
+    """Return every band on which a link bears; held bands carry no load here."""
     out, loads = [], loads.links
     for name in (*loads.surfaces, *task.left_out[loads.case]):
         band, held = task.pin.band(name), name not in loads.surfaces
@@ -137,8 +137,10 @@ def _bands(task: Task, loads: PinLoads, instant: int) -> tuple[plain.BandLoad, .
 
 
 def _outside(peak: Maximum) -> tuple[float, tuple[float, float, float]] | None:
-    """Where stress at singularities is left out, whether or not they govern, and what lugs press
-    on: the largest of the surface.
+    """Return the largest stress of the surface outside singularities and lug contact, and its
+    place.
+
+    It is returned whether or not the singularities govern.
     """
     places = peak.places
     if places is not None and places.contact is not None:

@@ -1,4 +1,4 @@
-"""What is to be solved of a study, every input read and found usable."""
+"""Plan of an analysis: the tasks to solve, after every input has been read and checked."""
 
 from __future__ import annotations
 
@@ -29,26 +29,29 @@ from pinstress.study.schema.shown import as_text
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
-    """The reactions of every case, by name. Raises: InputError with what is wrong in any."""
+    """Return the reactions of every case, by name.
+
+    Raises: InputError with the errors of all cases.
+    """
     mechanism = linkage(study) if study.table.mechanism else None
     if mechanism is not None:
         determined(study, mechanism)  # once, not in every case
     wrong = Errors(study.path)
-    found = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    attempts = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
     wrong.tell()
-    loads = {name: loads for name, loads in found.items() if loads is not None}
+    loads = {name: loads for name, loads in attempts.items() if loads is not None}
     require_times(study, {name: case.reactions.times for name, case in loads.items()})
     return loads
 
 
 @dataclass(frozen=True)
 class Plan:
-    """All that is known before anything is solved: every input is read and found usable.
+    """The inputs of an analysis before anything is solved; all have been read and checked.
 
-    checked: the task whose pin the beam check compares, if any. also: which fields are wanted
-    in addition to those of the model at the governing instant. sensitive: whether sensitivities of
-    all cases are wanted, and not of each pin's worst one alone. limit_load: whether those of all
-    rows that yield are, however long they take.
+    checked: the task whose pin the beam check compares, if any.
+    also: the fields that are wanted in addition to those of the model at the governing instant.
+    sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
+    limit_load: whether the limit loads of all rows that yield are wanted, however long they take.
     """
 
     study: Study
@@ -75,10 +78,12 @@ def prepare(
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
 
-    pins, cases: names; all by default. model, tolerance: instead of the study's. memory: MB that a
-    solid may take, by default most of what is free now. also: fields along the whole motion, or of
-    all of a revolved pin. limit_load: find the limit load of every row that yields, however long it
-    takes; otherwise as the study has it, where "auto" gives each 20 s of processor time.
+    pins, cases: names; all by default.
+    model, tolerance: override those of the study.
+    memory: MB that a solid model may take, by default most of the free memory.
+    also: fields along the whole motion, or of the whole of a revolved pin.
+    limit_load: compute the limit load of every row that yields, however long it takes; otherwise
+    the study decides, where "auto" gives each 20 s of processor time.
 
     Raises: InputError for bad input.
     """
@@ -120,7 +125,7 @@ def prepare(
 
 
 def _require_model(study: Study, model: Model, pin: str) -> None:
-    """Raises: InputError for a model that cannot answer for a pin in its lugs."""
+    """Raise InputError for a model that cannot solve a pin in its lugs."""
     beam = study.table.analysis.joints == "foundation"
     how, fits = ("on foundations in", "beam") if beam else ("in contact with", "harmonic")
     if model not in ("auto", fits):
@@ -138,7 +143,10 @@ def requirement_of(
     tolerance: float | None = None,
     memory: float | None = None,
 ) -> Requirement:
-    """What a study requests of a solution. model, tolerance, memory: as of `prepare`."""
+    """Return the requirement of a study on a solution.
+
+    model, tolerance, memory: as in `prepare`.
+    """
     table = study.table.analysis
     return Requirement(
         tolerance or table.tolerance,

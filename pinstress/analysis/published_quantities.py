@@ -1,4 +1,4 @@
-"""Single quantities of a case by name: what published values are compared with."""
+"""Single quantities of a case by name, for comparison with published values."""
 
 from __future__ import annotations
 
@@ -39,7 +39,10 @@ PUBLISHED_QUANTITIES = {
 def published_values(
     study: Study, loads: dict[str, CaseLoads], published: Published
 ) -> tuple[plain.PublishedValue, ...]:
-    """The study's published single values with ours. Raises: InputError for an unknown one."""
+    """Return the study's published single values with the computed ones.
+
+    Raises: InputError for an unknown quantity.
+    """
     rows = [row for row in published.values if row.case in loads]
     return tuple(_beside(study, row, loads[row.case]) for row in rows)
 
@@ -52,12 +55,12 @@ def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.Published
         )
     of, dimension = PUBLISHED_QUANTITIES[row.quantity]
     if row.time is not None:
-        there = at_time(case, row.time * study.system.factor("time"))
-        if there is None:
+        instant_loads = at_time(case, row.time * study.system.factor("time"))
+        if instant_loads is None:
             raise InputError(
                 f"{row.where}: case {row.case} has no time {row.time:g}", code="unknown-time"
             )
-        case = there
+        case = instant_loads
     try:
         if of == "connection":
             c = case.reactions.connections.index(row.name)
@@ -83,7 +86,7 @@ def _beside(study: Study, row: PublishedRow, case: CaseLoads) -> plain.Published
 
 
 def _of_rate(row: PublishedRow, case: CaseLoads) -> str:
-    """Dimension of a drive's velocity or acceleration."""
+    """Return the dimension of a drive's velocity or acceleration."""
     assert case.dynamics is not None
     second = row.quantity.endswith("acceleration")
     if isinstance(_drive(row, case.dynamics), Slider):

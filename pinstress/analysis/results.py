@@ -1,4 +1,4 @@
-"""What `pinstress.run` returns: the results that the command writes, with what a notebook wants."""
+"""Results of `pinstress.run`: those that the command writes, with access from notebooks."""
 
 from __future__ import annotations
 
@@ -44,7 +44,8 @@ class Png:
 class RunResults(Results):
     """Results in the study's units, with tables, frames, and fields by pin and case.
 
-    fields: those that were kept. plan: from which pins without a kept field are solved again.
+    fields: those that were kept.
+    plan: used to solve pins without a kept field again.
     """
 
     fields: dict[tuple[str, str], Field] = dataclasses.field(default_factory=dict)
@@ -58,26 +59,32 @@ class RunResults(Results):
 
     @property
     def tables(self) -> dict[str, Table[Any]]:
-        """All tables of the run by name: columns, and rows with every digit."""
+        """Return all tables of the run by name: columns, and rows with every digit."""
         return {t.name: t for t in (*stress_tables(self), *load_tables(self))}
 
     def to_pandas(self, table: str = "safety_factors") -> pandas.DataFrame:
-        """A table as a pandas frame. Raises: ImportError without pandas, ValueError."""
-        found, library = self._table(table), _library("pandas")
-        frame: pandas.DataFrame = library.DataFrame(list(found.cells()), columns=found.keys)
+        """Return a table as a pandas frame.
+
+        Raises: ImportError without pandas, ValueError for an unknown table.
+        """
+        content, library = self._table(table), _library("pandas")
+        frame: pandas.DataFrame = library.DataFrame(list(content.cells()), columns=content.keys)
         return frame
 
     def to_polars(self, table: str = "safety_factors") -> polars.DataFrame:
-        """A table as a polars frame. Raises: ImportError without polars, ValueError."""
-        found, library = self._table(table), _library("polars")
-        rows, columns = [list(row) for row in found.cells()], found.keys
+        """Return a table as a polars frame.
+
+        Raises: ImportError without polars, ValueError for an unknown table.
+        """
+        content, library = self._table(table), _library("polars")
+        rows, columns = [list(row) for row in content.cells()], content.keys
         frame: polars.DataFrame = library.DataFrame(
             rows, schema=columns, orient="row", infer_schema_length=None
         )
         return frame
 
     def to_pyvista(self, pin: str, case: str) -> pyvista.UnstructuredGrid:
-        """A pin's mesh with its fields at the governing instant, as its VTU file has them.
+        """Return a pin's mesh with its fields at the governing instant, as its VTU file has them.
 
         Raises: ValueError when the run kept no such field.
         """
@@ -87,13 +94,13 @@ class RunResults(Results):
         from reports.vtk.writer import grid
 
         content = block(self._field(pin, case), self.units)
-        made: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
-        return made
+        mesh: pyvista.UnstructuredGrid = pyvista.wrap(grid(content))
+        return mesh
 
     mesh = to_pyvista  # its name before
 
     def picture(self, pin: str, case: str) -> Png:
-        """A pin coloured by its von Mises stress.
+        """Return a picture of a pin coloured by its von Mises stress.
 
         Raises: ValueError as `to_pyvista`, RuntimeError where nothing can be drawn.
         """
@@ -124,8 +131,8 @@ class RunResults(Results):
             with one_thread():
                 solve_tasks(dataclasses.replace(self.plan, tasks=tasks), self._keep)
         if (pin, case) not in self.fields:
-            there = ", ".join(f"{p} in {c}" for p, c in self.fields) or "none"
-            raise ValueError(f"no field of pin {pin} in {case}; there are {there}")
+            available = ", ".join(f"{p} in {c}" for p, c in self.fields) or "none"
+            raise ValueError(f"no field of pin {pin} in {case}; there are {available}")
         return self.fields[pin, case]
 
     def _keep(self, field: Field) -> None:
@@ -155,14 +162,17 @@ def run(
 ) -> RunResults:
     """Analyse a study.
 
-    pins, cases: names; all by default. model, tolerance: override those of the study. memory_limit:
-    limit for a solid model in MB, by default most of the free memory. limit_load: find the limit
-    load of every row that yields, however long it takes; otherwise as the study has it, where
-    "auto" gives each 20 s of processor time. fields: whether to keep every
-    pin's field (some 10 MB each) for `to_pyvista` and `picture`, which otherwise solve the pin
-    again. jobs: number of parallel processes (None: number of cores); 1, in this process, if fields
-    are kept or other threads run. A pin whose numerics fail has the
-    verdict `failed`.
+    pins, cases: names; all by default.
+    model, tolerance: override those of the study.
+    memory_limit: limit for a solid model in MB, by default most of the free memory.
+    limit_load: compute the limit load of every row that yields, however long it takes; otherwise
+    the study decides, where "auto" gives each 20 s of processor time.
+    fields: whether to keep every pin's field (about 10 MB each) for `to_pyvista` and `picture`,
+    which otherwise solve the pin again.
+    jobs: number of parallel processes (None: number of cores); 1, in this process, if fields are
+    kept or other threads run.
+
+    A pin whose solution fails has the verdict `failed`.
 
     Raises: InputError for bad input.
     """
@@ -190,10 +200,10 @@ def solve(
     no number of jobs.
     """
     require_fatigue(plan.study)
-    kept: dict[tuple[str, str], Field] = {}
+    kept_fields: dict[tuple[str, str], Field] = {}
 
     def keep(field: Field) -> None:
-        kept[field.pin, field.case] = field
+        kept_fields[field.pin, field.case] = field
 
     require_count("jobs", jobs)
     most = 1 if fields else processes(jobs)
@@ -202,4 +212,4 @@ def solve(
             plan, solve_tasks(plan, keep if fields else keep_none, jobs=most, cache=cache)
         )
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
-    return RunResults(**plain, fields=kept, plan=plan)
+    return RunResults(**plain, fields=kept_fields, plan=plan)

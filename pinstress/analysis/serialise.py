@@ -1,5 +1,5 @@
-"""Dataclasses as bytes and back, numbers bit for bit: an npz file of the arrays and of a JSON text
-with all the rest. What is read back is checked against the types of the dataclass, piece by piece.
+"""Dataclasses as bytes and back, numbers bit for bit: an npz file of the arrays and a JSON text
+with the rest. Everything that is read back is checked against the types of the dataclass.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ JSON_ENTRY = "text"  # the name of the JSON; arrays are called by their numbers
 
 
 def pack(value: object) -> bytes:
-    """Dataclasses, tuples, lists, dicts by text, arrays, numbers, texts and None; the same bytes
-    for the same values.
+    """Return a value as bytes; equal values give equal bytes.
+
+    value: dataclasses, tuples, lists, dicts by text, arrays, numbers, texts and None.
 
     Raises: TypeError for anything else.
     """
@@ -35,9 +36,9 @@ def pack(value: object) -> bytes:
 
 
 def unpack(kind: type[T], data: bytes) -> T:
-    """What was packed, a `kind`.
+    """Return the packed value, a `kind`.
 
-    Raises: ValueError when it is something else; what numpy and zipfile raise when it is nothing.
+    Raises: ValueError for a value of another type; the errors of numpy and zipfile for other data.
     """
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}

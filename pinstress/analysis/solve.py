@@ -1,4 +1,4 @@
-"""The tasks of a plan, solved side by side: of each there remains what is small."""
+"""Solution of the tasks of a plan in parallel; only the small results of each are kept."""
 
 from __future__ import annotations
 
@@ -60,16 +60,17 @@ def solve_tasks(
     jobs: int = 1,
     cache: OutcomeStore | None = None,
 ) -> list[PinOutcome]:
-    """What is found of every task of a plan, in their order, `jobs` of them at a time, each in its
-    own process (pinbase.processes.pool); with 1, in this one. The answers are the same to the
-    last bit.
+    """Return the outcome of every task of a plan, in their order.
 
-    keep: called with every field, in the study's units, as soon as it is there. ask: for a second
-    opinion on a task, with what to report progress to. Both are called in the task's
-    process. progress: called with what is being done and the part of the work that is behind.
-    cache: where tasks that were solved before are found, and the others kept.
+    Tasks are solved in processes of their own (pinbase.processes.pool), `jobs` at a time; with 1,
+    in this process. The results are bitwise the same. A task whose solution fails has the verdict
+    `failed`; the others continue.
 
-    A task whose numerics fail has the verdict `failed`; the others go on.
+    keep: called with every field, in the study's units, as soon as it exists, in the task's
+    process.
+    progress: called with the current step and the completed part of the work.
+    ask: gives a second opinion on a task, in the task's process, and reports its progress.
+    cache: where earlier tasks are looked up, and new ones are stored.
     """
     show = partial(_in_units, plan.study.system.factor, keep)
     order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
@@ -77,12 +78,14 @@ def solve_tasks(
         Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
         for task in (plan.tasks[i] for i in order)
     ]
-    found: dict[int, PinOutcome] = {}
-    for i, made in zip(order, in_parallel(work, _together(plan, jobs), progress), strict=True):
-        found[i] = (
-            _failed(plan, plan.tasks[i], made.reason) if isinstance(made, ProcessDied) else made
+    outcomes: dict[int, PinOutcome] = {}
+    for i, outcome in zip(order, in_parallel(work, _together(plan, jobs), progress), strict=True):
+        outcomes[i] = (
+            _failed(plan, plan.tasks[i], outcome.reason)
+            if isinstance(outcome, ProcessDied)
+            else outcome
         )
-    return [found[i] for i in range(len(plan.tasks))]
+    return [outcomes[i] for i in range(len(plan.tasks))]
 
 
 def _in_units(unit: Unit, keep: Keep, field: Field) -> None:
@@ -90,7 +93,7 @@ def _in_units(unit: Unit, keep: Keep, field: Field) -> None:
 
 
 def _together(plan: Plan, jobs: int) -> int:
-    """So many of the jobs as there is memory for, if they are solids as large as they may get."""
+    """Return the number of jobs that fit the memory, if all were solids of the largest size."""
     if not any(_effort(plan, task)[0] for task in plan.tasks):
         return jobs
     room = allowed_memory(plan.asked.memory) / solid_memory(SOLID_MESHES.max_unknowns)
@@ -98,8 +101,9 @@ def _together(plan: Plan, jobs: int) -> int:
 
 
 def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
-    """What takes longer has more of: tetrahedra, then lugs, those that move more than those of the
-    structure, cases, instants.
+    """Return a sort key by effort: solid or not, lugs, cases, instants.
+
+    Lugs at connections, which move more than those of the structure, count twice.
     """
     solid = plan.asked.model == "solid" or not task.pin.revolved
     lugs = len(task.lugs) + sum(lug.connection in task.pin.connections for lug in task.lugs)
@@ -122,8 +126,10 @@ def _attempt(
 
 
 def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: Tell) -> PinOutcome:
-    """From the cache; else solved, and kept there. What lacks a limit load for want of time has a
-    key of its own: it is no answer where that limit load is requested.
+    """Return a task's outcome from the cache; else solve it, and store it there.
+
+    An outcome without a limit load that would take too long has a key of its own: it does not
+    answer a task that requests that limit load.
     """
     key, seconds = cache.key(cache_key(plan, task)), limit_seconds(plan)
     entry = cache.read(key, Entry)
@@ -163,7 +169,9 @@ def _assessed(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
 def solutions(
     study: Study, task: Task, asked: Requirement, tell: Tell, first: FirstMesh | None = None
 ) -> tuple[Solution, ...]:
-    """Solutions of a task's cases. first: what was solved before of pins that are clamped.
+    """Return the solutions of a task's cases.
+
+    first: earlier solutions on the first mesh of clamped pins.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
@@ -175,7 +183,7 @@ def solutions(
 
 
 def _joints(study: Study, task: Task) -> Joints:
-    """How lugs hold a pin."""
+    """Return the joints by which lugs hold a pin."""
     joints = study.table.analysis.joints
     if joints == "contact" or joints == "foundation":
         return joints
@@ -185,9 +193,9 @@ def _joints(study: Study, task: Task) -> Joints:
 
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     study = plan.study
-    found = solutions(study, task, plan.asked, tell)
-    pressures = [solution.pressure for solution in found]
-    for solution, pressure in zip(found, pressures, strict=True):
+    solved = solutions(study, task, plan.asked, tell)
+    pressures = [solution.pressure for solution in solved]
+    for solution, pressure in zip(solved, pressures, strict=True):
         case = plan.loads[solution.peak.case]
         field = gather_fields.field(task, solution, case, plan.also, pressure)
         if field is not None:
@@ -195,23 +203,23 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
             keep(field)
     notes = shape_notes(task.pin)
     peaks = tuple(
-        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in found
+        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in solved
     )
-    ranges = (gather.landing_range(plan.loads, task, s) for s in found)
+    ranges = (gather.landing_range(plan.loads, task, s) for s in solved)
     landing = tuple(r for r in ranges if r is not None)
     beam = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam = checks.beam_check(study, task)
-    joints = tuple(s.joint for s in found) if task.lugs else _around(plan, task, peaks)
-    surfaces = surfaces_of(plan.loads, task, found, pressures)
-    histories, no_histories = _histories(task, found)
+    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, peaks)
+    surfaces = surfaces_of(plan.loads, task, solved, pressures)
+    histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, found)
+    to_do = change(plan.asked, task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, found, step, plan.sensitive)
-    limits = limit_loads(plan, task, found, tell)
+    sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
+    limits = limit_loads(plan, task, solved, tell)
     return PinOutcome(
         peaks,
         landing,
@@ -226,18 +234,20 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     )
 
 
-def _histories(task: Task, found: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
-    """Of stress at the pin's critical points; why there are none if that fails, which must not
-    take the pin's stress with it.
+def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
+    """Return the histories of stress at the pin's critical points, and why there are none if that
+    fails.
+
+    Such a failure must not discard the pin's stress.
     """
     try:
-        return stress_histories(task.pin.name, found), ""
+        return stress_histories(task.pin.name, solved), ""
     except Exception as error:
         return (), f"{type(error).__name__}: {error}"
 
 
 def _around(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> tuple[JointResult | None, ...]:
-    """Of a pin with prescribed clamps and loads, the range over lugs around it."""
+    """Return the range over lugs around a pin with prescribed clamps and loads."""
     around, loads = task.surroundings, [peak.governing for peak in peaks]
     if around is None:
         return ()

@@ -1,4 +1,6 @@
-"""What remains of a solved pin, what it depends on, and whether it can be kept for other runs."""
+"""Outcome of a solved pin, the inputs on which it depends, and whether it can be stored for other
+runs.
+"""
 
 from __future__ import annotations
 
@@ -30,13 +32,17 @@ SHAPE_TABLES = "profile", "meridian", "bore_meridian", "band"  # whose keys sens
 
 @dataclass(frozen=True)
 class PinOutcome:
-    """A task's peaks in the order of its cases, and what else reports and CalculiX have to say.
-    joints: in the same order, empty where nothing is in contact. change: what would make the pin
-    reach its factor, if it does not. histories: of stress at its critical points. before: whether
-    an earlier run found it. limits: limit loads, in the order of the cases too. sensitivities: of
-    the worst case, or of all. no_histories: why there are no histories, if looking for them failed.
-    strength: in that order; found anew by every run, as it takes little
-    and depends on more of the study.
+    """A task's peaks in the order of its cases, with the other results for reports and CalculiX.
+
+    joints: in the same order, empty where nothing is in contact.
+    change: the change by which the pin reaches its factor, if it does not.
+    histories: of the stress at its critical points.
+    before: whether it comes from an earlier run.
+    limits: limit loads, in the order of the cases.
+    sensitivities: of the worst case, or of all.
+    no_histories: why there are no histories, if computing them failed.
+    strength: in the order of the cases; computed by every run, as it takes little time and depends
+    on more of the study.
     """
 
     peaks: tuple[Maximum, ...]
@@ -56,22 +62,23 @@ class PinOutcome:
 
 @dataclass(frozen=True)
 class Entry:
-    """What the cache has of a task."""
+    """The content of the cache for a task."""
 
     solved: PinOutcome
     fields: tuple[Field, ...]
 
     def answers(self, task: Task) -> bool:
-        """Whether it is of this pin in these cases: files are named after them."""
+        """Return whether the entry is of this pin in these cases, after which files are named."""
         rows = [(task.pin.name, loads.case) for loads in task.loads]
-        own = [(p.pin, p.case) for p in self.solved.peaks]
-        return own == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
+        solved_rows = [(p.pin, p.case) for p in self.solved.peaks]
+        return solved_rows == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
 
 
 def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
-    """All that the answer to a task depends on, but for versions and memory, as what
-    pinstress.analysis.serialise takes. seconds: of an answer without some limit load, which
-    would have taken longer.
+    """Return all that the answer to a task depends on, except versions and memory, as a value that
+    pinstress.analysis.serialise packs.
+
+    seconds: the time limit of an answer that lacks a limit load because of it.
     """
     study, cases = plan.study, [plan.loads[loads.case] for loads in task.loads]
     check = study.table.beam_check if task is plan.checked else None
@@ -99,8 +106,8 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
 
 
 def shape_of(pin: PinLike) -> object:
-    """A pin's shape as what pinstress.analysis.serialise takes, with the content of its
-    file.
+    """Return a pin's shape, with the content of its file, as a value that
+    pinstress.analysis.serialise packs.
     """
     if isinstance(pin, Pin | CutPin):
         return pin
@@ -119,7 +126,7 @@ def shape_of(pin: PinLike) -> object:
 
 
 def independent_of_memory(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> bool:
-    """Whether more memory would not have given another answer (fea.solve.solve stops there)."""
+    """Return whether more memory would give the same answer (fea.solve.solve is limited by it)."""
     open_ = [
         p
         for p in peaks

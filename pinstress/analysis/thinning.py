@@ -1,4 +1,4 @@
-"""Which points of a pin's meridian, and how many unit loads, are needed to draw what is known."""
+"""Points of a pin's meridian, and unit loads, that suffice to draw its surface."""
 
 from __future__ import annotations
 
@@ -28,10 +28,13 @@ MAX_CORNER_COSINE = 0.94  # cosine of the turn at a corner, at most
 COINCIDENCE_DISTANCE = 1e-9  # of the length: points that are one
 
 
-def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Mask) -> Mask:
-    """Which points (P,) of a meridian to keep so that its shape, displacements and stresses in all
-    cases stay what they are, but for the stresses that every case excludes. kept: (P,) points that
-    are kept in any case.
+def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], required: Mask) -> Mask:
+    """Return which points (P,) of a meridian to keep.
+
+    They preserve the shape, displacements and stresses in all cases, except stresses that every
+    case excludes.
+
+    required: (P,) points that are kept in any case.
     """
     x, excluded = surface.points, np.all([c.excluded for c in cases], axis=0)
     size = float(np.ptp(x, axis=0).max())
@@ -51,7 +54,7 @@ def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Ma
         )
         values.append(moved)
         allowed.append(np.full(moved.shape, DISPLACEMENT_TOLERANCE * float(np.abs(moved).max())))
-    keep = kept | _corners(x, COINCIDENCE_DISTANCE * size) | _ends(excluded)
+    keep = required | _corners(x, COINCIDENCE_DISTANCE * size) | _ends(excluded)
     # What never acts allows nothing, and misses nothing.
     within = np.concatenate(allowed, axis=1) + np.finfo(float).tiny
     return needed(along, np.concatenate(values, axis=1), within, keep)
@@ -60,30 +63,31 @@ def meridian_points(surface: UnitSurface, cases: Sequence[SurfaceCase], kept: Ma
 def fewer_loads(
     surface: UnitSurface, cases: Sequence[SurfaceCase]
 ) -> tuple[UnitSurface, list[SurfaceCase]]:
-    """The same with as few unit loads as make the fields of all cases, where many act, as under
-    contact: of every harmonic the singular vectors that matter.
+    """Return the surface with as few unit loads as reproduce the fields of all cases.
+
+    Where many act, as under contact, the significant singular vectors of every harmonic are taken.
     """
     fields = np.concatenate([surface.stress, surface.displacement * _scale(surface, cases)], axis=1)
     acting = [_weighed(c) for c in cases]
     n: list[int] = []
-    made: list[Floats] = []  # of the old unit loads, (K, K')
+    mixes: list[Floats] = []  # of the old unit loads, (K, K')
     now: list[list[Floats]] = [[] for _ in cases]
     for harmonic in np.unique(surface.n).tolist():
-        own = np.flatnonzero(surface.n == harmonic)
-        root = np.linalg.qr(fields[:, :, own].reshape(-1, len(own)), mode="r")
+        columns = np.flatnonzero(surface.n == harmonic)
+        root = np.linalg.qr(fields[:, :, columns].reshape(-1, len(columns)), mode="r")
         together = np.concatenate(
-            [a[:, own].transpose(1, 0, 2).reshape(len(own), -1) for a in acting], 1
+            [a[:, columns].transpose(1, 0, 2).reshape(len(columns), -1) for a in acting], 1
         )
         vectors, size, times = np.linalg.svd(root @ together, full_matrices=False)
         most = np.abs(size[:, None] * times).max(axis=1, initial=0.0)
         vectors = vectors[:, most > MIN_UNIT_LOAD_SHARE]
         mix = np.zeros((len(surface.n), vectors.shape[1]))
-        mix[own] = np.linalg.lstsq(root, vectors)[0]
-        made.append(mix)
+        mix[columns] = np.linalg.lstsq(root, vectors)[0]
+        mixes.append(mix)
         n += [harmonic] * vectors.shape[1]
         for case, out in zip(cases, now, strict=True):
-            out.append(np.einsum("jk,tkp->tjp", vectors.T @ root, case.amounts[:, own]))
-    mix = np.concatenate(made, axis=1)
+            out.append(np.einsum("jk,tkp->tjp", vectors.T @ root, case.amounts[:, columns]))
+    mix = np.concatenate(mixes, axis=1)
     fewer = replace(
         surface,
         n=np.array(n, dtype=np.int64),
@@ -96,14 +100,14 @@ def fewer_loads(
 
 
 def _weighed(case: SurfaceCase) -> Floats:
-    """Amounts for a largest stress of one, the governing instant's so many times as large."""
+    """Return amounts for a largest stress of one, the governing instant weighted more."""
     weight = np.ones(len(case.amounts))
     weight[case.instant] = GOVERNING_WEIGHT
     return np.asarray(case.amounts * weight[:, None, None] / (case.maxima.max() or 1.0))
 
 
 def _scale(surface: UnitSurface, cases: Sequence[SurfaceCase]) -> float:
-    """Stress over displacement, Pa/m, of the first case that moves the pin."""
+    """Return stress over displacement, Pa/m, of the first case that moves the pin."""
     for case in cases:
         stress, moved = (
             float(np.abs(_around(surface, case.amounts[case.instant], x)).max())
@@ -119,29 +123,29 @@ def _step(case: SurfaceCase) -> int:
 
 
 def _around(surface: UnitSurface, amount: Floats, which: slice) -> Floats:
-    """Those of the eight numbers of the surface, (P, C, SAMPLE_ANGLES), under amounts (K, 2)."""
+    """Return those of the surface's eight numbers, (P, C, SAMPLE_ANGLES), under amounts (K, 2)."""
     turns = surface.n * np.linspace(0.0, 2.0 * np.pi, SAMPLE_ANGLES, endpoint=False)[:, None]
     c, s = np.cos(turns), np.sin(turns)
     first, second = amount.T
     eight = np.concatenate([surface.stress, surface.displacement], axis=1)[:, which]
     even = np.array(surface.even)[which, None]
-    found = np.where(even, eight @ (c * first + s * second).T, eight @ (s * first - c * second).T)
-    return np.asarray(found)
+    values = np.where(even, eight @ (c * first + s * second).T, eight @ (s * first - c * second).T)
+    return np.asarray(values)
 
 
 def _ends(mask: Mask) -> Mask:
-    """Points whose neighbour differs."""
+    """Return the points whose neighbour differs."""
     differs = mask[1:] != mask[:-1]
     return np.asarray(np.append(differs, False) | np.insert(differs, 0, False))
 
 
 def _corners(x: Floats, close: float) -> Mask:
-    """Points (P,) at which the meridian turns sharply; where it does so they come in pairs."""
+    """Return the points (P,) at which the meridian turns sharply; they come in pairs."""
     step = np.diff(x, axis=0)
     length = np.linalg.norm(step, axis=1)
-    found = np.zeros(len(x), dtype=bool)
+    corners = np.zeros(len(x), dtype=bool)
     for k in np.flatnonzero(length[1:-1] < close) + 1:
         turn = step[k - 1] @ step[k + 1]
         if turn < MAX_CORNER_COSINE * length[k - 1] * length[k + 1]:
-            found[[k, k + 1]] = True
-    return found
+            corners[[k, k + 1]] = True
+    return corners

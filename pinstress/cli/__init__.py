@@ -1,1 +1,1 @@
-"""The command line, and the folders it writes."""
+"""The command line and the folders that it writes."""

@@ -38,7 +38,9 @@ def chart_and_write(
     limits: MeasureLimits,
     calculix: bool = False,
 ) -> int:
-    """Chart a pin into a folder; returns the exit status. calculix: also by CalculiX.
+    """Chart a pin into a folder and return the exit status.
+
+    calculix: whether CalculiX also solves the pin.
 
     Raises: InputError, ArithmeticError.
     """
@@ -55,17 +57,20 @@ def chart_and_write(
         _announce_calculix(plan)
     with replacing(directory, CHART_CSV) as staging:
         with progress_bar() as progress:
-            found = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
-        write_chart_csv(found, staging)
-        draw([chart_plot(found)], staging)
+            result = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
+        write_chart_csv(result, staging)
+        draw([chart_plot(result)], staging)
     with unneeded(directory):
-        print_chart(found, console())
+        print_chart(result, console())
     click.echo(f"Chart: {directory / CHART_NAME}.svg", err=True)
-    return _report_missed(found)
+    return _report_missed(result)
 
 
 def _announce_calculix(plan: ChartPlan) -> None:
-    """Raises: InputError for a pin that is not in contact."""
+    """Announce the duration of CalculiX's solution.
+
+    Raises: InputError for a pin that is not in contact.
+    """
     if plan.chosen is None:
         raise InputError(
             "--second-opinion ccx: charts include CalculiX only for pins in contact with their "
@@ -79,16 +84,16 @@ def _announce_calculix(plan: ChartPlan) -> None:
     )
 
 
-def _report_missed(found: Chart) -> int:
-    tolerance, reference = percent(found.tolerance), found.reference.error
-    if reference > found.tolerance:
+def _report_missed(result: Chart) -> int:
+    tolerance, reference = percent(result.tolerance), result.reference.error
+    if reference > result.tolerance:
         click.echo(
             f"Not decided: the reference itself has an error of {percent(reference)}, which "
             f"exceeds the tolerance of {tolerance}.", err=True,
         )  # fmt: skip
         return 1
-    errors = [p.error for p in found.points if p.error is not None]
-    if not any(error <= found.tolerance for error in errors):
+    errors = [p.error for p in result.points if p.error is not None]
+    if not any(error <= result.tolerance for error in errors):
         click.echo(f"Not converged: no mesh is within the tolerance of {tolerance}.", err=True)
         return 1
     return 0

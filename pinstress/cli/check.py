@@ -1,4 +1,4 @@
-"""Describe what a study would run, without solving."""
+"""Describe the analyses that a study asks for, without solving."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from pinstress.study.schema.vary import VaryTable
 
 
 def describe(study: Study) -> tuple[str, list[str], list[str]]:
-    """A summary of a valid study, why unconstrained pins would not be solved, and what the loads of
-    others leave over.
+    """Return a summary of a valid study, the reasons why unconstrained pins would not be solved,
+    and warnings of loads left over at other pins.
 
     Raises: InputError for errors that involve several tables.
     """
@@ -48,8 +48,8 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
     for name, case in table.case.items():
         if mechanism is not None or isinstance(case, GivenCase | LegCase):
             # Without extremes: it is enough that the mechanism can follow.
-            found = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
-            loads |= {} if found is None else {name: found}
+            case_result = wrong.attempt(partial(case_loads, study, name, mechanism, extremes=False))
+            loads |= {} if case_result is None else {name: case_result}
     lines += [f"case {name}: {_words(study, name, case)}" for name, case in loads.items()]
     times = {name: case.reactions.times for name, case in loads.items()}
     wrong.attempt(partial(require_times, study, times))
@@ -57,10 +57,10 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
         steps = ", ".join(f"{step.repeat} × {step.case}" for step in sequence.steps)
         lines.append(f"sequence {name}: {steps}")
     pins = {name: wrong.attempt(partial(pin_of, study, name)) for name in table.pin}
-    made = [pin for pin in pins.values() if pin is not None]
-    lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in made]
+    valid_pins = [pin for pin in pins.values() if pin is not None]
+    lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in valid_pins]
     wrong.tell()
-    todo = tasks(study, made, loads) if made else []
+    todo = tasks(study, valid_pins, loads) if valid_pins else []
     a = table.analysis
     goal = (
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
@@ -73,14 +73,16 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
 
 
 def _sampled(vary: VaryTable) -> bool:
-    """Whether anything in [vary] is of the designs of a sweep; laws alone are for `reliability`."""
+    """Return whether anything in [vary] describes the designs of a sweep; laws alone are for
+    `reliability`.
+    """
     return bool(vary.model_fields_set & {"sample", "count"}) or any(
         law.steps is not None or law.from_ is not None for law in vary.parameters.values()
     )
 
 
 def _varied(study: Study) -> list[str]:
-    """What `sweep` and `reliability` would do, as far as the study asks for them."""
+    """Describe the tasks of `sweep` and `reliability`, as far as the study asks for them."""
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
     parameters = parameters_of(study, sampled)
@@ -138,30 +140,30 @@ def _form(pin: PinTable) -> str:
 
 
 def _mechanism(study: Study, mechanism: Linkage) -> list[str]:
-    found = determined(study, mechanism)
+    mobility = determined(study, mechanism)
     lines = [
         f"mechanism: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} joints, "
         f"{len(mechanism.connections)} connections{_teeth(mechanism)}, driven by "
         f"{', '.join(mechanism.driven)}"
     ]
-    counted = f"mobility {found.degrees}"
-    if found.kutzbach != found.degrees:
-        counted += f" by rank, {found.kutzbach} by count (Kutzbach)"
+    counted = f"mobility {mobility.degrees}"
+    if mobility.kutzbach != mobility.degrees:
+        counted += f" by rank, {mobility.kutzbach} by count (Kutzbach)"
     if ring := four_bar(mechanism):
         counted += f"; four-bar {'-'.join(ring.joints)}: {ring.kind}, assembled {ring.branch}"
-    if not found.redundant:
+    if not mobility.redundant:
         return [*lines, counted]
-    if found.shared and not mechanism.sharing:
+    if mobility.shared and not mechanism.sharing:
         raise study.error(
             "mechanism: rigid-body statics does not determine the forces at "
-            f"{', '.join(found.shared)}; state how they share the load in [[mechanism.sharing]]",
+            f"{', '.join(mobility.shared)}; state how they share the load in [[mechanism.sharing]]",
             code="statically-indeterminate",
         )
     rule = ", ".join(f"{'/'.join(s.connections)}" for s in mechanism.sharing)
     return [
         *lines,
-        f"{counted}; {found.redundant} redundant: the forces at {', '.join(found.shared)} follow "
-        f"the sharing rule for {rule}",
+        f"{counted}; {mobility.redundant} redundant: the forces at "
+        f"{', '.join(mobility.shared)} follow the sharing rule for {rule}",
     ]
 
 

@@ -1,5 +1,5 @@
-"""The closing lines of a run on stderr: loads left out, reused pins, unconverged rows, where
-CalculiX differs; and before it, what will take long.
+"""Messages on stderr at the end of a run: loads left out, reused pins, unconverged rows, rows in
+which CalculiX differs; and before the run, the rows that will take long.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ VERDICT_WORDS = {
 
 
 def report_left_out(results: Results) -> None:
-    """The forces that were left out because their band is clamped, one line per pin."""
+    """Report the forces that were left out because their band is clamped, one line per pin."""
     ways: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for p in results.pins:
         if p.left_out:
@@ -40,10 +40,10 @@ def report_left_out(results: Results) -> None:
         )
 
 
-def report_reused(plan: Plan, found: list[PinOutcome]) -> None:
-    """How many pins were taken from the cache."""
+def report_reused(plan: Plan, outcomes: list[PinOutcome]) -> None:
+    """Report the number of pins that were taken from the cache."""
     pins = {task.pin.name for task in plan.tasks}
-    anew = {t.pin.name for t, made in zip(plan.tasks, found, strict=True) if not made.before}
+    anew = {t.pin.name for t, row in zip(plan.tasks, outcomes, strict=True) if not row.before}
     if pins - anew:
         click.echo(
             f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} reused from the cache "
@@ -53,7 +53,7 @@ def report_reused(plan: Plan, found: list[PinOutcome]) -> None:
 
 
 def report_slow_rows(rows: list[tuple[str, str]]) -> None:
-    """Before a run, the rows that take CalculiX minutes."""
+    """Announce before a run the rows that take CalculiX minutes."""
     if rows:
         named = ", ".join(f"{pin} ({case})" for pin, case in rows)
         click.echo(
@@ -64,7 +64,7 @@ def report_slow_rows(rows: list[tuple[str, str]]) -> None:
 
 
 def report_disagreements(results: Results) -> int:
-    """The rows in which CalculiX differs or gave no answer; returns the exit status."""
+    """Report the rows in which CalculiX differs or gave no answer, and return the exit status."""
     opinions = [p.second_opinion for p in results.pins if p.second_opinion]
     for o in opinions:
         if o.complaint:
@@ -74,8 +74,8 @@ def report_disagreements(results: Results) -> int:
 
 
 def report_violations(results: Results) -> int:
-    """The pins that miss their required factor, as described or within a range that the study
-    leaves open, or have a negative margin; returns the status.
+    """Report the pins that miss their required factor, as described or within a range that the
+    study leaves open, or have a negative margin; return the exit status.
     """
     short = [p for p in results.pins if outcome(p) in (FAILS, YIELDS)]
     if short:
@@ -93,7 +93,7 @@ def report_violations(results: Results) -> int:
 
 
 def report_status_zero(results: Results) -> None:
-    """Why the exit status is 0 where a pin misses its requirements, or may miss them."""
+    """Explain the exit status 0 where a pin misses its requirements, or may miss them."""
     if any(check.outcome in (FAILS, YIELDS, DEPENDS) for check in judged_checks(results)):
         click.echo(
             "Exit status 0: the run is complete; --fail-on-miss makes it 4 where a pin misses its "
@@ -103,8 +103,8 @@ def report_status_zero(results: Results) -> None:
 
 
 def report_missed(results: Results, decide: bool) -> int:
-    """The rows without a converged maximum or without a decision, and those that failed; returns
-    the exit status.
+    """Report the rows without a converged maximum or without a decision, and those that failed;
+    return the exit status.
 
     decide: whether the study only requests a decision on the required factor.
     """
@@ -134,7 +134,9 @@ def report_missed(results: Results, decide: bool) -> int:
 
 
 def _lines(rows: Iterable[PinResult]) -> list[str]:
-    """A line for each result and reason: Not decided, singular at ...: A (landing), B (landing)."""
+    """Return a line for each result and reason: Not decided, singular at ...: A (landing), B
+    (landing).
+    """
     lines = []
     for which, (result, verdict, reason) in _together(
         (p, (outcome(p), p.verdict, _reason(p))) for p in rows
@@ -148,11 +150,11 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
 
 
 def _together(rows: Iterable[tuple[PinResult, Reason]]) -> list[tuple[list[PinResult], Reason]]:
-    """Rows with equal reasons together, in the order of the rows."""
-    found: dict[Reason, list[PinResult]] = {}
+    """Group rows with equal reasons, in the order of the rows."""
+    groups: dict[Reason, list[PinResult]] = {}
     for pin, reason in rows:
-        found.setdefault(reason, []).append(pin)
-    return [(which, reason) for reason, which in found.items()]
+        groups.setdefault(reason, []).append(pin)
+    return [(which, reason) for reason, which in groups.items()]
 
 
 def _reason(pin: PinResult) -> str:
@@ -168,13 +170,13 @@ def _governing(pin: PinResult) -> SingularZone | None:
 
 
 def _between(rows: list[PinResult]) -> str:
-    """The surfaces that meet at the singularity, if it is the same in all rows."""
-    found = {zone.between for pin in rows if (zone := _governing(pin))}
-    return f" ({' / '.join(found.pop())})" if len(found) == 1 else ""
+    """Name the surfaces that meet at the singularity, if it is the same in all rows."""
+    pairs = {zone.between for pin in rows if (zone := _governing(pin))}
+    return f" ({' / '.join(pairs.pop())})" if len(pairs) == 1 else ""
 
 
 def _listed(rows: list[PinResult]) -> str:
-    """Pins with their cases: A (retract, landing), B (landing)."""
+    """List pins with their cases: A (retract, landing), B (landing)."""
     cases: dict[str, list[str]] = {}
     for p in rows:
         cases.setdefault(p.pin, []).append(p.case)

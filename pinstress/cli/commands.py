@@ -40,8 +40,10 @@ EXIT_REACHED, EXIT_NOT_REACHED, EXIT_BAD_INPUT, EXIT_NUMERICS_FAILED = 0, 1, 2, 
 
 
 def run_command_line(arguments: list[str]) -> int:
-    """Exit status of a command: 0 done, 1 done but a requested result was not reached, 2 bad input,
-    3 the solution failed, 130 interrupted.
+    """Run the command line and return its exit status.
+
+    The status is 0 when done, 1 when done but a requested result was not reached, 2 for bad input,
+    3 when the solution failed, 130 when interrupted.
     """
     interrupts.listen()
     try:
@@ -61,7 +63,7 @@ def run_command_line(arguments: list[str]) -> int:
 
 
 def _status(error: BaseException) -> int | None:
-    """Report the error that ended a command; its exit status, or None for a bug."""
+    """Report the error that ended a command; return its exit status, or None for a bug."""
     match error:
         case click.exceptions.NoArgsIsHelpError():
             error.show()  # the help itself, whole
@@ -100,10 +102,11 @@ def commands() -> None:
 
 
 def _settle_environment() -> None:
-    """Set environment variables that libraries read so that they do not affect a run: one thread
-    per numeric library; plots without windows; no pydantic plugins, for which it searches all
-    installed packages. An invalid SOURCE_DATE_EPOCH is removed, because libraries fail on it at
-    import (our files contain no time).
+    """Set environment variables that libraries read so that they do not affect a run.
+
+    One thread per numeric library; plots without windows; no pydantic plugins, for which it
+    searches all installed packages. An invalid SOURCE_DATE_EPOCH is removed, because libraries fail
+    on it at import (our files contain no time).
     """
     hold_threads()
     os.environ["MPLBACKEND"] = "agg"

@@ -31,26 +31,28 @@ MAX_PICTURES = 6  # pictures
 
 
 def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
-    """Print what differs between two results folders; also write it into a folder; returns the
-    exit status: 1 if something could not be drawn.
+    """Print the differences between two results folders, and write them into a folder if one is
+    given.
+
+    Returns the exit status: 1 if something could not be drawn.
 
     Raises: InputError.
     """
     opened = opened_results(first), opened_results(second)
     if pictures and out is None:
         raise InputError("--pictures: give a folder for them with --out", code="no-folder")
-    found = _compared(*opened)
+    comparison = _compared(*opened)
     if out is not None:
         require_replaceable(out, COMPARISON_PAGE)
     with unneeded(out or first):
-        print_comparison(found, console())
+        print_comparison(comparison, console())
     if out is None:
         return 0
     failed: dict[str, Failed] = {}
     with replacing(out, COMPARISON_PAGE) as staging:
-        write_markdown(found, staging / "comparison.md")
-        drawn = _pictures(found, opened, staging, failed) if pictures else ()
-        write_comparison(found, staging / COMPARISON_PAGE, _plot(found, failed), drawn)
+        write_markdown(comparison, staging / "comparison.md")
+        drawn = _pictures(comparison, opened, staging, failed) if pictures else ()
+        write_comparison(comparison, staging / COMPARISON_PAGE, _plot(comparison, failed), drawn)
     click.echo(f"Comparison: {out / COMPARISON_PAGE}", err=True)
     if failed:
         said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
@@ -58,17 +60,17 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
     return int(bool(failed))
 
 
-def _plot(found: RunComparison, failed: dict[str, Failed]) -> str:
-    """The plot of the page as SVG; empty where there is none."""
-    plot = comparison_plot(found)
+def _plot(comparison: RunComparison, failed: dict[str, Failed]) -> str:
+    """Return the plot of the page as SVG; empty where there is none."""
+    plot = comparison_plot(comparison)
     if plot is None:
         return ""
     drawing = partial(svg, {**plot.spec, "config": on_paper()})
-    (made,) = apart([("the plot", drawing)], PICTURE_SECONDS)
-    if isinstance(made, Failed):
-        failed["the plot"] = made
+    (image,) = apart([("the plot", drawing)], PICTURE_SECONDS)
+    if isinstance(image, Failed):
+        failed["the plot"] = image
         return ""
-    return made
+    return image
 
 
 def _compared(a: Opened, b: Opened) -> RunComparison:
@@ -79,7 +81,10 @@ def _compared(a: Opened, b: Opened) -> RunComparison:
 
 
 def _system(opened: Opened) -> UnitSystem:
-    """Raises: InputError."""
+    """Return the unit system of a results folder.
+
+    Raises: InputError for units that no system has.
+    """
     units = opened.units
     for system in UNIT_SYSTEMS.values():
         if all(getattr(system, name) == value for name, value in vars(units).items()):
@@ -92,18 +97,20 @@ def _system(opened: Opened) -> UnitSystem:
 
 
 def _pictures(
-    found: RunComparison, opened: tuple[Opened, Opened], into: Path, failed: dict[str, Failed]
+    comparison: RunComparison, opened: tuple[Opened, Opened], into: Path, failed: dict[str, Failed]
 ) -> tuple[PicturePair, ...]:
-    """Of the rows that changed most. failed: what could not be drawn is put there.
+    """Draw both pictures of the rows that changed most.
 
-    Raises: InputError.
+    failed: receives the pictures that could not be drawn.
+
+    Raises: InputError for damaged results.
     """
     problem = renderer_problem()
     if problem is not None:
         click.echo(f"No pictures of the pins: {problem}", err=True)
         return ()
     preload(*PICTURE_MODULES)
-    rows = [row for row in found.rows if row.kind != UNCHANGED][:MAX_PICTURES]
+    rows = [row for row in comparison.rows if row.kind != UNCHANGED][:MAX_PICTURES]
     units = 1.0, _system(opened[1]).factor("stress") / _system(opened[0]).factor("stress")
     drawings = [
         (
@@ -115,10 +122,10 @@ def _pictures(
         for side in (0, 1)
     ]
     work = [(f"pin {pair.pin}, {pair.case}", work) for pair, _, work in drawings if work]
-    made = iter(apart(work, PICTURE_SECONDS))
+    results = iter(apart(work, PICTURE_SECONDS))
     files: dict[tuple[str, str], list[Path | None]] = {}
     for pair, side, drawing in drawings:
-        one = next(made) if drawing else []
+        one = next(results) if drawing else []
         if isinstance(one, Failed):
             if one.damaged:
                 raise InputError(
@@ -139,8 +146,10 @@ def _pictures(
 def _drawing(
     opened: Opened, pair: RowPair, unit: float, path: Path
 ) -> Callable[[], list[Path]] | None:
-    """What draws one of two pictures whose colours mean the same, None for a row that is not in
-    this run; unit: of stress, in that of the pair.
+    """Return the function that draws one of two pictures with a common colour scale; None for a row
+    that is not in this run.
+
+    unit: unit of stress, relative to that of the pair.
     """
     maxima = [s.maximum for s in (pair.first, pair.second) if s and s.maximum is not None]
     top = max(maxima, default=0.0) / unit

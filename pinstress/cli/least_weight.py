@@ -33,8 +33,12 @@ MAX_NAMED_BINDING = 4  # of what binds, that is named
 
 @dataclass(frozen=True)
 class Wishes:
-    """As the command line has them: kinds of dimensions, least wall over the diameter, least larger
-    over smaller diameter of a step, and the probability for the factor, if any.
+    """Options of the command line for the least weight.
+
+    vary: kinds of dimensions.
+    wall: least wall thickness over the diameter.
+    shoulder: least ratio of the larger to the smaller diameter of a step.
+    probability: allowed probability of missing the factor, if any.
     """
 
     vary: Sequence[str] | None = None
@@ -44,12 +48,15 @@ class Wishes:
 
     @property
     def given(self) -> list[str]:
-        """Options that were given."""
+        """Return the options that were given."""
         return [f"--{name}" for name, value in vars(self).items() if value is not None]
 
 
 def require_aim(study: Study, wishes: Wishes, required: float, step: float | None) -> WeightGoal:
-    """Raises: InputError for wishes that contradict each other or cannot be."""
+    """Return the goal of the search that the options describe.
+
+    Raises: InputError for options that are invalid or contradict each other.
+    """
     vary = tuple(dict.fromkeys(wishes.vary or DIMENSION_KINDS))
     unknown = [kind for kind in vary if kind not in DIMENSION_KINDS]
     if unknown:
@@ -78,23 +85,27 @@ def lighten_and_write(
     jobs: int | None = None,
     probability: float | None = None,
 ) -> int:
-    """Find the lightest pins and write the new study; returns the exit status: 1 if any pin does
-    not verifiably reach the factor. jobs: pins in parallel, default the number of cores.
-    probability: with which the factor is missed at most; without, that of the study as it is.
+    """Find the lightest pins and write the new study.
+
+    Returns the exit status: 1 if any pin is not shown to reach the factor.
+
+    jobs: number of pins in parallel, by default the number of cores.
+    probability: largest probability of missing the factor; without it, the factor is that of the
+    study as it is.
 
     Raises: InputError.
     """
     target = target_of(study, out)
     with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
-        found = (
+        design = (
             lighten(study, aim, pins, processes(jobs), progress)
             if probability is None
             else lighten_at(study, aim, probability, pins, processes(jobs), progress)
         )
-    heavy = all(_density(study, each.pin) for each in found.pins)
-    rows = [_row(study, found, each, aim, heavy) for each in found.pins]
-    if changed := found.study.text != study.text and any(x.values or x.scale for x in found.pins):
-        text = moved(found.study.text, study.path.parent, target.parent)
+    heavy = all(_density(study, lightest.pin) for lightest in design.pins)
+    rows = [_row(study, design, lightest, aim, heavy) for lightest in design.pins]
+    if changed := design.study.text != study.text and any(x.values or x.scale for x in design.pins):
+        text = moved(design.study.text, study.path.parent, target.parent)
         write_new(target, text.encode(), OTHER_FILE_REMEDY)
     system = study.system
     unit = system.force if heavy else f"{system.length}³"
@@ -106,8 +117,8 @@ def lighten_and_write(
                 f"{probability:g}, by the first order; pinstress reliability samples it."
             )
     if not quiet:
-        close(study, found.study, target if changed else None)
-    if not found.settled:
+        close(study, design.study, target if changed else None)
+    if not design.settled:
         click.echo(
             "Not settled: the factors in the run of the new study are not yet those that were "
             "aimed at; size the new study again.",
@@ -116,65 +127,69 @@ def lighten_and_write(
     missed = [row for row in rows if row.why]
     for row in missed:
         click.echo(f"Not decided: pin {row.pin}: {row.why}.", err=True)
-    return int(bool(missed) or not found.settled)
+    return int(bool(missed) or not design.settled)
 
 
 def _density(study: Study, name: str) -> float | None:
     return study.table.material[study.table.pin[name].material].density
 
 
-def _row(study: Study, found: LightStudy, each: Lightest, aim: WeightGoal, heavy: bool) -> LightRow:
-    mine = [p for p in found.results.pins if p.pin == each.pin and p.safety_factor is not None]
-    worst = min(mine, key=lambda p: low_factor(p) or 0.0) if mine else None
-    before, after = (pin_of(x, each.pin).volume for x in (study, found.study))
-    written = each.values is not None or each.scale is not None
+def _row(
+    study: Study, design: LightStudy, lightest: Lightest, aim: WeightGoal, heavy: bool
+) -> LightRow:
+    rows = [p for p in design.results.pins if p.pin == lightest.pin and p.safety_factor is not None]
+    worst = min(rows, key=lambda p: low_factor(p) or 0.0) if rows else None
+    before, after = (pin_of(x, lightest.pin).volume for x in (study, design.study))
+    written = lightest.values is not None or lightest.scale is not None
     return LightRow(
-        pin=each.pin,
+        pin=lightest.pin,
         factor=DASH if worst is None else factor_range(worst, "–"),
-        factor_before=each.before,
+        factor_before=lightest.before,
         governs=DASH if worst is None else worst.case,
         weights=tuple(
-            None if volume is None else _amount(study, each.pin, volume, heavy)
-            for volume in (before, each.scaled, after if written else None)
+            None if volume is None else _amount(study, lightest.pin, volume, heavy)
+            for volume in (before, lightest.scaled, after if written else None)
         ),  # type: ignore[arg-type]
-        at=min((x for (pin, _), x in found.at.items() if pin == each.pin), default=None),
-        residual=None if each.optimality is None else each.optimality.residual,
-        dimensions=tuple(_dimensions(study, found.study, each)),
-        binding=each.binding[:MAX_NAMED_BINDING],
-        bands=tuple(_bands(study, found.study, each.pin)) if written else (),
-        solved=each.solved,
-        why=(why_missed(found.results, each.pin) or _unlikely(found, each.pin, aim))
+        at=min((x for (pin, _), x in design.at.items() if pin == lightest.pin), default=None),
+        residual=None if lightest.optimality is None else lightest.optimality.residual,
+        dimensions=tuple(_dimensions(study, design.study, lightest)),
+        binding=lightest.binding[:MAX_NAMED_BINDING],
+        bands=tuple(_bands(study, design.study, lightest.pin)) if written else (),
+        solved=lightest.solved,
+        why=(why_missed(design.results, lightest.pin) or _unlikely(design, lightest.pin, aim))
         if written
-        else each.why,
-        way=each.way,
+        else lightest.why,
+        way=lightest.way,
     )
 
 
-def _unlikely(found: LightStudy, pin: str, aim: WeightGoal) -> str:
-    """Why the factor is not reached at a probability; empty if it is, or none is requested."""
-    mine = {case: x for (name, case), x in found.at.items() if name == pin}
-    unknown = [case for case, x in mine.items() if not math.isfinite(x)]
-    low = [case for case, x in mine.items() if x < aim.required * (1.0 - 1e-9)]
+def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
+    """Explain why the factor is not reached at a probability; empty if it is, or none is
+    requested.
+    """
+    factors = {case: x for (name, case), x in design.at.items() if name == pin}
+    unknown = [case for case, x in factors.items() if not math.isfinite(x)]
+    low = [case for case, x in factors.items() if x < aim.required * (1.0 - 1e-9)]
     if unknown:
         return f"in {', '.join(unknown)} its factor at the probability was not found"
     return f"in {', '.join(low)} its factor at the probability is too small" if low else ""
 
 
 def _amount(study: Study, name: str, volume: float, heavy: bool) -> float:
-    """Weight in the study's units, or volume."""
+    """Convert a volume, m^3, to a weight in the study's units, or to a volume in them."""
     if not heavy:
         return volume / study.system.factor("length") ** 3
     of_one = weight(pin_of(study, name), _density(study, name) or 0.0) / pin_of(study, name).volume
     return of_one * volume / study.system.factor("force")
 
 
-def _dimensions(study: Study, new: Study, each: Lightest) -> list[ChangedDimension]:
-    """Those that changed."""
+def _dimensions(study: Study, new: Study, lightest: Lightest) -> list[ChangedDimension]:
+    """List the dimensions that changed."""
     from pinstress.analysis.remedies.dimensions import dimensions_of
 
     unit = study.system.factor("length")
-    old = {d.key: d.value for d in dimensions_of(study, pin_of(study, each.pin))}
-    after = {d.key: d.value for d in dimensions_of(new, pin_of(new, each.pin))}
+    old = {d.key: d.value for d in dimensions_of(study, pin_of(study, lightest.pin))}
+    after = {d.key: d.value for d in dimensions_of(new, pin_of(new, lightest.pin))}
     return [
         ChangedDimension(key, old[key] / unit, after[key] / unit)
         for key in after
@@ -183,7 +198,7 @@ def _dimensions(study: Study, new: Study, each: Lightest) -> list[ChangedDimensi
 
 
 def _bands(study: Study, new: Study, name: str) -> list[str]:
-    """Where links bear on another diameter, with it."""
+    """List the links that bear on another diameter, with that diameter."""
     unit, out = study.system.factor("length"), []
     old, now = pin_of(study, name), pin_of(new, name)
     for connection in now.connections:

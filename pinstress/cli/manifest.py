@@ -43,22 +43,24 @@ def drop(folder: Path, names: list[str]) -> None:
 
 
 def partial_names(names: Iterable[str]) -> list[str]:
-    """What files are called while reports.folder.inside writes them."""
+    """Return the names that files have while reports.folder.inside writes them."""
     return [name + SUFFIX for name in names]
 
 
 def ours(folder: Path) -> set[str] | None:
-    """What we may remove from a folder: the listed files, or everything if its writer was killed
-    while writing. None if the folder is not empty and has no list of ours.
+    """Return the entries that we may remove from a folder: the listed files, or everything if its
+    writer was killed while writing; None if the folder is not empty and has no list of ours.
     """
-    there, known = entries(folder), listed(folder)
-    if known == {MANIFEST_FILE} or there <= {PARTIAL_MANIFEST}:
-        return there
+    contents, known = entries(folder), listed(folder)
+    if known == {MANIFEST_FILE} or contents <= {PARTIAL_MANIFEST}:
+        return contents
     return known
 
 
 def listed(folder: Path) -> set[str] | None:
-    """The files that we wrote into a folder, with the list itself; None without a list of ours."""
+    """Return the files that we wrote into a folder, with the list itself; None without a list of
+    ours.
+    """
     try:
         content: Any = json.loads(read_inside(folder, MANIFEST_FILE, MAX_MANIFEST_SIZE))
         if content["schema"] != MANIFEST_SCHEMA:
@@ -70,7 +72,7 @@ def listed(folder: Path) -> set[str] | None:
 
 
 def _is_below(name: str) -> bool:
-    """Whether it is the name of something in the folder."""
+    """Return whether a name is that of something inside the folder."""
     try:
         os.fsencode(name)
     except UnicodeEncodeError:
@@ -79,19 +81,21 @@ def _is_below(name: str) -> bool:
 
 
 def entries(folder: Path) -> set[str]:
-    """All entries of a folder, relative to it; folders end with a slash, links count as files."""
-    found = set()
+    """Return all entries of a folder, relative to it; folders end with a slash, links count as
+    files.
+    """
+    names = set()
     for at, folders, files in os.walk(folder, onerror=_raise):
         for name in folders + files:
             path = Path(at, name)
             ending = "/" if name in folders and not path.is_symlink() else ""
-            found.add(path.relative_to(folder).as_posix() + ending)
-    return found
+            names.add(path.relative_to(folder).as_posix() + ending)
+    return names
 
 
 def first_link(folder: Path) -> str | None:
-    """An entry that is neither a regular file nor a folder, and by which others would be read or
-    written; None where there is none.
+    """Return an entry that is neither a regular file nor a folder, through which other files would
+    be read or written; None where there is none.
     """
     for name in sorted(entries(folder)):
         mode = (folder / name).lstat().st_mode

@@ -91,9 +91,9 @@ def schema() -> None:
 
     from pinstress.study.schema.tables import StudyTable
 
-    made = StudyTable.model_json_schema()
-    made["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    click.echo(json.dumps(made, indent=2))
+    json_schema = StudyTable.model_json_schema()
+    json_schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    click.echo(json.dumps(json_schema, indent=2))
 
 
 @click.command(
@@ -184,9 +184,9 @@ def view(
 def completion(context: click.Context, shell: str) -> None:
     from click.shell_completion import get_completion_class
 
-    found, root = get_completion_class(shell), context.find_root().command
-    assert found is not None
-    click.echo(found(root, {}, "pinstress", "_PINSTRESS_COMPLETE").source())
+    completion_class, root = get_completion_class(shell), context.find_root().command
+    assert completion_class is not None
+    click.echo(completion_class(root, {}, "pinstress", "_PINSTRESS_COMPLETE").source())
 
 
 @click.command(

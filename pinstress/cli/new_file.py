@@ -9,16 +9,21 @@ from pinstress.study.reading.errors import InputError
 
 
 def require_new(path: Path, remedy: str) -> None:
-    """Raises: InputError if `path` exists, even as a broken link.
+    """Check that `path` does not exist, not even as a broken link.
 
-    remedy: what the user can do.
+    remedy: advice for the user.
+
+    Raises: InputError if it exists.
     """
     if os.path.lexists(path):
         raise InputError(f"{path} exists already; {remedy}", code="exists")
 
 
 def write_new(path: Path, content: bytes, remedy: str) -> None:
-    """Create a file. Raises: InputError if it exists or cannot be written."""
+    """Create a file.
+
+    Raises: InputError if it exists or cannot be written.
+    """
     try:
         with path.open("xb") as file:  # does not follow links
             file.write(content)

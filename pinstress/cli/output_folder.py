@@ -28,32 +28,35 @@ NO_EXCHANGE_ERRORS = (errno.EINVAL, errno.ENOSYS, errno.EOPNOTSUPP)  # some netw
 def require_replaceable(
     directory: Path, mark: str = RESULTS_JSON, also: Callable[[str], bool] = lambda _: False
 ) -> None:
-    """Raises: InputError if replacing `directory` would destroy files that are not ours, or results
-    of another command, which has no file `mark`. also: which entries are ours in addition to those
-    that are listed.
+    """Check that `directory` can be replaced.
+
+    mark: file that results of this command have.
+    also: tells which entries are ours in addition to those that are listed.
+
+    Raises: InputError if that would destroy files that are not ours, or results of another command.
     """
     try:
         if directory.exists() and not directory.is_dir():
             raise InputError(f"--out: {directory} is a file; give a folder", code="not-a-folder")
-        there = manifest.entries(directory) if directory.exists() else set()
+        contents = manifest.entries(directory) if directory.exists() else set()
         known = manifest.listed(directory)
     except OSError as error:  # it cannot be read, or its name is too long
         raise InputError(f"--out: {directory}: {error.strerror}", code="cannot-read") from None
-    if there and mark not in there:
+    if contents and mark not in contents:
         raise InputError(
             f"--out: {directory} contains files that are not results of this command (it has no "
-            f"{mark}, but {_some(there)}); choose an empty or new folder",
+            f"{mark}, but {_some(contents)}); choose an empty or new folder",
             code="not-ours",
         )
-    if there and known is None:
+    if contents and known is None:
         raise InputError(
-            f"--out: {directory} contains {_some(there)}, but no list of what pinstress wrote "
+            f"--out: {directory} contains {_some(contents)}, but no list of what pinstress wrote "
             f"({manifest.MANIFEST_FILE}): it was written by another program or an earlier "
             f"version, or "
             "copied without that file; choose another folder, or delete this one",
             code="not-ours",
         )
-    if strange := {name for name in there - (known or set()) if not also(name)}:
+    if strange := {name for name in contents - (known or set()) if not also(name)}:
         raise InputError(
             f"--out: {directory} contains {_some(strange)}, which pinstress did not write and "
             "would delete; move them elsewhere or choose another folder",
@@ -63,14 +66,15 @@ def require_replaceable(
 
 @contextmanager
 def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
-    """A folder to write into that becomes `directory` when the block ends without an error; an
-    existing one is replaced if it contains `mark` and only files of ours.
+    """Yield a folder to write into that becomes `directory` when the block ends without an error.
+
+    An existing folder is replaced if it contains `mark` and only files of ours.
 
     Raises: InputError if the folder cannot be created or written, or another run is writing it.
     """
     directory = _resolved(directory)
     partial, earlier = (directory.parent / f".{directory.name}.{x}" for x in ("partial", "earlier"))
-    made = [p for p in directory.parents if not p.exists()]
+    new_parents = [p for p in directory.parents if not p.exists()]
     release: Release | None = None
     try:
         try:
@@ -104,13 +108,13 @@ def replacing(directory: Path, mark: str = RESULTS_JSON) -> Iterator[Path]:
         if release is not None:
             _clear(partial)
             release()
-        for parent in made:
+        for parent in new_parents:
             with suppress(OSError):  # it holds the results
                 parent.rmdir()
 
 
 def _resolved(directory: Path) -> Path:
-    """The user's path with links resolved."""
+    """Return the user's path with links resolved."""
     try:
         return directory.resolve()
     except (OSError, RuntimeError):  # the latter of Python up to 3.12
@@ -120,7 +124,7 @@ def _resolved(directory: Path) -> Path:
 
 
 def _some(names: set[str]) -> str:
-    """The first few names, top level first."""
+    """Name the first few entries, top level first."""
     names = names - {manifest.MANIFEST_FILE} or names
     first = sorted(names, key=lambda name: (name.count("/") - name.endswith("/"), name))
     more = f" and {len(first) - 3} more" if len(first) > 3 else ""
@@ -155,7 +159,10 @@ def _claim(partial: Path, directory: Path) -> Release:
 
 
 def _empty(partial: Path) -> None:
-    """Remove what a killed run left. Raises: InputError if anything else is there."""
+    """Remove the files that a killed run left.
+
+    Raises: InputError if anything else is there.
+    """
     manifest.remove(partial, manifest.ours(partial) or set())
     if left := manifest.entries(partial):
         raise _in_the_way(partial / min(left))
@@ -191,7 +198,7 @@ def _recover(earlier: Path, directory: Path) -> None:
 
 
 def _exchange(one: Path, other: Path) -> bool:
-    """Exchange two folders that are there in one step; whether that was possible.
+    """Exchange two existing folders in one step; return whether that was possible.
 
     Raises: OSError.
     """
@@ -225,7 +232,7 @@ def _replace(partial: Path, directory: Path, earlier: Path) -> None:
 
 
 def _is_inside(error: OSError, folder: Path) -> bool:
-    """Whether the error is from writing into `folder`; a full disk always is."""
+    """Return whether the error is from writing into `folder`; an error of a full disk always is."""
     if error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
         return True
     name = error.filename

@@ -1,4 +1,4 @@
-"""The `plots` and `pdf` commands: what the report of a folder shows, as files.
+"""The `plots` and `pdf` commands, which write the plots and pictures of a report as files.
 
 They are drawn elsewhere, by engines in processes of their own, and come into the folder one by one,
 each complete or not at all.
@@ -41,21 +41,22 @@ PICTURE_SECONDS, PDF_SECONDS = 120, 600  # of processor time; the largest take a
 
 @dataclass(frozen=True)
 class Drawn:
-    """Files that were drawn, and why others were not, by their names in the folder."""
+    """Files that were drawn, and reasons why others were not, by their names in the folder."""
 
     paths: tuple[Path, ...]
     failed: dict[str, Failed]
 
 
 def plots(directory: Path, quiet: bool = False) -> int:
-    """Draw the plots and the pins of a results folder into its folder `plots`; returns the exit
-    status: 1 if something could not be drawn.
+    """Draw the plots and the pins of a results folder into its folder `plots`.
+
+    Returns the exit status: 1 if something could not be drawn.
 
     Raises: InputError.
     """
     known = require_results(directory)
-    own = f"{PLOTS_FOLDER}/"
-    strange = {n for n in _entries(directory) - known - {own} if n.startswith(own)}
+    prefix = f"{PLOTS_FOLDER}/"
+    strange = {n for n in _entries(directory) - known - {prefix} if n.startswith(prefix)}
     if strange or PLOTS_FOLDER in _entries(directory):
         raise _strange(directory, min(strange, default=PLOTS_FOLDER))
     drawn = add_plots(directory, quiet)
@@ -65,7 +66,7 @@ def plots(directory: Path, quiet: bool = False) -> int:
 
 
 def pdf(directory: Path) -> int:
-    """Write report.pdf into a results folder; returns the exit status: 1 if it could not be made.
+    """Write report.pdf into a results folder and return the exit status: 1 if it could not be made.
 
     Raises: InputError.
     """
@@ -80,8 +81,9 @@ def pdf(directory: Path) -> int:
 
 
 def draw_and_print(directory: Path, plots: bool, pdf: bool, quiet: bool = False) -> int:
-    """What a run adds to its results once they are in place; the exit status is 1 if something
-    could not be drawn, which costs nothing else.
+    """Add drawings and report.pdf to the results of a run that are in place.
+
+    Returns the exit status: 1 if something could not be drawn, which affects nothing else.
     """
     failed: dict[str, Failed] = {}
     try:
@@ -106,7 +108,10 @@ def _attempted(name: str, add: Callable[[], dict[str, Failed]]) -> dict[str, Fai
 
 
 def require_results(directory: Path) -> set[str]:
-    """The files of a results folder that are ours. Raises: InputError."""
+    """Return the files of a results folder that are ours.
+
+    Raises: InputError.
+    """
     known = manifest.listed(directory)
     if known is None:
         raise InputError(
@@ -118,7 +123,7 @@ def require_results(directory: Path) -> set[str]:
 
 
 def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
-    """What could not be drawn, in one message; returns the exit status."""
+    """Report the files that could not be drawn in one message, and return the exit status."""
     if not failed:
         return 0
     by_reason: dict[str, list[str]] = {}
@@ -126,7 +131,9 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
         by_reason.setdefault(failure.reason, []).append(name)
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
     ways = [
-        w for w, own in (("pdf", PDF_FILE in failed), ("plots", set(failed) - {PDF_FILE})) if own
+        w
+        for w, failures in (("pdf", PDF_FILE in failed), ("plots", set(failed) - {PDF_FILE}))
+        if failures
     ]
     again = " and ".join(f"`pinstress {way} {directory}`" for way in ways)
     click.echo(
@@ -138,12 +145,12 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
 
 
 def add_plots(directory: Path, quiet: bool = False) -> Drawn:
-    """Draw what the report of a folder shows, and its pins by their fields, into it.
+    """Draw the plots of a folder's report, and its pins by their fields, into the folder.
 
-    Raises: InputError, where the folder is damaged or cannot be written.
+    Raises: InputError where the folder is damaged or cannot be written.
     """
-    with TemporaryDirectory(prefix="pinstress-") as made:
-        drawn = _drawn(directory, Path(made), quiet)
+    with TemporaryDirectory(prefix="pinstress-") as folder:
+        drawn = _drawn(directory, Path(folder), quiet)
         for failure in drawn.failed.values():
             if failure.damaged:
                 raise _unreadable(directory, failure.reason)
@@ -152,9 +159,9 @@ def add_plots(directory: Path, quiet: bool = False) -> Drawn:
 
 
 def add_pdf(directory: Path) -> dict[str, Failed]:
-    """Write report.pdf of what the folder's report.html says; why it could not be made.
+    """Write report.pdf from the folder's report.html; return the failure if it could not be made.
 
-    Raises: InputError, where the folder is damaged or cannot be written.
+    Raises: InputError where the folder is damaged or cannot be written.
     """
     try:
         is_inside(directory, PDF_FILE)  # a link is refused before the work
@@ -162,16 +169,16 @@ def add_pdf(directory: Path) -> dict[str, Failed]:
         open_results(directory)  # those of another version have other words
         content = document_of(page)
         shown = set() if content is None else set(shown_plots(content))
-        found = {plot.name: plot for plot in plots_of(page) if plot.name in shown}
+        drawings = {plot.name: plot for plot in plots_of(page) if plot.name in shown}
     except FileNotFoundError:
         content = None
     except (OSError, Damaged) as error:
         raise _unreadable(directory, error) from None
     if content is None:
         raise InputError(f"{directory}: {NO_PAGE_MESSAGE}", code="no-results")
-    with TemporaryDirectory(prefix="pinstress-") as made:
-        path = Path(made, PDF_FILE)
-        (printed,) = apart([(PDF_FILE, partial(_print, content, found, path))], PDF_SECONDS)
+    with TemporaryDirectory(prefix="pinstress-") as folder:
+        path = Path(folder, PDF_FILE)
+        (printed,) = apart([(PDF_FILE, partial(_print, content, drawings, path))], PDF_SECONDS)
         if printed is None:
             _add(directory, {PDF_FILE: path})
             return {}
@@ -203,14 +210,17 @@ def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
             name = f"pin_{field_name(row['pin'], row['case'])}.png"
             picture = partial(draw_pin, opened.only(row), into / name)
             work.append((f"{PLOTS_FOLDER}/{name}", picture))
-    made = apart(work, PICTURE_SECONDS)
-    found = list(zip((name for name, _ in work), made, strict=True))
-    paths = [path for _, one in found if not isinstance(one, Failed) for path in one]
-    return Drawn(tuple(paths), {name: one for name, one in found if isinstance(one, Failed)})
+    results = apart(work, PICTURE_SECONDS)
+    drawings = list(zip((name for name, _ in work), results, strict=True))
+    paths = [path for _, one in drawings if not isinstance(one, Failed) for path in one]
+    return Drawn(tuple(paths), {name: one for name, one in drawings if isinstance(one, Failed)})
 
 
 def draw_pin(opened: Opened, path: Path, top: float | None = None) -> list[Path]:
-    """A picture of the only row; none of a beam, which has no field. Raises: Damaged."""
+    """Draw a picture of the only row and return its path; a beam has no field and gets none.
+
+    Raises: Damaged.
+    """
     from reports.vtk.render import render_pin
 
     (row,) = opened.content["pins"]
@@ -229,22 +239,26 @@ def _print(content: Content, shown: dict[str, Plot], path: Path) -> None:
 
 
 def _page(directory: Path) -> str:
-    """Raises: Damaged, OSError."""
+    """Return the text of report.html.
+
+    Raises: Damaged, OSError.
+    """
     try:
         return read_inside(directory, REPORT_PAGE, MAX_RESULTS_SIZE).decode("utf-8")
     except UnicodeDecodeError as error:
         raise Damaged(f"{REPORT_PAGE} is damaged: no UTF-8 from byte {error.start:,} on") from None
 
 
-def _add(directory: Path, made: dict[str, Path]) -> None:
-    """Files into a folder and its list; first they are listed, so that a process that is killed
-    leaves nothing that is not ours.
+def _add(directory: Path, files: dict[str, Path]) -> None:
+    """Add files to a folder and its list.
+
+    They are listed first, so that a process that is killed leaves nothing that is not ours.
     """
-    names = [*made, *({f"{PLOTS_FOLDER}/"} if any("/" in name for name in made) else ())]
-    partial_names = manifest.partial_names(made)
+    names = [*files, *({f"{PLOTS_FOLDER}/"} if any("/" in name for name in files) else ())]
+    partial_names = manifest.partial_names(files)
     try:
         manifest.add(directory, [*names, *partial_names])
-        for name, path in made.items():
+        for name, path in files.items():
             write_inside(directory, name, path.read_bytes())
         manifest.drop(directory, partial_names)
     except OSError as error:
@@ -253,7 +267,10 @@ def _add(directory: Path, made: dict[str, Path]) -> None:
 
 
 def _entries(directory: Path) -> set[str]:
-    """Raises: InputError."""
+    """Return all entries of a results folder.
+
+    Raises: InputError if it cannot be read.
+    """
     try:
         return manifest.entries(directory)
     except OSError as error:
@@ -270,6 +287,6 @@ def _strange(directory: Path, name: str) -> InputError:
 
 
 def _listed(names: Iterable[str]) -> str:
-    found = list(names)
-    more = len(found) - MAX_NAMED_FILES
-    return ", ".join(found[:MAX_NAMED_FILES]) + (f" and {more} more" if more > 0 else "")
+    all_names = list(names)
+    more = len(all_names) - MAX_NAMED_FILES
+    return ", ".join(all_names[:MAX_NAMED_FILES]) + (f" and {more} more" if more > 0 else "")

@@ -32,9 +32,12 @@ def reliability_and_write(
     jobs: int | None,
     quiet: bool,
 ) -> int:
-    """Assess a study into a folder; returns the exit status: 1 if for any row it is not decided
-    whether its probability of failure is within the allowed one, or where that is so only without
-    what lies beneath contact. Raises: InputError.
+    """Assess a study into a folder and return the exit status.
+
+    The status is 1 if, for any row, it could not be determined whether its probability of failure
+    is within the allowed one, or where that holds only without the stress beneath contact.
+
+    Raises: InputError.
     """
     require_replaceable(directory, RELIABILITY_JSON)
     most = processes(jobs)
@@ -45,21 +48,21 @@ def reliability_and_write(
             preload(*RUN_MODULES)
             progress("the study as it is", 0.0)
             nominal = run(study, pins=pins, cases=cases, jobs=most)
-            found = assess(study, nominal, most, progress, pins, cases)
-        write_reliability(found, staging)
-        write_reliability_page(found, staging / RELIABILITY_PAGE)
+            assessment = assess(study, nominal, most, progress, pins, cases)
+        write_reliability(assessment, staging)
+        write_reliability_page(assessment, staging / RELIABILITY_PAGE)
     with unneeded(directory):
-        print_reliability(found, console())
+        print_reliability(assessment, console())
     if not quiet:
         click.echo(f"Report: {directory / RELIABILITY_PAGE}", err=True)
-    return _status(found)
+    return _status(assessment)
 
 
-def _status(found: Reliability) -> int:
-    open_ones = [r for r in found.risks if r.result(found.probability) == NOT_DECIDED]
+def _status(assessment: Reliability) -> int:
+    open_ones = [r for r in assessment.risks if r.result(assessment.probability) == NOT_DECIDED]
     for risk in open_ones:
         click.echo(f"Not decided: pin {risk.pin}, case {risk.case}.", err=True)
-    deep = [r for r in found.risks if r.result(found.probability) == DEPENDS]
+    deep = [r for r in assessment.risks if r.result(assessment.probability) == DEPENDS]
     for risk in deep:
         click.echo(f"Depends on what lies beneath contact: {name(risk)}.", err=True)
     return int(bool(open_ones or deep))

@@ -53,11 +53,18 @@ RUN_MODULES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 
 @dataclass(frozen=True)
 class OutputOptions:
-    """The output of a run: plots and pictures as files; report.pdf; CalculiX's second
-    opinion; fields (vtk, as --vtk names them); results.json on stdout instead of the table; no
-    progress and no notes; the report opened.
-    jobs: number of parallel processes, default the number of cores. cached: whether results in the
-    user's cache may be reused. sensitive: whether sensitivities are found in all cases.
+    """Options for the output of a run.
+
+    plots: plots and pictures as files.
+    pdf: report.pdf.
+    second: CalculiX's second opinion.
+    vtk: fields, as --vtk names them.
+    as_json: results.json on stdout instead of the table.
+    quiet: no progress and no notes.
+    opens: whether the report is opened.
+    jobs: number of parallel processes, by default the number of cores.
+    cached: whether results in the user's cache may be reused.
+    sensitive: whether sensitivities are found in all cases.
     strict: whether a pin that misses its requirements changes the exit status.
     """
 
@@ -77,9 +84,11 @@ class OutputOptions:
 def run_and_write(
     study: Study, directory: Path, wanted: OutputOptions, **chosen: Unpack[Selection]
 ) -> int:
-    """Run a study into a folder; returns the exit status.
+    """Run a study into a folder and return the exit status.
 
-    chosen: what pinstress.analysis.plan.prepare takes. Raises: InputError.
+    chosen: arguments of pinstress.analysis.plan.prepare.
+
+    Raises: InputError.
     """
     require_fatigue(study)
     if wanted.pdf:
@@ -98,8 +107,8 @@ def run_and_write(
         keep = partial(_keep, staging, _units(study), wanted.vtk)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
             preload(*RUN_MODULES)
-            found = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
-            results = results_of(plan, found)
+            outcomes = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
+            results = results_of(plan, outcomes)
             if wanted.vtk != "none":
                 _write_flows(results, staging / "vtk")
             progress("report", 1.0)
@@ -115,7 +124,7 @@ def run_and_write(
                 print_second_opinion(results, console())
     if not wanted.quiet:
         report_left_out(results)
-        report_reused(plan, found)
+        report_reused(plan, outcomes)
         click.echo(f"Report: {directory / REPORT_PAGE}", err=True)
         _large_tables(directory)
     status = report_missed(results, study.table.analysis.goal == "decide")
@@ -139,7 +148,7 @@ def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:
 
 
 def _write(results: Results, staging: Path, most: int) -> None:
-    """Tables and page, at the same time where processes are forked: others would be sent all the
+    """Write tables and page, in parallel where processes are forked: others would be sent all the
     results first.
     """
     if most == 1 or portable():
@@ -149,8 +158,8 @@ def _write(results: Results, staging: Path, most: int) -> None:
     jobs: list[Job[None]] = [
         Job(name, partial(_written, write, results, staging)) for name, write in writers.items()
     ]
-    made = in_parallel(jobs, most)
-    for job, nothing in zip(jobs, made, strict=True):
+    outcomes = in_parallel(jobs, most)
+    for job, nothing in zip(jobs, outcomes, strict=True):
         if isinstance(nothing, ProcessDied):
             job.work(_silent)
 
@@ -192,7 +201,10 @@ def loads_and_write(
     cases: list[str] | None,
     quiet: bool = False,
 ) -> int:
-    """Compute a study's mechanism into a folder; returns the exit status. Raises: InputError."""
+    """Compute a study's mechanism into a folder and return the exit status.
+
+    Raises: InputError.
+    """
     require_replaceable(directory)
     results = loads_only(study, cases)
     with replacing(directory) as staging:
@@ -206,7 +218,7 @@ def loads_and_write(
 
 
 def _large_tables(directory: Path) -> None:
-    """Print which tables are too long for CSV."""
+    """Print the names of tables that are too long for CSV."""
     if names := sorted(path.name for path in directory.glob("*.parquet")):
         click.echo(
             f"More than {MAX_CSV_ROWS:,} rows, so in Parquet (for pandas, polars, DuckDB): "
@@ -216,15 +228,17 @@ def _large_tables(directory: Path) -> None:
 
 
 def console() -> Console:
-    """Standard output, as wide as the terminal."""
+    """Return standard output as a console as wide as the terminal."""
     wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width
     return Console(**wide)  # type: ignore[arg-type]
 
 
 @contextmanager
 def progress_bar(alone: bool = True, quiet: bool = False) -> Iterator[Progress]:
-    """A progress bar on stderr if it is a terminal. alone: whether this process does the work
-    itself, so that a thread must refresh the bar; otherwise every call does.
+    """Show a progress bar on stderr if it is a terminal.
+
+    alone: whether this process does the work itself, so that a thread must refresh the bar;
+    otherwise every call does.
     """
     from rich import progress as rich
 

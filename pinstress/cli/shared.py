@@ -16,18 +16,18 @@ Command = TypeVar("Command", bound=Callable[..., object])
 
 
 def example(text: str) -> str:
-    """The first line of a help text: an example, not wrapped."""
+    """Return the first line of a help text: an example, not wrapped."""
     return f"\b\nExample: {text}\n"
 
 
 def names(_: click.Context, __: click.Parameter, value: str | None) -> list[str] | None:
-    """A,B as a list."""
+    """Convert the text A,B to a list of names."""
     if value is None:
         return None
-    found = [n.strip() for n in value.split(",") if n.strip()]
-    if not found:
+    entries = [n.strip() for n in value.split(",") if n.strip()]
+    if not entries:
         raise click.BadParameter("empty list; write for example A,B")
-    return found
+    return entries
 
 
 PINS_OPTION = click.option("--pins", callback=names, metavar="A,B", help="Only these pins.")
@@ -44,20 +44,23 @@ QUIET_OPTION = click.option(
 
 
 def choices(command: Command) -> Command:
-    """The options --pins, --cases, --jobs and --quiet of a command that solves pins."""
+    """Add the options --pins, --cases, --jobs and --quiet to a command that solves pins."""
     return PINS_OPTION(CASES_OPTION(JOBS_OPTION(QUIET_OPTION(command))))
 
 
 def read_study(path: Path) -> Study:
-    """Load a study; warn of implausible or contradictory numbers. Raises: InputError."""
+    """Load a study, and warn of implausible or contradictory numbers.
+
+    Raises: InputError.
+    """
     from pinstress.study.model.balance import given_warnings
     from pinstress.study.model.landing import unsprung_warnings
     from pinstress.study.model.weights import weight_warnings
     from pinstress.study.reading.file import load_study
 
     study = load_study(path)
-    found = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))
-    for warning in (*study.warnings, *chain.from_iterable(found)):
+    warnings = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))
+    for warning in (*study.warnings, *chain.from_iterable(warnings)):
         click.echo(f"Warning: {warning}", err=True)
     return study
 
@@ -80,20 +83,20 @@ COMMAND_SECTIONS = {
 
 
 class Commands(click.Group):
-    """Commands whose list is in sections."""
+    """A group of commands that are listed in sections."""
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the sections, then what is in none of them."""
+        """Write the sections, then the commands that are in none of them."""
         names = self.list_commands(ctx)
         wide, placed = (
             max(map(len, names)),
-            {name for each in COMMAND_SECTIONS.values() for name in each},
+            {name for section in COMMAND_SECTIONS.values() for name in section},
         )
         rest = tuple(name for name in names if name not in placed)
         for title, members in {**COMMAND_SECTIONS, "Other": rest}.items():
-            found = [
+            rows = [
                 (f"{n:{wide}}", self.commands[n].short_help or "") for n in members if n in names
             ]
-            if found:
+            if rows:
                 with formatter.section(title):
-                    formatter.write_dl(found)
+                    formatter.write_dl(rows)

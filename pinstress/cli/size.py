@@ -45,9 +45,11 @@ def size_and_write(
     quiet: bool = False,
     jobs: int | None = None,
 ) -> int:
-    """Size pins and write the new study, unless nothing in it is new; returns the exit status: 1 if
-    any pin does not verifiably reach the factor. jobs: number of pins sized in parallel, default
-    the number of cores.
+    """Size pins and write the new study, unless nothing in it is new.
+
+    Returns the exit status: 1 if any pin is not shown to reach the factor.
+
+    jobs: number of pins sized in parallel, by default the number of cores.
 
     Raises: InputError.
     """
@@ -69,7 +71,13 @@ def size_and_write(
 
 
 def require_wish(study: Study, fos: float | None, step: float | None) -> SizingGoal:
-    """The factor to reach: fos or the study's own; step: of diameters, m. Raises: InputError."""
+    """Return the factor to reach.
+
+    fos: the factor, or None for that of the study.
+    step: step of diameters, m.
+
+    Raises: InputError.
+    """
     required = require_positive("fos", fos) or study.table.analysis.required_safety_factor
     if required is None:
         raise study.error(
@@ -83,8 +91,10 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> SizingG
 def _sized(
     study: Study, wish: SizingGoal, pins: list[str] | None, jobs: int, progress: Progress
 ) -> tuple[Study, list[SizingResult], Results]:
-    """The new study with what was found of every pin, and its run. The weights of pins change the
-    loads of others, so all are sized again until the run confirms them.
+    """Size all pins and return the new study, the sizes and the new study's run.
+
+    The weights of pins change the loads of others, so all are sized again until the run confirms
+    them.
     """
     plan = prepare(study, pins=pins)
     scales: dict[str, float] = {}
@@ -102,18 +112,18 @@ def _sized(
 
 
 def _agree(sized: list[SizingResult], results: Results, required: float) -> bool:
-    """Whether the run confirms that every size reaches the factor, with little excess."""
+    """Return whether the run confirms that every size reaches the factor, with little excess."""
     for pin in sized:
-        found = min(_factors(results, pin.pin), default=None)
-        if pin.factor is None or found is None:
+        factor = min(_factors(results, pin.pin), default=None)
+        if pin.factor is None or factor is None:
             continue
-        if found < required or found > pin.factor * (1.0 + FACTOR_TOLERANCE):
+        if factor < required or factor > pin.factor * (1.0 + FACTOR_TOLERANCE):
             return False
     return True
 
 
 def _factors(results: Results, pin: str) -> list[float]:
-    """As size_pin counts them: with the error, but for singular rows."""
+    """Return a pin's factors as size_pin counts them: with the error, but for singular rows."""
     return [
         min(p.safety_factor if p.verdict == "singular" else factor_ends(p)[0], beneath_factor(p))
         for p in results.pins
@@ -128,17 +138,20 @@ def _all(
     if jobs > 1:
         preload(*RUN_MODULES)
     work = [Job(f"pin {name}", partial(size_pin, plan, name, wish, scales)) for name in names]
-    found = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
+    sizings = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
     return [
-        SizingResult(name, None, None, None, None, made.reason)
-        if isinstance(made, ProcessDied)
-        else made
-        for name, made in zip(names, found, strict=True)
+        SizingResult(name, None, None, None, None, sizing.reason)
+        if isinstance(sizing, ProcessDied)
+        else sizing
+        for name, sizing in zip(names, sizings, strict=True)
     ]
 
 
 def target_of(study: Study, out: Path | None) -> Path:
-    """The file to be written. Raises: InputError where it cannot be."""
+    """Return the path of the file to be written.
+
+    Raises: InputError where it cannot be written.
+    """
     target = out or study.path.with_name(f"{study.name}_sized.toml")
     require_new(target, OTHER_FILE_REMEDY)
     if not target.parent.is_dir():
@@ -147,7 +160,7 @@ def target_of(study: Study, out: Path | None) -> Path:
 
 
 def close(study: Study, new: Study, target: Path | None) -> None:
-    """Report what else changed, and the file that was written."""
+    """Report other changes, and the file that was written."""
     for name, table in new.table.pin.items():
         for at, lug in table.lug.items():
             old = study.table.pin[name].lug[at].outer_diameter
@@ -163,9 +176,9 @@ def close(study: Study, new: Study, target: Path | None) -> None:
 
 
 def _row(study: Study, new: Study, sized: SizingResult, results: Results) -> SizeRow:
-    """A pin's row, with the results of the run of the new study only."""
-    mine = [p for p in results.pins if p.pin == sized.pin and p.safety_factor is not None]
-    worst = min(mine, key=lambda p: p.safety_factor or 0.0) if mine else None
+    """Return a pin's row, with the results of the run of the new study only."""
+    rows = [p for p in results.pins if p.pin == sized.pin and p.safety_factor is not None]
+    worst = min(rows, key=lambda p: p.safety_factor or 0.0) if rows else None
     unit = study.system.factor("length")
     before, after = (
         tuple(d / unit for d in x.table.pin[sized.pin].diameters) for x in (study, new)
@@ -185,14 +198,14 @@ def _row(study: Study, new: Study, sized: SizingResult, results: Results) -> Siz
 
 
 def _weight(study: Study, name: str) -> float | None:
-    """In the study's units."""
+    """Return a pin's weight in the study's units; None without a density."""
     density = study.table.material[study.table.pin[name].material].density
     heavy = weight(pin_of(study, name), density) if density else None
     return None if heavy is None else heavy / study.system.factor("force")
 
 
 def _stricter(worst: PinResult) -> str:
-    """A hand check with a smaller factor than that of the largest stress, if any."""
+    """Describe a hand check with a smaller factor than that of the largest stress, if any."""
     checks = [c for c in worst.hand_checks if c.safety_factor is not None and c.governs]
     least = min(checks, key=lambda c: c.safety_factor or 0.0, default=None)
     if least is None or (least.safety_factor or 0.0) >= (worst.safety_factor or 0.0):
@@ -201,19 +214,21 @@ def _stricter(worst: PinResult) -> str:
 
 
 def why_missed(results: Results, pin: str) -> str:
-    """Why the factor is not shown to be reached, from the run of the new study; empty if it is."""
-    found = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
-    singular = [p.case for p in found if p.verdict == "singular"]
-    if not found:
+    """Explain why the factor is not shown to be reached, from the run of the new study; empty if it
+    is.
+    """
+    rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
+    singular = [p.case for p in rows if p.verdict == "singular"]
+    if not rows:
         return "the run of the new study gives no safety factor"
-    missing = [p.case for p in found if outcome(p) == FAILS]
-    depends = [p.case for p in found if outcome(p) == DEPENDS]
-    loose = [p.case for p in found if p.verdict != "singular" and outcome(p) == NOT_DECIDED]
+    missing = [p.case for p in rows if outcome(p) == FAILS]
+    depends = [p.case for p in rows if outcome(p) == DEPENDS]
+    loose = [p.case for p in rows if p.verdict != "singular" and outcome(p) == NOT_DECIDED]
     if missing:
         return f"it fails in the run of the new study, case {', '.join(missing)}"
     if singular:
         zones = [
-            z.kind for p in found if p.verdict == "singular" for z in p.singular_at if z.governs
+            z.kind for p in rows if p.verdict == "singular" for z in p.singular_at if z.governs
         ]
         where = " and ".join(dict.fromkeys(zones))
         return (
@@ -227,7 +242,7 @@ def why_missed(results: Results, pin: str) -> str:
     if check.row is None and check.outcome == FAILS:
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g} in that run"
     if depends:
-        every = [d for p in found if outcome(p) == DEPENDS for d in p.depends_on]
+        every = [d for p in rows if outcome(p) == DEPENDS for d in p.depends_on]
         ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
         places = ["beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
         places += [f"within the range of the {ranges}"] * bool(ranges)

@@ -1,5 +1,7 @@
-"""Standard output and error that may fail: a full disk or a closed pipe must not turn finished work
-into a traceback, and a terminal without ± gets a substitute character.
+"""Standard output and error that may fail.
+
+A full disk or a closed pipe must not turn finished work into a traceback, and a terminal without ±
+gets a substitute character.
 """
 
 from __future__ import annotations
@@ -35,8 +37,10 @@ BROKEN_PIPE_ERRORS = (errno.EPIPE, errno.EINVAL) if os.name == "nt" else (errno.
 
 
 class Outlet(io.FileIO):
-    """A descriptor that records write errors instead of raising them. lost: whether anything was
-    not written; why: the first error.
+    """A descriptor that records write errors instead of raising them.
+
+    lost: whether anything was not written.
+    why: the first error.
     """
 
     def __init__(self, descriptor: int, why: OSError | None = None) -> None:
@@ -45,7 +49,7 @@ class Outlet(io.FileIO):
         self.lost = False
 
     def write(self, data: object) -> int:
-        """Write or drop the data; the number of bytes consumed."""
+        """Write or drop the data, and return the number of bytes consumed."""
         size = memoryview(data).nbytes  # type: ignore[arg-type]
         while self.why is None:
             try:
@@ -78,15 +82,17 @@ def guard() -> None:
         if _is_console(old):
             old.reconfigure(errors=errors)
             continue
-        made = _text(Outlet(descriptor, why), old, errors)
+        stream = _text(Outlet(descriptor, why), old, errors)
         if descriptor == 1:
-            sys.stdout = made
+            sys.stdout = stream
         else:
-            sys.stderr = made
+            sys.stderr = stream
 
 
 def _is_console(old: TextIO | None) -> TypeGuard[io.TextIOWrapper]:
-    """Whether it is left to Python to write to: a terminal of Windows takes no bytes of UTF-8."""
+    """Return whether Python itself is to write to a stream: a Windows terminal takes no UTF-8
+    bytes.
+    """
     return portable() and isinstance(old, io.TextIOWrapper) and old.isatty()
 
 
@@ -105,7 +111,9 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 @contextmanager
 def unneeded(where: Path) -> Iterator[None]:
-    """Output printed inside is also in `where`: losing it is reported but changes no status."""
+    """Mark output printed inside the block as also in `where`: losing it is reported but changes no
+    status.
+    """
     yield
     if outlet := _failed():
         if why := reason(outlet):
@@ -114,20 +122,22 @@ def unneeded(where: Path) -> Iterator[None]:
 
 
 def lost() -> str | None:
-    """Why requested output did not reach standard output; "" if the reader closed the pipe."""
+    """Explain why requested output did not reach standard output; "" if the reader closed the
+    pipe.
+    """
     outlet = _failed()
     return reason(outlet) if outlet else None
 
 
 def reason(outlet: Outlet) -> str:
-    """The error as text; empty if the reader closed the pipe."""
+    """Return the error as text; empty if the reader closed the pipe."""
     if outlet.why is None or outlet.why.errno in BROKEN_PIPE_ERRORS:
         return ""
     return f"cannot write to standard output ({outlet.why.strerror})"
 
 
 def _failed() -> Outlet | None:
-    """Standard output, if anything printed was lost."""
+    """Return the outlet of standard output, if anything printed was lost."""
     outlet = getattr(getattr(sys.stdout, "buffer", None), "raw", None)
     if not isinstance(outlet, Outlet):
         return None

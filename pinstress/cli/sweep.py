@@ -1,4 +1,6 @@
-"""The `sweep` command: solve designs into a folder that keeps every batch, print what they say."""
+"""The `sweep` command, which solves designs into a folder that keeps every batch and prints a
+summary.
+"""
 
 from __future__ import annotations
 
@@ -53,8 +55,11 @@ SWEEP_FILES = (
 
 @dataclass(frozen=True)
 class Way:
-    """How a sweep is done. jobs: processes on this machine, by default one for each core;
-    scheduler: address of a cluster instead. resume: whether to go on with what is there;
+    """Options for solving a sweep.
+
+    jobs: number of processes on this machine, by default one for each core.
+    scheduler: address of a cluster instead.
+    resume: whether to resume the sweep in the folder.
     opens: whether to open the page.
     """
 
@@ -68,7 +73,7 @@ class Way:
 def sweep_and_write(
     study: Study, directory: Path, pins: list[str] | None, cases: list[str] | None, way: Way
 ) -> int:
-    """Sweep a study into a folder; returns the exit status: 1 if every design failed.
+    """Sweep a study into a folder and return the exit status: 1 if every design failed.
 
     Raises: InputError.
     """
@@ -106,7 +111,7 @@ def _warn(message: str) -> None:
 
 
 def _told(directory: Path, table: pa.Table, way: Way) -> int:
-    """Print what a table says; returns the exit status."""
+    """Print a summary of a table and return the exit status."""
     with unneeded(directory):
         summary(table, console())
     if not way.quiet:
@@ -130,7 +135,9 @@ def _write(directory: Path, table: pa.Table) -> None:
 
 
 def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
-    """Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
+    """Check that a sweep can be written into a folder.
+
+    Raises: InputError for a folder with other files than those of a sweep, with a sweep that did
     not end and is not to be resumed, or with none to resume.
     """
     if directory.is_dir() and (link := manifest.first_link(directory)):
@@ -155,8 +162,9 @@ def _require_usable(directory: Path, parts: BatchFolder, resume: bool) -> None:
 
 @contextmanager
 def _claimed(directory: Path, parts: BatchFolder, resume: bool) -> Iterator[None]:
-    """The folder made, listed as ours, and locked meanwhile. Where no batch was solved, nothing is
-    left of a sweep that was begun.
+    """Create the folder, list it as ours, and lock it inside the block.
+
+    Where no batch was solved, nothing is left of a sweep that was begun.
     """
     release: Release | None = None
     existed = directory.exists()
@@ -195,7 +203,7 @@ def _remove(directory: Path, parts: BatchFolder, existed: bool) -> None:
 
 
 def _kept(parts: BatchFolder) -> str:
-    """How to go on; the command itself may have options that this would have to repeat."""
+    """Explain how to resume; the command itself may have options that would have to be repeated."""
     count = parts.count
     many = "1 batch is" if count == 1 else f"{count} batches are"
     return f"{many} kept: the same command with --resume goes on"
@@ -203,8 +211,10 @@ def _kept(parts: BatchFolder) -> str:
 
 @contextmanager
 def progress(quiet: bool, alone: bool = True) -> Iterator[Report]:
-    """A progress bar on stderr if it is a terminal, otherwise a line now and then. alone: whether
-    no process is forked meanwhile, so that a thread may refresh the bar; otherwise every call does.
+    """Show a progress bar on stderr if it is a terminal, otherwise a line at intervals.
+
+    alone: whether no process is forked inside the block, so that a thread may refresh the bar;
+    otherwise every call does.
     """
     from rich import progress as rich
 

@@ -29,10 +29,13 @@ def view(
     screenshot: Path | None,
     force: bool = False,
 ) -> int:
-    """Show a pin of a results folder, by default the one with the lowest factor; returns the exit
-    status: 1 if it could not be drawn.
+    """Show a pin of a results folder, by default the one with the lowest factor.
 
-    screenshot: a PNG file to write instead of opening a window; force: overwrite it.
+    Returns the exit status: 1 if it could not be drawn.
+
+    screenshot: a PNG file to write instead of opening a window.
+    force: whether to overwrite it.
+
     Raises: InputError.
     """
     opened = opened_results(directory)
@@ -79,7 +82,10 @@ def view(
 
 
 def _remove(path: Path) -> None:
-    """Remove a file or link. Raises: InputError for anything else."""
+    """Remove a file or link.
+
+    Raises: InputError for anything else.
+    """
     if not (path.is_file() or path.is_symlink()):
         raise InputError(
             f"--screenshot {path} is not a regular file and cannot be overwritten; choose another",
@@ -94,7 +100,10 @@ def _remove(path: Path) -> None:
 
 
 def opened_results(directory: Path) -> Opened:
-    """A folder that a run wrote. Raises: InputError."""
+    """Open a folder that a run wrote.
+
+    Raises: InputError.
+    """
     try:
         return open_results(directory)
     except (FileNotFoundError, NotADirectoryError):

@@ -1,1 +1,1 @@
-"""Many analyses: sweeps, sizes, weights, probabilities, charts."""
+"""Explorations by many analyses: sweeps, sizes, weights, probabilities, charts."""

@@ -1,1 +1,1 @@
-"""What is asked: a study file, read, validated and questioned."""
+"""The study: a file, read, validated and checked for implausible values."""

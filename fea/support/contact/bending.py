@@ -16,14 +16,17 @@ STATION_COUNT = 61  # along the pin, besides the ends of rings and segments
 
 
 def stations(pin: Pin) -> Floats:
-    """z at which results have section forces, m."""
+    """The z at which results have section forces, m."""
     return np.union1d(np.linspace(*pin.ends, STATION_COUNT), pin.stations)
 
 
 def joint_forces(
     pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, lugs: Sequence[Lug]
 ) -> JointForces:
-    """At all instants, as `bending_moment`. lugs: one for each of the bands."""
+    """The section forces at all instants, as `bending_moment` and `shear_force`.
+
+    lugs: one for each of the bands.
+    """
     z, names = stations(pin), tuple(lug.connection for lug in lugs)
     across = loads.forces[:, :, :2]
     forces = [across[:, bands.band == b].sum(axis=1) for b in range(len(names))]
@@ -33,17 +36,21 @@ def joint_forces(
 
 
 def bending_moment(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:
-    """Of the part of the pin before z (Z,) m: (T, Z, 2) N m, the integral of the shear along x and
-    along y.
+    """The bending moment of the part of the pin before z (Z,) m, (T, Z, 2) N m.
 
-    mass: of the pin's segments, (S,) kg/m. loads: on the rings of `bands`, in their order; forces
-    are even along a ring, moments make loads that are linear along it.
+    It is the integral of the shear along x and along y.
+    mass: of the pin's segments, (S,) kg/m.
+    loads: on the rings of `bands`, in their order; forces are even along a ring, moments make loads
+    that are linear along it.
     """
     return _summed(pin, mass, bands, loads, z, _moments)
 
 
 def shear_force(pin: Pin, mass: Floats, bands: Bands, loads: PinLoads, z: Floats) -> Floats:
-    """Sum of the loads across on the part of the pin before z, (T, Z, 2) N, as `bending_moment`."""
+    """The shear force, (T, Z, 2) N: the sum of the transverse loads on the pin before z.
+
+    Arguments as in `bending_moment`.
+    """
     return _summed(pin, mass, bands, loads, z, _forces)
 
 
@@ -66,7 +73,10 @@ def _summed(
 
 
 def _moments(way: Floats, lengths: Floats) -> Parts:
-    """Of pieces, of the load per length and of its slope; way: from their starts to z, (Z, R)."""
+    """Moments of pieces under a unit load per length and under its unit slope.
+
+    way: distances from their starts to z, (Z, R).
+    """
     reach = np.clip(way, 0.0, lengths)  # of each piece that is before z
     even = reach * (way - reach / 2.0)
     return even, reach**2 * (way / 2.0 - reach / 3.0) - even * lengths / 2.0
@@ -78,7 +88,10 @@ def _forces(way: Floats, lengths: Floats) -> Parts:
 
 
 def mass_per_length(pin: Pin, density: float | None) -> Floats:
-    """Of the segments, (S,) kg/m, 0 without density; what fillets add is spread in proportion."""
+    """The mass per length of the segments, (S,) kg/m, 0 without density.
+
+    The extra mass of fillets is spread in proportion.
+    """
     area = np.array([s.mean_area for s in pin.segments])
     whole = (density or 0.0) * pin.volume
     return np.asarray(whole * area / (area @ np.diff(pin.stations)))

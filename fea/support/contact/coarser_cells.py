@@ -1,4 +1,4 @@
-"""The same contact on cells twice as large: by how much cells change what is found of the pin."""
+"""The same contact on cells twice as large, from which the error of the cells follows."""
 
 from __future__ import annotations
 
@@ -12,9 +12,12 @@ from pinbase.arrays import Ints
 
 
 def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
-    """Contact with each two rings of a band as one and half the sectors, and the rings (R, C) of
-    which the coarse ones consist, 1 or 0.
+    """The contact problem with pairs of rings merged and half the sectors.
+
+    The second value, (R, C), is 1 where a ring belongs to a coarse one, else 0.
     """
+    # Rings that are merged have one pressure and the mean displacement: the coarse flexibility
+    # follows from the fine one by sums and means, and nothing is meshed again.
     fine = model.contact
     group = _pairs(model)
     belongs = (group[:, None] == np.arange(group.max() + 1)).astype(float)
@@ -29,6 +32,8 @@ def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
         mean.T @ fine.bands.gap,
         fine.bands.link,
     )
+    # Half the sectors resolve half the harmonics; those above are the half-plane's, as on fine
+    # cells.
     sectors = model.cells.sectors // 2
     coarse = mean.T @ model.flexibility[: COUPLED_HARMONICS_PER_SECTOR * sectors] @ belongs
     tilt = [lug.tilt for lug in model.lugs]
@@ -37,15 +42,20 @@ def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
 
 
 def _pairs(model: ContactModel) -> Ints:
-    """Numbers (R,) of the coarse rings: two of a band each, none both flat and rounded, where a
-    common gap would keep light loads off what is flat. One that is left over is alone where the
-    rounding ends, or the third of the last flat ones.
+    """The numbers (R,) of the coarse rings, each of two rings of a band.
+
+    No pair has a flat and a rounded ring: their common gap would keep light loads off the flat
+    part. A ring that is left over is alone at the face of the lug, or the third of the last flat
+    ones.
     """
     out: list[int] = []
     for _, lug, ends in model.by_lug():
-        near = lug.edge_radius * (1.0 + 1e-9)
+        near = lug.edge_radius * (1.0 + 1e-9)  # a ring that ends with the rounding belongs to it
         first, last = ends[1:] - ends[0] <= near, ends[-1] - ends[:-1] <= near
         before, after = (int(part.sum()) for part in (first, last & ~first))
+        # Pairs begin where the rounding ends, on both sides, so that rings left over are at the
+        # faces of the lug, where contact has mostly ended. An odd flat part ends in a group of
+        # three.
         flat = len(ends) - 1 - before - after
         middle = [*_twos(flat - 3), 3] if flat > 1 and flat % 2 else _twos(flat)
         for size in (*_twos(before)[::-1], *middle, *_twos(after)):
@@ -54,5 +64,7 @@ def _pairs(model: ContactModel) -> Ints:
 
 
 def _twos(count: int) -> list[int]:
-    """So many rings by two, one at the end if their number is odd."""
+    """The sizes of groups of two that add up to a count, with a group of one at the end if it is
+    odd.
+    """
     return [2] * (count // 2) + [1] * (count % 2)

@@ -35,27 +35,35 @@ from pinbase.arrays import Ints
 
 Mask = NDArray[np.bool_]
 
+# Limits of the iteration and of the continuation from larger loads, chosen by judgement. They
+# decide whether and how soon contact is found; the contact itself is unique.
 MAX_ACTIVE_SET_STEPS = 60
-LOAD_GROWTH, MAX_LOAD_FACTOR = (
-    16.0,
-    1e12,
-)  # times the loads, where contact does not settle under them
+LOAD_GROWTH, MAX_LOAD_FACTOR = 16.0, 1e12  # times the loads, where these do not settle
 LOAD_REDUCTION, MIN_LOAD_REDUCTION = 2.0, 1.01  # factors by which they become smaller again
+# A cell belongs to the first guess if the cosine between its normal and the load is larger.
+FACING_COSINE = 0.3
+# Round-off of double precision, with a margin chosen by judgement.
 BALANCE_TOLERANCE = 1e-9  # of the largest force
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
-SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: what is round-off
-SOFT_SPRING_STIFFNESS = (
-    1e-13  # of the stiffness of the cells: holds a lug that has lost all contact
-)
+SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it is round-off
+# Of the stiffness of the cells: holds a lug that has lost all contact, and is far too soft to
+# change that of a lug in contact.
+SOFT_SPRING_STIFFNESS = 1e-13
 TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
-MAX_KEPT_NUMBERS = 4_000_000  # numbers: of what sets of cells answer
+# Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
+MAX_KEPT_NUMBERS = 4_000_000
 
 
 @dataclass(frozen=True)
 class ContactState:
-    """Pressure (R, M) in Pa and gap (R, M) in m on the cells; shift (B, 2) m of the lugs against
-    the pin along x and y; turn (2,): slopes dx / dz and dy / dz. steps: of the active set. angle:
-    of the first cells' middle from the x axis, rad.
+    """The contact of a pin at one instant.
+
+    pressure: (R, M), Pa, on the cells.
+    gap: (R, M), m.
+    shift: (B, 2), m, of the lugs against the pin along x and y.
+    turn: (2,), slopes dx / dz and dy / dz of the pin.
+    steps: number of active-set steps.
+    angle: of the first cells' middle from the x axis, rad.
     """
 
     pressure: Floats
@@ -67,11 +75,11 @@ class ContactState:
 
     @property
     def active(self) -> Mask:
-        """Which cells are in contact."""
+        """A mask (R, M) of the cells in contact."""
         return self.gap <= 0.0
 
     def times(self, factor: float) -> ContactState:
-        """Under so many times the loads, where contact without them has no gap to close."""
+        """The state under so many times the loads, valid where there is no gap before loading."""
         return ContactState(
             factor * self.pressure,
             factor * self.gap,
@@ -82,7 +90,7 @@ class ContactState:
         )
 
     def turned(self, angle: float) -> ContactState:
-        """All of it turned about the axis by an angle, rad."""
+        """The state turned about the axis by an angle, rad."""
         turn = rotation(angle).T
         return replace(
             self, shift=self.shift @ turn, turn=self.turn @ turn, angle=self.angle + angle
@@ -90,28 +98,35 @@ class ContactState:
 
 
 def rotation(angle: float) -> Floats:
-    """By an angle, rad, of columns along x and y, (2, 2)."""
+    """The matrix (2, 2) that rotates columns (x, y) by an angle, rad."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s], [s, c]])
 
 
 @dataclass(frozen=True)
 class AdjointContact:
-    """Contact of some cells: forces (U,) N and rigid motions (Y,), and what a sum of the forces
-    loses by a gap at each of the cells (U,), and gains by what is asked of each motion (Y,).
+    """The contact of given cells and its adjoint, for a weighted sum of the cells' forces.
+
+    force: (U,) N.
+    motion: rigid motions (Y,).
+    by_gap: decrease of the sum per gap at each cell, (U,).
+    by_required: increase of the sum per required resultant of each motion, (Y,).
     """
 
     force: Floats
     motion: Floats
     by_gap: Floats
-    by_asked: Floats
+    by_required: Floats
 
 
 @dataclass(frozen=True)
 class _Answer:
-    """What the cells of one active set answer: forces (U,) N and gaps (U,) m without rigid motions,
-    how much each rigid motion takes off the forces and adds to the gaps, (U, Y), and the equations
-    (Y, Y), (Y,) of the motions but for what equilibrium asks; motions: (U, Y), of the gap.
+    """The linear response of one active set of cells to the rigid motions.
+
+    force, gap: (U,) N and (U,) m without rigid motions.
+    yielding, moving: how much each rigid motion takes off the forces and adds to the gaps, (U, Y).
+    system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
+    motions: change of the gap by each motion, (U, Y).
     """
 
     force: Floats
@@ -122,23 +137,24 @@ class _Answer:
     right: Floats
     motions: Floats
 
-    def under(self, asked: Floats) -> tuple[Floats, Floats, Floats]:
-        """Forces, gaps and rigid motions."""
-        motion, lost = np.zeros(len(asked)), self.right - asked
+    def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
+        """The forces, gaps and rigid motions with which the cells have the required resultants."""
+        motion, lost = np.zeros(len(required)), self.right - required
         for _ in range(2):  # once more for round-off: forces are small where gaps are large
             # what moves nothing is zero
             motion += np.asarray(np.linalg.lstsq(self.system, lost)[0], dtype=np.float64)
             force = self.force - self.yielding @ motion
-            lost = self.motions.T @ force - asked
+            lost = self.motions.T @ force - required
         return force, self.gap + self.moving @ motion, motion
 
 
 class ContactProblem:
     """One pin in its lugs, ready for any loads.
 
-    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings;
-    tail: n u_n / p_n of both together for higher ones, m/Pa, (R,). tilt: (B,) N m/rad of the lugs'
-    tilt, inf where guided, 0 where free. sectors: M, of equal angles, the first about x.
+    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings.
+    tail: n u_n / p_n of both together for higher harmonics, m/Pa, (R,).
+    tilt: (B,) N m/rad, stiffness of the lugs' tilt, inf where guided, 0 where free.
+    sectors: M, of equal angles, the first about x.
     """
 
     def __init__(
@@ -156,11 +172,11 @@ class ContactProblem:
         self._fit(bands, tilt)
 
     def cells_area(self, bands: Bands) -> Floats:
-        """Of all cells of bands with as many rings, (U,) m^2."""
+        """The areas of all cells of bands with as many rings, (U,) m^2."""
         return np.repeat(bands.length * bands.radius, self.sectors) * 2.0 * np.pi / self.sectors
 
     def changed(self, gap: Floats, tilt: Sequence[float]) -> ContactProblem:
-        """The same with other gaps before any load (R,) m and tilts."""
+        """The same problem with another initial gap (R,), m, and another tilt stiffness."""
         other = copy.copy(self)
         other._fit(replace(self.bands, gap=gap), tilt)
         return other
@@ -181,20 +197,24 @@ class ContactProblem:
         return not self.bands.gap.any()
 
     def factors(self, n: Ints) -> Floats:
-        """Of harmonics in the mean over a cell under pressure on a cell, (N,)."""
+        """Factors (N,) of harmonics in the mean displacement of a cell under pressure on a cell."""
         return np.asarray(
             np.where(n == 0, 1.0, 2.0) / self.sectors * np.sinc(n / self.sectors) ** 2
         )
 
     def tail_weights(self, first: int) -> Floats:
-        """(M,) of cos(n a) on the sectors, of what n u_n = p_n adds from a harmonic on."""
+        """Coefficients (M,) of cos(n a) on the sectors that sum the series u_n = p_n / n from
+        harmonic `first` on.
+        """
         n = np.arange(first, TAIL_HARMONICS_PER_SECTOR * self.sectors)
-        each = self.factors(n) / n
-        return np.asarray(np.bincount(n % self.sectors, each, self.sectors), dtype=np.float64)
+        terms = self.factors(n) / n
+        return np.asarray(np.bincount(n % self.sectors, terms, self.sectors), dtype=np.float64)
 
     def _of_cells(self, flexibility: Floats, tail: Floats) -> Floats:
         """Mean displacement of cells under forces on cells, (U, U) m/N."""
         M, n = self.sectors, np.arange(len(flexibility))
+        # The flexibility depends on the angle between two cells alone: it is summed over harmonics
+        # for each angle, the half-plane's beyond, and then laid out for all pairs of cells.
         waves = np.cos(np.outer(n, self.angles)) * self.factors(n)[:, None]  # (N + 1, M)
         apart = np.tensordot(flexibility, waves, (0, 0))  # (R, R, M)
         weights = self.tail_weights(len(flexibility))
@@ -206,9 +226,11 @@ class ContactProblem:
         return np.asarray(full / self.area)
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
-        """Changes of the gap on bands with as many rings by what has no stiffness, (U, Y): shifts
-        of the lugs, turn of the pin, tilts of the lugs that are free; and by the tilts of those
-        that have one, over its root, (U, S), whose products are their compliance.
+        """Changes of the gap by the motions of lugs and pin, on bands with as many rings.
+
+        The first value, (U, Y), is that of motions without stiffness: shifts of the lugs, turn of
+        the pin, tilts of the free lugs. The second, (U, S), is that of sprung tilts over the root
+        of their stiffness, so that its product with itself is their compliance.
         """
         columns = [self._e_r * (self._link == k)[:, None] for k in range(self._count)]
         band, z = (np.repeat(x, self.sectors) for x in (bands.band, bands.z))
@@ -227,36 +249,44 @@ class ContactProblem:
     def solve(
         self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0), start: Mask | None = None
     ) -> ContactState:
-        """Under forces (L, 2) N of the links on the pin, along x and y.
+        """The contact under forces (L, 2), N, of the links on the pin, along x and y.
 
-        couple: N m, along x and y, on the pin by anything but forces across at the bands, moments
-        of links included. start: cells (R, M) in contact, of a neighbouring instant.
+        couple: N m, along x and y, on the pin by anything but transverse forces at the bands,
+        moments of links included.
+        start: cells (R, M) in contact at a neighbouring instant.
 
         Raises: SolveError where the active set does not settle.
         """
-        asked = self.asked(forces, couple)
+        required = self.required_resultants(forces, couple)
         facing = self._facing(forces)
-        found = self._settled(asked, facing if start is None else start.ravel().copy())
-        found = found or self._from_larger(asked, facing)
-        if found is None:
+        state = self._settled(required, facing if start is None else start.ravel().copy())
+        state = state or self._from_larger(required, facing)
+        if state is None:
             raise SolveError(
                 f"contact does not settle in {MAX_ACTIVE_SET_STEPS} steps", "contact-unsettled"
             )
-        return found
+        return state
 
-    def _settled(self, asked: Floats, active: Mask) -> ContactState | None:
-        """From a set of cells in contact; None where the sets do not settle."""
+    def _settled(self, required: Floats, active: Mask) -> ContactState | None:
+        """The contact found from a first set of cells in contact; None where the sets do not
+        settle.
+        """
+        # Each step solves the linear contact of the guessed cells, then corrects the guess: cells
+        # in tension open, cells that penetrate close. This is a semismooth Newton method
+        # (Hintermueller et al.), which needs few steps even from a poor guess.
         seen: set[bytes] = set()
         for step in range(1, MAX_ACTIVE_SET_STEPS + 1):
             answer = self._answer(active)
-            force, gap, motion = answer.under(asked)
+            force, gap, motion = answer.under(required)
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                self._require_balance(force, asked, answer)
-                return self._found(force, gap, motion, step)
+                self._require_balance(force, required, answer)
+                return self._state(force, gap, motion, step)
             key = active.tobytes()
-            if key in seen:  # it goes in circles: one cell at a time, the first that is wrong
+            # A set that comes back is a cycle. Changing the first wrong cell alone, as in Murty's
+            # least-index method, leads out of it.
+            if key in seen:
                 first = int(np.flatnonzero(wrong_force | wrong_gap)[0])
                 active[first] = not active[first]
             else:
@@ -264,34 +294,41 @@ class ContactProblem:
             seen.add(key)
         return None
 
-    def _from_larger(self, asked: Floats, facing: Mask) -> ContactState | None:
-        """From loads so many times larger that contact settles, down to the given ones: with small
-        loads and large gaps few cells touch, far from the first guess.
+    def _from_larger(self, required: Floats, facing: Mask) -> ContactState | None:
+        """The contact found by continuation from larger loads, under which it settles, down to the
+        given ones.
+
+        With small loads and large gaps few cells touch, far from the first guess.
         """
-        times, found = 1.0, None
-        while found is None and times < MAX_LOAD_FACTOR:
+        # Up: under a larger load gaps matter less and most facing cells touch, which the first
+        # guess has. Down: each contact is the start of the next smaller load; where that does not
+        # settle the reduction is made smaller.
+        times, state = 1.0, None
+        while state is None and times < MAX_LOAD_FACTOR:
             times *= LOAD_GROWTH
-            found = self._settled(times * asked, facing.copy())
+            state = self._settled(times * required, facing.copy())
         factor = LOAD_REDUCTION
-        while found is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
-            less = max(1.0, times / factor)
-            closer = self._settled(less * asked, found.active.ravel().copy())
-            if closer is None:
+        while state is not None and times > 1.0 and factor > MIN_LOAD_REDUCTION:
+            smaller = max(1.0, times / factor)
+            next_state = self._settled(smaller * required, state.active.ravel().copy())
+            if next_state is None:
                 factor = math.sqrt(factor)
             else:
-                times, found = less, closer
-        return found if times == 1.0 else None
+                times, state = smaller, next_state
+        return state if times == 1.0 else None
 
     def _answer(self, active: Mask) -> _Answer:
-        """Of given cells in contact."""
+        """The response of given cells in contact, kept for later instants."""
         key = np.packbits(active).tobytes()
         if key not in self._answers:
             if len(self._answers) * self._motions.size > MAX_KEPT_NUMBERS:
                 self._answers.clear()
-            self._answers[key] = self._found_answer(active)
+            self._answers[key] = self._compute_answer(active)
         return self._answers[key]
 
-    def _found_answer(self, active: Mask) -> _Answer:
+    def _compute_answer(self, active: Mask) -> _Answer:
+        # On the cells in contact the gap is zero: C p = -open - G y. One factorisation of C serves
+        # the initial gaps and every rigid motion y, which are then the only unknowns left.
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
@@ -308,9 +345,12 @@ class ContactProblem:
         gap[rows], moving[rows] = 0.0, 0.0
         return _Answer(force, yielding, gap, moving, system, right, G)
 
-    def asked(self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)) -> Floats:
-        """What the cells' forces must add up to on each of the rigid motions, (Y,): they push the
-        pin against e_r.
+    def required_resultants(
+        self, forces: Floats, couple: tuple[float, float] = (0.0, 0.0)
+    ) -> Floats:
+        """The resultants (Y,) that the cells' forces must have on the rigid motions.
+
+        Their sign is negative since the cells push the pin against e_r.
         """
         out = np.zeros(self._motions.shape[1])
         count = self._count
@@ -319,12 +359,17 @@ class ContactProblem:
         out[2 * count : 2 * count + 2] = my, -mx
         return out
 
-    def _require_balance(self, force: Floats, asked: Floats, answer: _Answer) -> None:
-        """Raises: SolveError where the cells' forces are not what equilibrium asks."""
+    def _require_balance(self, force: Floats, required: Floats, answer: _Answer) -> None:
+        """Check that the cells' forces have the required resultants.
+
+        Raises: SolveError where they have not.
+        """
+        # A couple counts as the force at the far end that makes it, so that all residuals are
+        # forces.
         arm = np.sqrt(np.diag(self._scale))  # of each motion
-        each = np.abs(self._motions.T @ force - asked) / np.where(arm > 0.0, arm, 1.0)
-        lost = each.max(initial=0.0)
-        if lost <= BALANCE_TOLERANCE * np.abs(asked).max(initial=force.max(initial=0.0)):
+        residual = np.abs(self._motions.T @ force - required) / np.where(arm > 0.0, arm, 1.0)
+        lost = residual.max(initial=0.0)
+        if lost <= BALANCE_TOLERANCE * np.abs(required).max(initial=force.max(initial=0.0)):
             return
         if lost <= CLOSING_FORCE_ROUND_OFF * np.abs(answer.force).max():
             raise SolveError(
@@ -335,29 +380,34 @@ class ContactProblem:
             "the links leave a couple on the pin that no lug reacts", "couple-not-reacted"
         )
 
-    def adjoint(self, active: Mask, wanted: Floats, asked: Floats) -> AdjointContact:
-        """Of contact under what is asked of the rigid motions, with these cells (R, M) in contact:
-        how a sum of their forces, each (U,) times `wanted`, goes with gaps, motions and loads.
+    def adjoint(self, active: Mask, wanted: Floats, required: Floats) -> AdjointContact:
+        """The sensitivity of a sum of the cells' forces, weighted by `wanted` (U,), to gaps and
+        loads.
+
+        active: the cells (R, M) in contact.
+        required: the required resultants of the rigid motions.
         """
+        # The problem is symmetric: the adjoint is the same contact with `wanted` as its right-hand
+        # side and no resultants.
         rows = np.flatnonzero(active)
         answer = self._answer(active.ravel())
-        force, _, motion = answer.under(asked)
+        force, _, motion = answer.under(required)
         C, G = self._compliance[np.ix_(rows, rows)], self._motions[rows]
-        own = np.zeros(len(force))
-        own[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
-        of_motion, lost = np.zeros(len(asked)), G.T @ own[rows]
+        dual = np.zeros(len(force))
+        dual[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
+        of_motion, lost = np.zeros(len(required)), G.T @ dual[rows]
         for _ in range(2):  # once more for round-off, as contact itself
             of_motion += np.asarray(np.linalg.lstsq(answer.system, lost)[0], dtype=np.float64)
-            lost = G.T @ (own[rows] - answer.yielding[rows] @ of_motion)
-        return AdjointContact(force, motion, own - answer.yielding @ of_motion, of_motion)
+            lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
+        return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
     def _facing(self, forces: Floats) -> Mask:
-        """The cells that face the load of their band."""
+        """A mask of the cells that face the load of their band."""
         towards = -np.einsum("ua,ua->u", self._e_r, np.asarray(forces)[self._link])
         size = np.linalg.norm(forces, axis=1)[self._link]
-        return np.asarray((towards > 0.3 * size) & (size > 0.0))
+        return np.asarray((towards > FACING_COSINE * size) & (size > 0.0))
 
-    def _found(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
+    def _state(self, force: Floats, gap: Floats, motion: Floats, steps: int) -> ContactState:
         shape = (len(self.bands.z), self.sectors)
         count = self._count
         return ContactState(

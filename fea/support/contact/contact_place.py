@@ -1,4 +1,6 @@
-"""What only contact has, of a pin in its lugs: edges, mean pressures, and what lies beneath."""
+"""Results that only contact has, of a pin in its lugs: edges, mean pressures, stress beneath
+contact.
+"""
 
 from __future__ import annotations
 
@@ -26,22 +28,24 @@ def contact_place(
     error: float,
     row: float,
 ) -> ContactPlace:
-    """contact: at the row's instant. loads: on the rings at all instants of the case; error: of
-    what lies beneath, relative. row: the maximum of surface and section, Pa, below which no
-    outcome asks how far stress reaches.
+    """The results of contact at the row's instant.
+
+    loads: on the rings at all instants of the case.
+    error: of the stress beneath contact, relative.
+    row: the maximum of surface and section, Pa, below which the depth of stress is not needed.
     """
     under = answer if isinstance(answer, CutField) else _Plain(answer)
-    found = under.beneath(loads)
+    deepest = under.beneath(loads)
     limits = reached(material, required)
-    instants = dict.fromkeys((found.instant, _instant(loads, contact)))
+    instants = dict.fromkeys((deepest.instant, _instant(loads, contact)))
     least = min(row, *limits) if limits else row
-    each = [x for t in instants for x in under.depths(loads, t, least)]
-    known = stairs(*np.array(each).reshape(-1, 2).T)
+    steps = [x for t in instants for x in under.depths(loads, t, least)]
+    known = stairs(*np.array(steps).reshape(-1, 2).T)
     place = ContactPlace(
-        found.value,
-        error * found.value,
-        found.location,
-        _time(loads, found),
+        deepest.value,
+        error * deepest.value,
+        deepest.location,
+        _time(loads, deepest),
         None,
         None,
         contact_edges(contact, material),
@@ -54,7 +58,7 @@ def contact_place(
 
 @dataclass(frozen=True)
 class _Plain:
-    """A pin without cuts, asked as one with them is."""
+    """The field of a pin without cuts, with the interface of one with cuts."""
 
     answer: HarmonicField
 
@@ -73,8 +77,8 @@ def reached(material: Material, required: float | None) -> tuple[float, ...]:
     return (strength,) if required is None else (strength, strength / required)
 
 
-def _time(loads: PinLoads, found: Beneath) -> float | None:
-    return None if loads.times is None else float(loads.times[found.instant])
+def _time(loads: PinLoads, beneath: Beneath) -> float | None:
+    return None if loads.times is None else float(loads.times[beneath.instant])
 
 
 def _instant(loads: PinLoads, contact: JointContact) -> int:
@@ -87,19 +91,19 @@ def _instant(loads: PinLoads, contact: JointContact) -> int:
 
 def _band(contact: JointContact, b: int, material: Material) -> BandPressure:
     lug, bands = contact.lugs[b], contact.bands
-    own = np.flatnonzero(bands.band == b)
-    force = np.linalg.norm(contact.line_load[0, own].T @ bands.length[own])
-    mean = float(force / (2.0 * bands.radius[own[0]] * bands.length[own].sum()))
+    ring_rows = np.flatnonzero(bands.band == b)
+    force = np.linalg.norm(contact.line_load[0, ring_rows].T @ bands.length[ring_rows])
+    mean = float(force / (2.0 * bands.radius[ring_rows[0]] * bands.length[ring_rows].sum()))
     strengths = [m.bearing_strength for m in (material, lug.bearing) if m.bearing_strength]
     share = mean / min(strengths) if strengths else None
-    return BandPressure(lug.connection, mean, share, _cells(contact, own))
+    return BandPressure(lug.connection, mean, share, _cells(contact, ring_rows))
 
 
-def _cells(contact: JointContact, own: Ints) -> tuple[PressedCell, ...]:
+def _cells(contact: JointContact, ring_rows: Ints) -> tuple[PressedCell, ...]:
     (pressed,), bands = contact.contact, contact.bands
     half = np.degrees(np.pi / pressed.pressure.shape[1])
     out = []
-    for ring in own:
+    for ring in ring_rows:
         z0, z1 = (float(bands.z[ring] + s * bands.length[ring] / 2.0) for s in (-1.0, 1.0))
         for sector in np.flatnonzero(pressed.pressure[ring] > 0.0):
             angle = float(np.degrees(contact.angles[sector] + pressed.angle))

@@ -44,9 +44,13 @@ MIN_REPORTED_LOSS = 5e-4  # of a lug's force: what is lost of it is reported
 
 @dataclass(frozen=True)
 class NeglectedCuts:
-    """softer: by how much, relative, cuts raise the pin's bending compliance; pressed: the largest
-    pressure on a mouth, Pa; lost: the largest part of a lug's force that acts on mouths; moved: the
-    largest part that may move away from holes; bands: those on which cuts are, by their names.
+    """The effects of cuts in lugs that contact neglects.
+
+    softer: relative increase of the pin's bending compliance by cuts.
+    pressed: the largest pressure on a mouth, Pa.
+    lost: the largest part of a lug's force that acts on mouths.
+    moved: the largest part that may move away from holes.
+    bands: those with cuts, by their names.
     """
 
     softer: float
@@ -57,7 +61,7 @@ class NeglectedCuts:
 
     @property
     def note(self) -> Reason:
-        """Of the cuts in lugs."""
+        """The note about the cuts in lugs."""
         if not self.bands:
             return Reason()
         where = ", ".join(f"{cut} in lug {name}" for cut, name in self.bands.items())
@@ -72,7 +76,7 @@ class NeglectedCuts:
         )
 
     def error(self, largest: float, at_cut: bool, over: tuple[Variation, ...]) -> float:
-        """Of a maximum, Pa, with the maxima of the joint varied."""
+        """The error of a maximum, Pa, given the maxima of the varied joint."""
         factors = [v.max_von_mises / largest for v in over if v.what == STIFFNESS_VARIATION]
         most = max((abs(math.log(x)) for x in factors if x > 0.0), default=LOG_2)
         relative = self.softer * most / LOG_2 + max(self.lost, self.moved)
@@ -82,44 +86,44 @@ class NeglectedCuts:
 def neglected(
     cut: CutPin, material: Material, contact: JointContact, pressure: CellPressure, of: CutField
 ) -> NeglectedCuts:
-    """At the single instant of a contact."""
+    """The neglected effects of cuts at the single instant of a contact."""
     pressed, lost, bands = 0.0, dict[int, float](), dict[str, str]()
     for name, one in cut.cuts.items():
         for band, lug in enumerate(contact.lugs):
             points, area = _mouth(cut, one, lug.connection)
             if not len(points):
                 continue
-            found = pressure.at(points)
+            at_mouth = pressure.at(points)
             bands[name] = lug.connection
-            pressed = max(pressed, float(found.max()))
-            lost[band] = lost.get(band, 0.0) + float(found.sum()) * area
-    own, forces = contact.bands.band, contact.loads.forces[0, :, :2]
-    force = {b: float(np.linalg.norm(forces[own == b].sum(axis=0))) for b in lost}
+            pressed = max(pressed, float(at_mouth.max()))
+            lost[band] = lost.get(band, 0.0) + float(at_mouth.sum()) * area
+    ring_band, forces = contact.bands.band, contact.loads.forces[0, :, :2]
+    force = {b: float(np.linalg.norm(forces[ring_band == b].sum(axis=0))) for b in lost}
     share = max((part / force[b] for b, part in lost.items() if force[b] > 0.0), default=0.0)
     softer, moved = _softer(cut, material, contact, of), _moved(cut, contact)
     return NeglectedCuts(softer, pressed, share, moved, bands)
 
 
 def _moved(cut: CutPin, contact: JointContact) -> float:
-    """The largest part of a lug's force that acts where a hole is, times the hole's diameter over
-    the pin's.
+    """The largest part of a lug's force that acts at a hole, times the hole's diameter over the
+    pin's.
     """
     bands, most = contact.bands, 0.0
     force = np.linalg.norm(contact.loads.forces[0, :, :2], axis=1)
     low, high = bands.z - 0.5 * bands.length, bands.z + 0.5 * bands.length
     for hole in cut.holes:
         start, end = hole.opens
-        there = np.maximum(np.minimum(high, end) - np.maximum(low, start), 0.0) / bands.length
+        overlap = np.maximum(np.minimum(high, end) - np.maximum(low, start), 0.0) / bands.length
         across = np.minimum(0.5 * hole.diameter / bands.radius, 1.0)
         for b in range(len(contact.lugs)):
-            own = bands.band == b
-            if whole := float(force[own].sum()):
-                most = max(most, float((force * there * across)[own].sum()) / whole)
+            on_band = bands.band == b
+            if whole := float(force[on_band].sum()):
+                most = max(most, float((force * overlap * across)[on_band].sum()) / whole)
     return most
 
 
 def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
-    """Points (P, 3), m, of a band that a cut takes away, and the area that each stands for, m^2."""
+    """The points (P, 3), m, of a band that a cut takes away, and the area of each, m^2."""
     on = cut.profile.band(band)
     low, high = max(one.opens[0], on.z0), min(one.opens[1], on.z1)
     if low >= high:
@@ -128,13 +132,15 @@ def _mouth(cut: CutPin, one: Cut, band: str) -> tuple[Floats, float]:
     angle = (np.arange(ANGULAR_POINTS) + 0.5) * 2.0 * math.pi / ANGULAR_POINTS
     angle, z = (x.ravel() for x in np.meshgrid(angle, z))
     points = np.stack([on.radius * np.cos(angle), on.radius * np.sin(angle), z], axis=1)
-    each = (high - low) / AXIAL_POINTS * on.radius * 2.0 * math.pi / ANGULAR_POINTS
-    return points[one.takes(points, on.radius)], each
+    point_area = (high - low) / AXIAL_POINTS * on.radius * 2.0 * math.pi / ANGULAR_POINTS
+    return points[one.takes(points, on.radius)], point_area
 
 
 def _softer(cut: CutPin, material: Material, contact: JointContact, of: CutField) -> float:
-    """The work of the bending moment at the cuts, where it is largest, on the turns that these add,
-    over that of the whole pin; of passages at least that on the net section.
+    """The relative increase of the pin's bending compliance by its cuts.
+
+    It is the work of the bending moment at the cuts, where it is largest, on the turns that these
+    add, over that of the whole pin; for passages at least that on the net section.
     """
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
@@ -163,7 +169,7 @@ def _inertia(pin: Pin, z: float) -> float:
 
 
 def at_a_cut(peak: Maximum, of: CutField) -> bool:
-    """Whether a maximum is about a cut."""
+    """Return whether a maximum is about a cut."""
     ends = [zone(piece.piece) for piece in of.solution.pieces]
     where = peak.location
     return where is not None and any(low <= where[2] <= high for low, high in ends)
@@ -174,12 +180,14 @@ def with_neglected(
     left: NeglectedCuts,
     of: CutField,
     over: tuple[Variation, ...],
-    asked: Requirement,
+    requirement: Requirement,
 ) -> Maximum:
-    """With what is neglected among the parts of its error, and a note about it."""
+    """The maximum with the neglected effects among the parts of its error, and a note about
+    them.
+    """
     if not peak.max_von_mises or peak.parts is None:
         return peak
     more = left.error(peak.max_von_mises, at_a_cut(peak, of), over)
-    found = with_parts(peak, replace(peak.parts, model=more), asked)
+    widened = with_parts(peak, replace(peak.parts, model=more), requirement)
     note = left.note
-    return replace(found, note=found.note + note.text, reasons=found.reasons + note.codes)
+    return replace(widened, note=widened.note + note.text, reasons=widened.reasons + note.codes)

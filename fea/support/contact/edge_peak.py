@@ -54,9 +54,8 @@ REACH_COEFFICIENTS = 0.42, 0.45, 0.5
 EDGE_PEAK_ERROR = 0.1  # relative, of resolved peaks (on usual cells 6 %)
 RING_FORCE_ERROR, REGULAR_TERM_RATIO = 0.03, 0.5
 STATION_ROUND_OFF = 1e-9
-MIN_FIT_DISTANCE = (
-    2.0  # edge radii from the face: from there on forces are compared with the expansion
-)
+# Edge radii from the face: from there on forces are compared with the expansion
+MIN_FIT_DISTANCE = 2.0
 # Largest von Mises stress below the surface over the largest pressure, by Poisson's ratio.
 POISSON_RATIOS = 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5
 SUBSURFACE_STRESS_RATIOS = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.4763
@@ -64,8 +63,11 @@ SUBSURFACE_STRESS_RATIOS = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.476
 
 @dataclass(frozen=True)
 class EdgePeak:
-    """At a rounded edge. pressure: the largest, Pa; von_mises: of the pin under it, Pa, by contact
-    alone; reach: length of contact in the rounding, m.
+    """The peak of contact at a rounded edge.
+
+    pressure: the largest, Pa.
+    von_mises: largest stress of the pin under it by contact alone, Pa.
+    reach: length of contact in the rounding, m.
     """
 
     pressure: float
@@ -74,16 +76,17 @@ class EdgePeak:
 
 
 def contact_edges(contact: JointContact, material: Material) -> tuple[ContactEdge, ...]:
-    """Of contact at a single instant, both edges of each band that carries anything there.
+    """The edges of contact at a single instant: both edges of each band, where they carry load.
+
     material: the pin's.
     """
     out = []
     for b, lug in enumerate(contact.lugs):
-        own = contact.bands.band == b
-        pressure, length = contact.contact[0].pressure[own], contact.bands.length[own]
+        on_band = contact.bands.band == b
+        pressure, length = contact.contact[0].pressure[on_band], contact.bands.length[on_band]
         exponent = lug_edge_exponent(material, lug.bearing)
         powers = exponent, next_power(material, lug.bearing)
-        diameter = 2.0 * float(contact.bands.radius[own][0])
+        diameter = 2.0 * float(contact.bands.radius[on_band][0])
         ends: tuple[tuple[End, slice], ...] = ("start", slice(None)), ("end", slice(None, None, -1))
         for end, way in ends:
             rings = pressure[way], length[way]
@@ -111,8 +114,12 @@ def _edge(lug: Lug, end: End, K: float, exponent: float, material: Material) -> 
 def strength_at_edge(
     pressure: Floats, length: Floats, radius: float, powers: tuple[float, float], diameter: float
 ) -> float:
-    """K, Pa m^s, where it is largest round the pin, of rings (R, M) from a face on. powers: the
-    exponent s and the power q.
+    """The largest intensity K round the pin of a sharp edge, Pa m^s.
+
+    pressure, length: of rings (R, M) and (R,) from a face on, Pa and m.
+    radius: of the rounded edge, m.
+    powers: the exponent s and the power q.
+    diameter: of the pin, m.
     """
     stations = np.concatenate([[0.0], np.cumsum(length)])
     half, least = 0.5 * stations[-1] * (1.0 + STATION_ROUND_OFF), radius * (1.0 + STATION_ROUND_OFF)
@@ -134,7 +141,10 @@ def strength_at_edge(
 
 
 def edge_peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
-    """Of a rounded edge."""
+    """The peak at a rounded edge.
+
+    K: intensity of the sharp edge, Pa m^s, s being the exponent.
+    """
     r, soft = lug.edge_radius, material.plane_compliance + lug.bearing.plane_compliance
     pressure = float(np.interp(exponent, EDGE_EXPONENTS, PRESSURE_COEFFICIENTS)) * (
         K * K * r ** (-2.0 * exponent) / soft

@@ -8,15 +8,15 @@ from fea.core.peak import ErrorParts, Maximum, accuracy
 from fea.core.requirement import Requirement
 
 
-def with_parts(peak: Maximum, parts: ErrorParts, asked: Requirement) -> Maximum:
-    """With larger parts of the error, and the verdict that goes with them."""
+def with_parts(peak: Maximum, parts: ErrorParts, requirement: Requirement) -> Maximum:
+    """The peak with larger parts of the error, and the verdict that follows from them."""
     largest, error = peak.max_von_mises, peak.error_estimate
     if not largest or error is None or peak.parts is None:
         return peak
     more = parts.total - peak.parts.total
     interval = peak.interval and (peak.interval[0] - more, peak.interval[1] + more)
     ratios = [x.total / largest for x in (peak.parts, parts)]
-    before, after = (accuracy(x, asked.tolerance, x <= asked.tolerance) for x in ratios)
+    before, after = (accuracy(x, requirement.tolerance, x <= requirement.tolerance) for x in ratios)
     loose = peak.verdict == "converged" and after.codes != before.codes
     return replace(
         peak,
@@ -29,9 +29,9 @@ def with_parts(peak: Maximum, parts: ErrorParts, asked: Requirement) -> Maximum:
     )
 
 
-def with_cells(peak: Maximum, relative: float, asked: Requirement) -> Maximum:
-    """With the error of the cells, relative, among its parts."""
+def with_cells(peak: Maximum, relative: float, requirement: Requirement) -> Maximum:
+    """The peak with the error of the cells, relative, among its parts."""
     largest = peak.max_von_mises
     if not largest or peak.parts is None:
         return peak
-    return with_parts(peak, replace(peak.parts, cells=relative * largest), asked)
+    return with_parts(peak, replace(peak.parts, cells=relative * largest), requirement)

@@ -1,4 +1,4 @@
-"""How far rings move, on the average round them, under uniform pressures on rings, by harmonic.
+"""Flexibility of rings, by harmonic: the mean displacement of rings under even pressures on them.
 
 A pressure p cos n theta on a ring moves the mean of u_r over each ring by C_n p cos n theta. By the
 theorem of Betti C_n times the rings' lengths is symmetric; it is made exactly so. Rigid motions are
@@ -44,8 +44,10 @@ OUTWARDS = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True)
 class RingBody:
-    """A body on one mesh, rings of its surface (by name), and where pressure on them points.
-    guided: as a lug.
+    """A body on one mesh, the rings of its surface (by name), and the direction of pressure on
+    them.
+
+    guided: whether it is held like a lug.
     """
 
     body: HarmonicBody
@@ -55,23 +57,24 @@ class RingBody:
 
     @property
     def area(self) -> Floats:
-        """Of the rings, (R,) m^2 per radian."""
+        """The areas of the rings, (R,) m^2 per radian."""
         bands = [self.body.pin.band(name) for name in self.rings]
         return np.array([b.radius * b.length for b in bands])
 
     def forces(self, n: int) -> Floats:
-        """On the unknowns, (unknowns, R), of pressures of one on the rings."""
+        """The nodal forces (unknowns, R) of unit pressures of harmonic n on the rings."""
         return self.body.forces(n, [(Traction(r, 0.0, self.pushed, NO_SLOPE),) for r in self.rings])
 
     def balanced(self, n: int, forces: Floats) -> Floats:
-        """With the reaction of what guides it."""
+        """The forces of harmonic n with the reaction of what guides the body."""
         if self.guided and n == 1:
             return self.reacted(self.body.outline, self.body.pin.length, forces)
         return forces
 
     def reacted(self, outline: Outline, length: float, forces: Floats) -> Floats:
-        """Forces of harmonic 1 (unknowns, K) on a lug like this one with the reaction on its outer
-        surface, of constant direction.
+        """The forces of harmonic 1 (unknowns, K) with the reaction on the outer surface.
+
+        The reaction has a constant direction.
         """
         reactions = [
             tuple(Traction(name, 0.5 * length, *parts) for name in self.body.pin.connections)
@@ -82,7 +85,7 @@ class RingBody:
         return np.asarray(forces - against @ np.linalg.solve(modes.T @ against, modes.T @ forces))
 
     def flexibility(self, highest: int) -> Floats:
-        """C_n (highest + 1, R, R), m/Pa, towards where pressure points."""
+        """The flexibility C_n (highest + 1, R, R), m/Pa, positive in the direction of pressure."""
         out = []
         for n in range(highest + 1):
             forces = self.balanced(n, self.forces(n))
@@ -94,9 +97,11 @@ class RingBody:
 def pin_flexibility(
     pin: Pin, rings: Sequence[str], material: Material, across: float, highest: int
 ) -> Floats:
-    """C_n (highest + 1, R, R), m/Pa, inwards under pressure, of rings of a pin.
+    """The flexibility C_n (highest + 1, R, R), m/Pa, inwards under pressure, of rings of a pin.
 
-    across: elements over the diameter. Raises: MeshError, SolveError.
+    across: elements over the diameter.
+
+    Raises: MeshError, SolveError.
     """
     return pin_rings(pin, rings, material, across).flexibility(highest)
 
@@ -109,14 +114,17 @@ def pin_rings(pin: Pin, rings: Sequence[str], material: Material, across: float)
 
 
 def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
-    """Elements at a ring's ends no longer than half of it."""
+    """The fineness at a ring's ends, where elements are no longer than half of it."""
     bands = (pin.band(name) for name in rings)
     return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
 
 
 def lug_flexibility(eye: Pin, lug: Lug, across: float, highest: int) -> Floats:
-    """The same of the rings of a lug's bore, outwards under pressure; its annulus is `eye`
-    (fea.support.lugs.rings). across: elements over the bore's diameter.
+    """The flexibility C_n (highest + 1, R, R), m/Pa, outwards under pressure, of the rings of a
+    lug's bore.
+
+    eye: the lug's annulus (fea.support.lugs.rings).
+    across: elements over the bore's diameter.
     """
     return lug_rings(eye, lug, across).flexibility(highest)
 
@@ -138,13 +146,15 @@ def lug_rings(eye: Pin, lug: Lug, across: float) -> RingBody:
 
 
 def half_plane(material: Material, radius: float) -> float:
-    """n u_n / p_n of one body for high harmonics n, m/Pa."""
+    """The displacement n u_n / p_n of one body for high harmonics n, m/Pa."""
     return 2.0 * radius * material.plane_compliance
 
 
 def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
-    """C_n (2, N, R, R), m/Pa, of a lug's rings with `ends` (R + 1,) m along z, for high harmonics
-    `waves` (N,): of the pin as a half-space, and of the lug as one that its faces end.
+    """The flexibility C_n (2, N, R, R), m/Pa, of a lug's rings for high harmonics `waves` (N,).
+
+    The first is that of the pin as a half-space, the second of the lug, which its faces end.
+    ends: of the rings, (R + 1,) m along z.
     """
     on, beyond = _responses(tuple((ends / radius).tolist()), tuple(waves.tolist()))
     n = waves[:, None, None]
@@ -155,15 +165,18 @@ def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves
 
 @lru_cache(maxsize=4)
 def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Of a half-space on rings with such ends, over the radius, and what mirrors add to it."""
+    """The responses of a half-space on rings with such ends, over the radius, and the terms that
+    mirrors add.
+    """
     x = np.outer(waves, ends)
     beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
     return _half_space(x, x), beyond
 
 
 def _half_space(x: Floats, y: Floats) -> Floats:
-    """Mean over each ring of a pressure's response at wave number 1, over a plane's: (N, R, R), for
-    rings with ends x (N, R + 1), under pressure on rings with ends y.
+    """The mean response over each ring to a pressure at wave number 1, over a plane's: (N, R, R).
+
+    It is that of rings with ends x (N, R + 1), under pressure on rings with ends y.
     """
     twice = _integral_of_k0(np.abs(x[:, :, None] - y[:, None]))
     both = twice[:, 1:, :-1] + twice[:, :-1, 1:] - twice[:, 1:, 1:] - twice[:, :-1, :-1]
@@ -171,7 +184,7 @@ def _half_space(x: Floats, y: Floats) -> Floats:
 
 
 def _integral_of_k0(x: Floats) -> Floats:
-    """From 0 to x of (x - t) K0(t)."""
+    """The integral from 0 to x of (x - t) K0(t)."""
     positive = np.maximum(x, 1e-300)
     return np.asarray(
         np.where(x > 0.0, x * iti0k0(positive)[1] - 1.0 + positive * k1(positive), 0.0)
@@ -179,8 +192,10 @@ def _integral_of_k0(x: Floats) -> Floats:
 
 
 def layered(lug: Lug, waves: float) -> float:
-    """What a wavy pressure does to a lug with a bushing, over what it does to a half-plane of the
-    bushing's material; waves: 2 pi / wavelength, 1/m.
+    """The displacement of a lug with a bushing under a wavy pressure, over that of a half-plane of
+    the bushing's material.
+
+    waves: 2 pi / wavelength, 1/m.
     """
     if lug.bushing is None:
         return 1.0

@@ -43,18 +43,20 @@ from fea.support.prescribed import balanced, imbalance
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
 from geometry import CutPin, Pin, PinLike
 
+# They are tried in this order, until one is fine enough.
 RESOLUTIONS: tuple[Resolution, ...] = (
     Resolution(),
     Resolution(12, 48, 16),
     Resolution(16, 64, 20),
-)  # until one is fine enough
+)
 ROUGH = Resolution(4, 24, 8)  # may decide a required factor
 MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 
 
 class ContactSupport:
-    """Lugs in contact on cells of one resolution (fea.support.support.Support). finer: the next
-    resolution, None for the last.
+    """A support by lugs in contact, on cells of one resolution (fea.support.support.Support).
+
+    finer: the next resolution, None for the last.
     """
 
     def __init__(self, cells: Resolution, finer: Resolution | None = None) -> None:
@@ -67,7 +69,9 @@ class ContactSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldContact:
-        """As of every support; what no contact can carry fails before anything is meshed."""
+        """Hold the pin, as every support does; a case that no contact can carry fails before
+        anything is meshed.
+        """
         refused: dict[str, Maximum] = {}
         if not isinstance(coarser, HeldContact):
             refused = _refused(problem)
@@ -104,8 +108,9 @@ def profile_of(pin: PinLike) -> Pin:
 
 
 def _refused(problem: PinProblem) -> dict[str, Maximum]:
-    """The cases whose loads no contact can carry, before anything is meshed. Raises: ArgumentError
-    for lugs that do not fit.
+    """The failures of cases whose loads no contact can carry, found before anything is meshed.
+
+    Raises: ArgumentError for lugs that do not fit.
     """
     pin, lugs = profile_of(problem.pin), problem.lugs
     whole = on_structure(pin, lugs)
@@ -125,7 +130,7 @@ def _failed(problem: PinProblem, case: str, why: str) -> Maximum:
 
 
 def cells_matter(peak: Maximum, limit: float) -> bool:
-    """Whether a limit (Pa) is within the error, and would not be if cells had none."""
+    """Return whether a limit, Pa, is within the error, and would not be if cells had none."""
     if peak.parts is None or meets_limit(peak, limit) is not None:
         return meets_limit(peak, limit) is None
     low, high = peak.lower_end, peak.upper_end
@@ -133,14 +138,16 @@ def cells_matter(peak: Maximum, limit: float) -> bool:
 
 
 def _count(model: ContactModel, cells: Resolution) -> int:
-    """How many there would be, roughly."""
+    """The approximate number of cells at a resolution."""
     return len(model.rings) * cells.rings // model.cells.rings * cells.sectors
 
 
 @dataclass(frozen=True)
 class HeldContact:
-    """A pin in contact with its lugs (fea.support.support.HeldPin). candidates: by case, which
-    instants may govern; compared: contact on these cells against that on larger ones.
+    """A pin in contact with its lugs (fea.support.support.HeldPin).
+
+    candidates: by case, the instants that may govern.
+    compared: by case, contact on these cells against that on larger ones.
     """
 
     problem: PinProblem
@@ -154,7 +161,7 @@ class HeldContact:
 
     @property
     def model(self) -> ContactModel:
-        """Flexibilities of pin and lugs."""
+        """The flexibilities of pin and lugs."""
         return self.contact.model
 
     @property
@@ -164,7 +171,7 @@ class HeldContact:
 
     @cached_property
     def pin(self) -> PinLike:
-        """On which the pressures act, with its cuts."""
+        """The pin on which the pressures act, with its cuts."""
         model, cut = self.model, self.cut
         if cut is None:
             return model.pin
@@ -175,29 +182,30 @@ class HeldContact:
         )
 
     def start(self, case: str) -> PinLoads:
-        """Pressures at the instants of which their patterns are made."""
+        """The pressures at the instants from which their patterns are made."""
         return self.contact.press(self.contact.instants[case])
 
     def press(self, links: PinLoads) -> PinLoads:
-        """Pressures under loads of the links."""
+        """The pressures under loads of the links."""
         return self.contact.press(links)
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Whether finer cells would not help, or there are none."""
+        """Return whether finer cells would not help, or there are none."""
         known = self.compared.get(case)
         if known is None:
             return False
         return self.finest or known.fine(self.problem.material, requirement)
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
-        """Less than all of the tolerance, for cells take a part of it; and less still where
-        sections govern.
+        """The requirement on the meshes, with a smaller tolerance since cells use a part of it.
+
+        It is relaxed where sections govern.
         """
         cells = {case: x.surface.cells.surface for case, x in self.compared.items()}
         return replace(requirement, besides=cells, elsewhere=self._in_sections())
 
     def _in_sections(self) -> dict[str, float]:
-        """By case, the largest stress of sections, Pa; none of pins with cuts."""
+        """The largest stress of sections by case, Pa; none for pins with cuts."""
         if self.cut is not None:
             return {}
         return {
@@ -206,24 +214,26 @@ class HeldContact:
         }
 
     def finished(self, solution: Solution, requirement: Requirement) -> Solution:
-        """With the error of cells and of what contact leaves out, sections, contact, and the range
-        over what is not known of the joint.
+        """The solution with the error of cells and of what contact neglects, sections, contact, and
+        the range over the uncertain properties of the joint.
         """
-        model, material, asked = self.model, self.problem.material, requirement
+        model, material = self.model, self.problem.material
         (case,) = (c for c in self.problem.cases if c.case == solution.peak.case)
         answer = solution.answer
         assert isinstance(answer, HarmonicField | CutField)
         assert self.contact.patterns is not None
         at_surface = self.contact.joined(solution.loads.links, solution.instant)
-        known = self.compared[case.case].near(at_surface, case, self._compared_anew(asked))
+        known = self.compared[case.case].near(at_surface, case, self._compared_anew(requirement))
         missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
-        peak = with_cells(_named(model, solution.peak), known.surface.cells.surface + missed, asked)
+        peak = with_cells(
+            _named(model, solution.peak), known.surface.cells.surface + missed, requirement
+        )
         peak = replace(peak, governing=at_surface.loads.links, imbalance=_imbalance(model, case))
         section = None
         if self.cut is None:
-            section = self._section(case, known.section.cells.section, asked)
+            section = self._section(case, known.section.cells.section, requirement)
         links = None if section is None else links_at(self.problem, case, section)
-        peak = row_of(peak, section, material, asked.tolerance, links)
+        peak = row_of(peak, section, material, requirement.tolerance, links)
         solved = solution.loads
         solution = self._at_row(solution, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
@@ -233,41 +243,46 @@ class HeldContact:
         error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
         if self.cut is not None and isinstance(answer, CutField):
             left = neglected(self.cut, material, contact, pressure, answer)
-            peak = with_neglected(peak, left, answer, over.variations, asked)
-            peak = row_of(peak, None, material, asked.tolerance)
+            peak = with_neglected(peak, left, answer, over.variations, requirement)
+            peak = row_of(peak, None, material, requirement.tolerance)
             largest = peak.max_von_mises or 1.0
             error += left.error(largest, False, over.variations) / largest
         row = peak.max_von_mises or 0.0
-        place = contact_place(contact, material, answer, solved, asked.required, error, row)
+        place = contact_place(contact, material, answer, solved, requirement.required, error, row)
         solution = replace(solution, peak=with_contact(peak, place))
         over = known.row.range(row, place.beneath)
         joint = contact_result(contact, over, solution.loads, known.row.left_out)
         return replace(solution, joint=joint, pressure=pressure)
 
     def _by_mesh(self, answer: HarmonicField | CutField, known: ResolutionComparison) -> float:
-        """By how much what lies beneath contact differs from that on the first mesh, relative."""
+        """The relative difference of the stress beneath contact from that on the first mesh."""
         fields = answer.solution.uncut if isinstance(answer, CutField) else answer.fields
-        there = beneath(fields, self.contact.press(known.links), answer.singularities).value
-        return abs(known.stress.beneath / there - 1.0) if there else 0.0
+        finer = beneath(fields, self.contact.press(known.links), answer.singularities).value
+        return abs(known.stress.beneath / finer - 1.0) if finer else 0.0
 
-    def _compared_anew(self, asked: Requirement) -> Callable[[JointContact], ResolutionComparison]:
+    def _compared_anew(
+        self, requirement: Requirement
+    ) -> Callable[[JointContact], ResolutionComparison]:
         of = self.contact
-        return lambda contact: compare(of.model, [contact], asked, of.patterns)[0]
+        return lambda contact: compare(of.model, [contact], requirement, of.patterns)[0]
 
-    def _section(self, case: PinLoads, cells: float, asked: Requirement) -> FoundSection:
-        """The largest stress of sections of a case; cells: its error by these, relative."""
+    def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:
+        """The largest stress of sections of a case.
+
+        cells: its relative error from the cells.
+        """
         between, loads = self.problem.between.get(case.case), self.contact.instants[case.case]
         on_rings = None if between is None else lambda times: self.contact.on_rings(between(times))
         return found_section(
             self.contact.sections[case.case],
             self.contact.on_rings(loads),
             on_rings,
-            asked.tolerance,
+            requirement.tolerance,
             cells,
         )
 
     def _at_row(self, solution: Solution, peak: Maximum, case: PinLoads) -> Solution:
-        """With the loads at all samples of a case, at the instant of its row."""
+        """The solution with the loads at all samples of a case, at the instant of its row."""
         loads, links = solution.loads, self.contact.press(case)
         if loads.times is None:
             return replace(solution, peak=peak)
@@ -290,7 +305,7 @@ def links_at(problem: PinProblem, case: PinLoads, section: FoundSection) -> PinL
 
 
 def _named(model: ContactModel, peak: Maximum) -> Maximum:
-    """With the names of the whole pin's surfaces, for those of its rings."""
+    """The maximum with the names of the whole pin's surfaces, instead of those of its rings."""
     names, note, zones = whole_names(model.whole, model.ends), peak.note, []
     for zone in peak.singular_at:
         first, second = (names.get(name, name) for name in zone.between)
@@ -300,7 +315,7 @@ def _named(model: ContactModel, peak: Maximum) -> Maximum:
 
 
 def _imbalance(model: ContactModel, case: PinLoads) -> tuple[float, float] | None:
-    """Force and couple that links leave over, relative; a structure takes them."""
+    """The force and couple that the links leave unbalanced, relative; a structure reacts them."""
     if model.on_structure:
         return None
     return imbalance(model.given, out_of_balance(model.given, case, model.material.density))

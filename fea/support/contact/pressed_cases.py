@@ -1,5 +1,6 @@
-"""Contact of a pin with its lugs in several cases, at any of their instants, each solved once; and
-how far its stress depends on the cells and on what is not known of the joint.
+"""Contact of a pin with its lugs in several cases, at any of their instants, each solved once.
+
+It also tells how far stress depends on the cells and on the uncertain properties of the joint.
 """
 
 from __future__ import annotations
@@ -30,19 +31,24 @@ from fea.support.contact.pressure_loads import (
 from fea.support.contact.solve_joint import ContactModel, JointContact
 from fea.support.contact.variations import CELL_ERROR_SHARE, ResolutionComparison, compare
 
-CANDIDATE_FRACTION = (
-    0.8  # of the largest on the first mesh: from there on an instant may govern on finer ones
-)
-CHORD_TOLERANCE = (
-    0.01  # of the largest load: what an instant left out to begin with may be off its chord
-)
-MIN_INTERVALS = 16  # intervals to begin with
+# Of the largest stress on the first mesh: an instant above it may govern on finer meshes. Chosen by
+# judgement, with room for the error of the first mesh.
+CANDIDATE_FRACTION = 0.8
+# Of the largest load: how far an instant that is left out at first may be off the chord between its
+# neighbours. Chosen by judgement; instants are added later where the maximum may lie between two.
+CHORD_TOLERANCE = 0.01
+# Intervals to begin with. Chosen by judgement; with the middles they are 33 instants, and 21 or
+# more give the maximum of the landing gear's pins to 0.02 % (docs/measured/instants.md).
+MIN_INTERVALS = 16
 
 
 @dataclass(frozen=True)
 class Candidates:
-    """On the first mesh: the instant of a case's largest stress of the surface, this (Pa, where it
-    is known), and which (T,) are so near to it that they may govern.
+    """The instants of a case that may govern, by the stress on the first mesh.
+
+    instant: of the largest stress of the surface.
+    may: (T,), true where the stress is so near to the largest that the instant may govern.
+    largest: the largest stress, Pa, 0 where it is not known.
     """
 
     instant: int
@@ -52,34 +58,42 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Compared:
-    """Of a case, at the instants of the surface's largest stress and of the sections'."""
+    """The comparisons of a case at the instants of the largest stress of the surface and of the
+    sections.
+    """
 
     surface: ResolutionComparison
     section: ResolutionComparison
 
     @property
     def row(self) -> ResolutionComparison:
-        """That of the larger one, of which the joint was varied."""
+        """The comparison at the place with the larger stress, for which the joint was varied."""
         return max(self.surface, self.section, key=lambda x: (bool(x.over), x.stress.row))
 
-    def fine(self, material: Material, asked: Requirement) -> bool:
-        """Whether finer cells would not help: they take little of the tolerance, or the required
-        factor is decided whatever they do, for what lies beneath the contact, too.
+    def fine(self, material: Material, requirement: Requirement) -> bool:
+        """Return whether finer cells would not help.
+
+        They would not if the error of the cells is a small part of the tolerance, or if the
+        required factor is decided whatever the cells, also for the stress beneath the contact.
         """
+        # The error counts on the row, the larger of surface and section: the place that governs
+        # now, or the other one if the error of its cells lifts it above.
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
         cells = {name: float(getattr(x.cells, name)) for x, name in both}
         largest = max(stress.values()) or 1.0
-        own = cells[max(stress, key=lambda name: stress[name])]
-        most = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
-        off = max(own, most)
-        if off <= CELL_ERROR_SHARE * asked.tolerance:
+        row_error = cells[max(stress, key=lambda name: stress[name])]
+        worst_growth = max(stress[name] * (1.0 + cells[name]) for name in stress) / largest - 1.0
+        error = max(row_error, worst_growth)
+        if error <= CELL_ERROR_SHARE * requirement.tolerance:
             return True
-        low, high = largest / (1.0 + off), largest * (1.0 + off)
-        below, error = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
-        return decided(asked, material, low, high) and (
-            decided(asked, material, below / error, below * error)
-            or decided(asked, material, low, math.inf)
+        # Otherwise a decision is enough: for the row, and for the stress beneath contact, unless
+        # the row alone already exceeds the limit.
+        low, high = largest / (1.0 + error), largest * (1.0 + error)
+        below, beneath_factor = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
+        return decided(requirement, material, low, high) and (
+            decided(requirement, material, below / beneath_factor, below * beneath_factor)
+            or decided(requirement, material, low, math.inf)
         )
 
     def near(
@@ -88,16 +102,18 @@ class Compared:
         case: PinLoads,
         anew: Callable[[JointContact], ResolutionComparison],
     ) -> Compared:
-        """With the surface at another instant, if that is not near."""
+        """The comparisons with the surface's made anew at another instant, unless that is near."""
         if self.surface.is_at(contact.loads.links, case):
             return self
         return replace(self, surface=anew(contact))
 
 
 class PressedCases:
-    """The pressures of all cases at any time, each found once; those made of the same patterns act
-    on one mesh. instants: by case, those of which the patterns are made; failed: why a case has no
-    contact.
+    """The pressures of all cases at any time, each solved once.
+
+    Pressures made of the same patterns act on one mesh.
+    instants: by case, the loads of which the patterns are made.
+    failed: the reason why a case has no contact.
     """
 
     def __init__(
@@ -115,13 +131,15 @@ class PressedCases:
         self._besides: dict[str, Floats] = {}
         self.patterns: PressureModes | None = None
         self.sections: dict[str, SectionField] = {}
+        # Contact of all cases comes first: patterns and sections are made from all of it, and a
+        # case without contact must not stop the others.
         for case in cases:
             instants = _instants(case, between.get(case.case))
             try:
                 self._at(instants)
                 if case.case in besides:
-                    found = model.pressed(besides[case.case])
-                    self._besides[case.case] = model.waves(found)
+                    states = model.pressed(besides[case.case])
+                    self._besides[case.case] = model.waves(states)
             except SolveError as error:
                 self.failed[case.case] = str(error)
                 continue
@@ -129,30 +147,36 @@ class PressedCases:
             rings = [self.on_rings(instants)]
             self.sections[case.case] = SectionField(model.pin, model.material, (), rings)
 
-    def near(self, asked: Requirement) -> dict[str, Candidates]:
-        """By the stress of all instants, roughly, on the first mesh."""
-        if all(len(links) == 1 for links in self.instants.values()):
+    def near(self, requirement: Requirement) -> dict[str, Candidates]:
+        """The candidates of each case, by the approximate stress of all instants on the first
+        mesh.
+        """
+        if all(len(links) == 1 for links in self.instants.values()):  # nothing to choose from
             return {case: Candidates(0, np.ones(1, dtype=bool)) for case in self.instants}
+        # Rough patterns of all instants, since it is not known yet which may govern.
         self.follow(
             {case: Candidates(0, np.zeros(len(x), bool)) for case, x in self.instants.items()}
         )
         loads = [self.press(links) for links in self.instants.values()]
         model, out = self.model, {}
-        own = [singularities_of(model.pin, model.material, (), (x,), asked.distance) for x in loads]
-        both = tuple(dict.fromkeys(zone for zones in own for zone in zones))
+        zones_by_case = [
+            singularities_of(model.pin, model.material, (), (x,), requirement.distance)
+            for x in loads
+        ]
+        both = tuple(dict.fromkeys(zone for zones in zones_by_case for zone in zones))
         problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
         section = harmonic_solution(problem, 0, 1.0)
-        for x, zones in zip(loads, own, strict=True):
+        for x, zones in zip(loads, zones_by_case, strict=True):
             answer = HarmonicField(section, zones)
             largest, instant = answer.largest(x)
             may = answer.maxima(x, CANDIDATE_FRACTION * largest) > CANDIDATE_FRACTION * largest
-            if self.cut:  # any may govern where it is cut
+            if self.cut:  # the uncut pin does not show which instant governs at a cut
                 may[:] = True
             out[x.case] = Candidates(instant, may, largest)
         return out
 
     def follow(self, near: Mapping[str, Candidates]) -> None:
-        """Make the patterns: good ones of what may govern, rough ones of other instants."""
+        """Make the patterns: accurate ones for instants that may govern, rough ones for others."""
         parts = [(waves, MODE_TOLERANCE) for waves in self._besides.values()]
         for case, links in self.instants.items():
             waves, may = self.model.waves(self._at(links)), near[case].may
@@ -161,55 +185,64 @@ class PressedCases:
             self.patterns = self.model.patterns(parts, self.patterns)
 
     def _at(self, links: PinLoads) -> list[ContactState]:
-        """Contact at the loads' instants."""
+        """The contact at the loads' instants."""
         if links.times is None:
             return self.model.pressed(links)
+        # Only new times are solved, all at once: neighbours are the start of each other.
         keys = [(links.case, t) for t in links.times.tolist()]
         new = [i for i, key in enumerate(keys) if key not in self._known]
         if new:
-            found = self.model.pressed(links.at(np.array(new)))
-            self._known |= {keys[i]: x for i, x in zip(new, found, strict=True)}
+            states = self.model.pressed(links.at(np.array(new)))
+            self._known |= {keys[i]: x for i, x in zip(new, states, strict=True)}
         return [self._known[key] for key in keys]
 
     def press(self, links: PinLoads) -> PressureLoads:
-        """What presses on the pin under loads of its links."""
+        """The pressures on the pin under loads of its links."""
         assert self.patterns is not None
-        found = self._at(links)
-        return self.patterns.loads(self.model.waves(found), links, self.model.arcs(found))
+        states = self._at(links)
+        return self.patterns.loads(self.model.waves(states), links, self.model.arcs(states))
 
     def on_rings(self, links: PinLoads) -> PinLoads:
-        """The resultants of what presses on the rings under loads of the links."""
-        found = self._at(links)
-        return resultants(self.model.pin, self.model.rings, self.model.waves(found), links)
+        """The resultants of the pressures on the rings under loads of the links."""
+        states = self._at(links)
+        return resultants(self.model.pin, self.model.rings, self.model.waves(states), links)
 
     def joined(self, links: PinLoads, instant: int) -> JointContact:
         here = links.at(np.array([instant]))
         return self.model.joined(self._at(here), self.press(here))
 
-    def compared(self, near: Mapping[str, Candidates], asked: Requirement) -> dict[str, Compared]:
-        """By case, at the instants of the largest stress of the surface on the first mesh and of
-        sections.
+    def compared(
+        self, near: Mapping[str, Candidates], requirement: Requirement
+    ) -> dict[str, Compared]:
+        """The comparisons of each case, at the instants of the largest stress of the surface on the
+        first mesh and of sections.
         """
         at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
             stress, instant = self.sections[case].largest(self.on_rings(links))
+            # Surface and section may peak at one instant, which is then compared once. The joint is
+            # varied where the row is: at the instant of the larger stress.
             both = near[case].instant, instant
-            each = dict.fromkeys(both)
-            first, second = (len(at) + list(each).index(t) for t in both)
+            distinct = dict.fromkeys(both)
+            first, second = (len(at) + list(distinct).index(t) for t in both)
             which[case] = first, second
-            at += [self.joined(links, t) for t in each]
+            at += [self.joined(links, t) for t in distinct]
             governs = both[stress > near[case].largest]
-            vary += [t == governs for t in each]
-        found = compare(self.model, at, asked, self.patterns, vary)
-        return {case: Compared(found[a], found[b]) for case, (a, b) in which.items()}
+            vary += [t == governs for t in distinct]
+        comparisons = compare(self.model, at, requirement, self.patterns, vary)
+        return {case: Compared(comparisons[a], comparisons[b]) for case, (a, b) in which.items()}
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
-    """Those of a case; of a motion those between which its loads go straight, and those amid each
-    two. More are added where the maximum may be between them (fea.core.over_time).
+    """The instants of a case to begin with.
+
+    A motion has those between which its loads are linear, and the middles between each two. More
+    are added where the maximum may lie between them (fea.core.over_time).
     """
     if between is None or case.times is None or len(case) < 2:
         return case
+    # Contact is not linear in the loads even where these are linear in time, so that middles are
+    # needed, too.
     case = case.at(knots(case, CHORD_TOLERANCE, MIN_INTERVALS))
     assert case.times is not None
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))

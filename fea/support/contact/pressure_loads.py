@@ -23,8 +23,10 @@ ROUGH_MODE_TOLERANCE = 3e-2  # the same for instants that cannot govern
 
 @dataclass(frozen=True)
 class PressureLoads(PinLoads):
-    """PinLoads on rings, of which `acting` has what acts: (T, 2) of every unit load, by phase.
-    forces: resultants of the pressures on the rings, and the shares of forces along the axis.
+    """Loads on the rings of a pin, made of patterns of pressure.
+
+    acting: the amounts (T, 2) of every unit load, by phase.
+    forces: resultants of the pressures on the rings, and the shares of axial forces.
     of_links: the loads of the links that the pressures carry, at the same instants.
     """
 
@@ -33,19 +35,19 @@ class PressureLoads(PinLoads):
 
     @property
     def links(self) -> PinLoads:
-        """What the links do to the pin."""
+        """The loads of the links on the pin."""
         assert self.of_links is not None
         return self.of_links
 
     @property
     def on_rings(self) -> PinLoads:
-        """The resultants on the rings, which are what sections feel."""
+        """The resultants on the rings, from which section forces follow."""
         return PinLoads(
             self.case, self.surfaces, self.forces, self.moments, body=self.body, times=self.times
         )
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """How much of each unit load acts, (T, 2) by phase."""
+        """The amount of each unit load, (T, 2) by phase."""
         return self.acting
 
     def at(self, instants: NDArray[np.int64]) -> PressureLoads:
@@ -56,7 +58,7 @@ class PressureLoads(PinLoads):
         return replace(some, acting=acting, of_links=self.links.at(instants))
 
     def merged(self, other: PinLoads) -> PressureLoads:
-        """With the instants of other loads of the same motion, in the order of time."""
+        """The loads with the instants of other loads of the same motion, in the order of time."""
         assert isinstance(other, PressureLoads)
         assert self.times is not None
         assert other.times is not None
@@ -79,12 +81,15 @@ class PressureModes:
     def loads(
         self, waves: Floats, links: PinLoads, pressed: PressedArcs | None = None
     ) -> PressureLoads:
-        """Of pressures on the rings with harmonics (N + 1, T, R, 2) Pa, made of these patterns, and
-        of what else is in the loads of the links, whose surfaces are the bands that the rings cut:
-        forces along the axis and torques, even over a band's rings, and the body force. pressed:
-        where the pressures are.
+        """The loads of pressures on the rings, made of these patterns, and of the links' other
+        loads.
+
+        waves: harmonics of the pressures, (N + 1, T, R, 2) Pa.
+        links: their surfaces are the bands that the rings cut; axial forces and torques, even over
+        a band's rings, and the body force are taken from them.
+        pressed: where the pressures act.
         """
-        made = resultants(self.pin, self.rings, waves, links)
+        ring_loads = resultants(self.pin, self.rings, waves, links)
         acting = dict(others_along(self.pin, self.rings, links).coefficients())
         for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
             amounts = np.einsum("trp,kr->ktp", wave, patterns)
@@ -94,8 +99,8 @@ class PressureModes:
         return PressureLoads(
             links.case,
             self.rings,
-            made.forces,
-            made.moments,
+            ring_loads.forces,
+            ring_loads.moments,
             body=links.body,
             times=links.times,
             acting=acting,
@@ -104,7 +109,7 @@ class PressureModes:
         )
 
     def left_out(self, waves: Floats) -> float:
-        """Of harmonics (N + 1, T, R, 2), the largest part that these patterns miss, relative."""
+        """The largest part, relative, of harmonics (N + 1, T, R, 2) that these patterns miss."""
         largest, missed = float(np.abs(waves).max(initial=0.0)), 0.0
         for wave, patterns in zip(waves, self.by_harmonic, strict=True):
             rest = wave - (wave.swapaxes(1, 2) @ patterns.T @ patterns).swapaxes(1, 2)
@@ -113,12 +118,14 @@ class PressureModes:
 
 
 def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads) -> PinLoads:
-    """Of pressures with harmonics (N + 1, T, R, 2) Pa, and what links do along the axis."""
-    made = others_along(pin, rings, links)
+    """The resultants of pressures with harmonics (N + 1, T, R, 2) Pa, and the axial loads of the
+    links.
+    """
+    axial = others_along(pin, rings, links)
     area = np.array([pin.band(name).area for name in rings])
     if len(waves) > 1:
-        made.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
-    return made
+        axial.forces[:, :, :2] = -0.5 * waves[1] * area[:, None]
+    return axial
 
 
 def pressure_modes(
@@ -127,26 +134,28 @@ def pressure_modes(
     parts: Sequence[tuple[Floats, float]],
     known: PressureModes | None = None,
 ) -> PressureModes:
-    """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, as cases:
-    each with what is negligible, of the largest amplitude of the part. known: patterns that are
-    there already; they come first.
+    """The patterns that reproduce harmonics of pressures (N + 1, T, R, 2) Pa in some parts, such as
+    cases.
+
+    parts: each with the fraction of its largest amplitude that is negligible.
+    known: existing patterns, which come first.
     """
     scaled = [x / (negligible * (np.abs(x).max(initial=0.0) or 1.0)) for x, negligible in parts]
     waves = np.concatenate(scaled, axis=1)
     before = [np.zeros((0, len(rings)))] * len(waves) if known is None else known.by_harmonic
-    found = []
+    modes = []
     for wave, old in zip(waves, before, strict=True):
         amplitude = wave.transpose(0, 2, 1).reshape(-1, len(rings))
         for _ in range(2):  # once more for round-off
             amplitude = amplitude - amplitude @ old.T @ old
         instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
         most = np.abs(instants * size).max(axis=0)
-        found.append(np.concatenate([old, patterns[most > 1.0]]))
-    return PressureModes(pin, rings, tuple(found))
+        modes.append(np.concatenate([old, patterns[most > 1.0]]))
+    return PressureModes(pin, rings, tuple(modes))
 
 
 def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:
-    """Loads made of the same patterns as instants of one case, without times."""
+    """The loads, made of the same patterns, as instants of one case without times."""
     acting = _after_each_other(loads)
     forces, moments, body = (
         np.concatenate([getattr(one, name) for one in loads])
@@ -170,14 +179,15 @@ def _after_each_other(loads: Sequence[PressureLoads]) -> dict[UnitLoad, Floats]:
 
 
 def amplitudes(pressure: Floats, highest: int, angle: float = 0.0) -> Floats:
-    """Of harmonics 0 to `highest` of pressures (R, M), even on each sector, the first at an angle
-    (rad) from the x axis: (N + 1, R, 2), of cos and sin.
+    """The harmonics 0 to `highest` of pressures (R, M), (N + 1, R, 2), of cos and sin.
+
+    Pressure is even on each sector, the middle of the first at an angle, rad, from the x axis.
     """
     return np.asarray(pressure @ waves_of_sectors(pressure.shape[1], highest, angle))
 
 
 def waves_of_sectors(sectors: int, highest: int, angle: float = 0.0) -> Floats:
-    """What a pressure of one on each sector adds to these, (N + 1, M, 2)."""
+    """The harmonics of a unit pressure on each sector, (N + 1, M, 2)."""
     n = np.arange(highest + 1)
     factor = np.sinc(n / sectors) * np.where(n > 0, 2.0, 1.0) / sectors
     turns = np.outer(n, 2.0 * np.pi * np.arange(sectors) / sectors + angle)
@@ -185,7 +195,7 @@ def waves_of_sectors(sectors: int, highest: int, angle: float = 0.0) -> Floats:
 
 
 def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
-    """What the links do along the axis and about it, and the body force, on the rings."""
+    """The axial forces and torques of the links, and the body force, on the rings."""
     forces = np.zeros((len(links), len(rings), 3))
     moments = np.zeros_like(forces)
     share = ring_shares(pin, rings, links.surfaces)
@@ -195,7 +205,7 @@ def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
 
 
 def ring_shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
-    """Of each band's load what each ring takes by its length, (C, R)."""
-    own = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
-    part = own * np.array([pin.band(name).length for name in rings])
+    """The share of each band's load that each ring takes by its length, (C, R)."""
+    on_band = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
+    part = on_band * np.array([pin.band(name).length for name in rings])
     return np.asarray(part / part.sum(axis=1, keepdims=True))

@@ -48,20 +48,23 @@ from pinbase.arrays import Ints
 EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
 LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
 LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
-COUPLED_HARMONICS_PER_SECTOR = (
-    4  # times the sectors: harmonics in which neighbouring rings feel each other
-)
+# Times the sectors: harmonics in which neighbouring rings feel each other
+COUPLED_HARMONICS_PER_SECTOR = 4
 Alike = tuple[float, Material, Bushing | None, bytes, Material]
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely contact is resolved. rings: of a band with sharp edges (lugs.rings); sectors:
-    round it; highest: harmonic of elasticity that is computed; across: elements over the pin's
-    diameter where flexibilities are found; beside: of an edge's radius, the length of the rings
-    where rounding begins, if the peak of pressure there is to be resolved.
+    """The resolution of contact.
 
-    The usual ones give the moment and the stress at mid-span to 0.3 %
+    rings: of a band with sharp edges (lugs.rings).
+    sectors: over its circumference.
+    highest: harmonic of elasticity that is computed.
+    across: elements over the pin's diameter where flexibilities are found.
+    beside: length of the rings where rounding begins, of an edge's radius, if the peak of pressure
+    there is to be resolved.
+
+    The usual values give the moment and the stress at mid-span to 0.3 %
     (benchmarks/joints/joint.py). They do not give the peak of pressure at rounded edges: contact
     reaches only a few hundredths of the radius into the rounding, and the peak to 3 % takes rings
     of a tenth of that: `beside` 0.004.
@@ -76,8 +79,12 @@ class Resolution:
 
 @dataclass(frozen=True)
 class JointContact:
-    """A case of a pin in its lugs. pin: its bands cut into rings; contact: by instant; loads: what
-    the rings do to it; mass: of its segments, kg/m.
+    """The contact of a pin in its lugs in one case.
+
+    pin: with its bands cut into rings.
+    contact: by instant.
+    loads: of the rings on the pin.
+    mass: of its segments, kg/m.
     """
 
     pin: Pin
@@ -94,8 +101,10 @@ class JointContact:
         return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
 
     def bending_moment(self, z: Floats) -> Floats:
-        """By contact and body force, of the part of the pin before z (Z,) m: (T, Z, 2) N m, the
-        integral of the shear along x and along y.
+        """The bending moment by contact and body force of the part of the pin before z (Z,) m, (T,
+        Z, 2) N m.
+
+        It is the integral of the shear along x and along y.
         """
         return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
@@ -103,7 +112,7 @@ class JointContact:
     def contact_angle(self) -> Floats:
         """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
         sector = self.angles[1] - self.angles[0]
-        cells = np.stack([(found.pressure > 0.0).sum(axis=1) for found in self.contact])
+        cells = np.stack([(state.pressure > 0.0).sum(axis=1) for state in self.contact])
         half = 0.5 * sector * cells
         return np.stack(
             [half[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
@@ -111,16 +120,21 @@ class JointContact:
 
     @property
     def largest_pressure(self) -> Floats:
-        """By band, (T, B) Pa, on any cell: at edges a matter of how fine these are."""
-        each = np.stack([found.pressure.max(axis=1) for found in self.contact])
+        """The largest pressure on any cell of each band, (T, B) Pa.
+
+        At edges it depends on the size of the cells.
+        """
+        by_ring = np.stack([state.pressure.max(axis=1) for state in self.contact])
         return np.stack(
-            [each[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
+            [by_ring[:, self.bands.band == b].max(axis=1) for b in range(len(self.lugs))], axis=1
         )
 
 
 class ContactModel:
-    """A pin in its lugs, with the flexibilities that serve all cases and clearances. first: its
-    first mesh for stress. on_pin, on_lugs: the meshes of the flexibilities; of equal lugs one.
+    """A pin in its lugs, with the flexibilities that serve all cases and clearances.
+
+    first: its first mesh for stress.
+    on_pin, on_lugs: the meshes of the flexibilities, one for equal lugs.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
@@ -140,8 +154,8 @@ class ContactModel:
             self.on_lugs[key] = lug_rings(self.eye(lug, ends), lug, cells.across)
             low = self.on_lugs[key].flexibility(cells.highest)
             wavy = self.wavy_of(lug, ends)
-            for own, *_ in equal:
-                self.of_lugs[:, own, own], self.wavy[:, :, own, own] = low, wavy
+            for rows, *_ in equal:
+                self.of_lugs[:, rows, rows], self.wavy[:, :, rows, rows] = low, wavy
 
     def _shape(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> None:
         cells, before = self.cells, self.__dict__.get("_cut")
@@ -164,9 +178,9 @@ class ContactModel:
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
 
     def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> ContactModel:
-        """Another pin in other lugs on such cells, of which no flexibility is found.
+        """The model of another pin in other lugs on such cells, without computing flexibilities.
 
-        Raises: ArgumentError as for any.
+        Raises: ArgumentError for lugs that do not fit the pin.
         """
         other = copy.copy(self)
         for known in ("contact", "flexibility", "bands", "on_shaft"):
@@ -180,45 +194,50 @@ class ContactModel:
         return np.arange(self.cells.highest + 1, COUPLED_HARMONICS_PER_SECTOR * self.cells.sectors)
 
     def eye(self, lug: Lug, ends: Floats) -> Pin:
-        """Of a lug, with its rings."""
+        """The eye of a lug, with its rings."""
         return annulus(self.whole, lug.connection, lug.outer_diameter, ends)
 
     def wavy_of(self, lug: Lug, ends: Floats) -> Floats:
-        """fea.support.contact.flexibility.wavy_flexibility of a lug's rings."""
+        """The flexibility of a lug's rings by fea.support.contact.flexibility.wavy_flexibility."""
         radius = self.whole.band(lug.connection).radius
         return wavy_flexibility(lug, self.material, radius, ends, self.high)
 
     def likeness(self, lug: Lug, ends: Floats) -> Alike:
-        """What the flexibility of a lug's rings, and of the pin against them, depends on."""
+        """The properties on which the flexibility of a lug's rings, and of the pin against them,
+        depends.
+        """
         bore = 2.0 * self.whole.band(lug.connection).radius
         size = np.round(np.append(ends, bore) / lug.outer_diameter, LUG_SIZE_DIGITS)
         return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
 
     def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
-        """The lugs, as `by_lug`, by this."""
-        found: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
-        for own, lug, ends in self.by_lug():
-            found.setdefault(self.likeness(lug, ends), []).append((own, lug, ends))
-        return found
+        """The lugs, as `by_lug` has them, grouped by equal flexibility."""
+        groups: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
+        for rows, lug, ends in self.by_lug():
+            groups.setdefault(self.likeness(lug, ends), []).append((rows, lug, ends))
+        return groups
 
     def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
-        """Which rings are its, each lug, and their ends along its band."""
+        """The rows of each lug's rings, the lug, and the rings' ends along its band."""
         first = 0
         for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
-            own = slice(first, first + len(ends) - 1)
-            yield own, lug, ends
-            first = own.stop
+            rows = slice(first, first + len(ends) - 1)
+            yield rows, lug, ends
+            first = rows.stop
 
     @cached_property
     def flexibility(self) -> Floats:
-        """Of pin and lugs on all rings, by harmonic, m/Pa; beyond `highest` of neighbouring rings
-        alone, as half-spaces.
+        """The flexibility of pin and lugs on all rings, by harmonic, m/Pa.
+
+        Beyond `highest` it couples neighbouring rings alone, as half-spaces.
         """
         return np.concatenate([self.of_pin + self.of_lugs, self.wavy.sum(axis=0)])
 
     def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> ContactModel:
-        """The same pin in lugs of other clearance, edge radius and tilt, each so many times softer:
-        with the flexibilities at hand.
+        """The model of the same pin in lugs of other clearance, edge radius and tilt, with the
+        flexibilities at hand.
+
+        softness: how many times softer each lug is.
         """
         softness = softness or (1.0,) * len(lugs)
         other = copy.copy(self)
@@ -237,18 +256,18 @@ class ContactModel:
 
     @property
     def _rings_of_each(self) -> list[int]:
-        """How many rings each lug has."""
+        """The number of rings of each lug."""
         return [len(ends) - 1 for ends in self.ends.values()]
 
     @cached_property
     def contact(self) -> ContactProblem:
-        """Ready for any loads."""
+        """The contact problem, ready for any loads."""
         tilt = [lug.tilt for lug in self.lugs]
         return ContactProblem(self.bands, self.flexibility, self.tail, tilt, self.cells.sectors)
 
     @cached_property
     def bands(self) -> Bands:
-        """With their rings."""
+        """The bands with their rings."""
         bands = [self.pin.band(name) for name in self.rings]
         z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
         radius = np.array([b.radius for b in bands])
@@ -258,44 +277,48 @@ class ContactModel:
 
     @property
     def gap(self) -> Floats:
-        """Clearance and rounding of the edges by ring, on the radius, m."""
+        """The clearance and the rounding of the edges by ring, on the radius, m."""
         return np.concatenate([lug.gap(self.ends[lug.connection]) for lug in self.lugs])
 
     @property
     def tail(self) -> Floats:
         """n u_n / p_n of pin and lug together for high harmonics, m/Pa, by ring."""
-        each = []
+        by_lug = []
         for _, lug, ends in self.by_lug():
             r = self.whole.band(lug.connection).radius
             both = half_plane(self.material, r) + half_plane(lug.bearing, r)
-            each.append(np.full(len(ends) - 1, both))
-        return np.concatenate(each)
+            by_lug.append(np.full(len(ends) - 1, both))
+        return np.concatenate(by_lug)
 
     def solve(self, loads: PinLoads) -> JointContact:
-        """All instants of a case. loads: of links on all the lugs' bands or on some.
+        """Solve all instants of a case.
+
+        loads: of links on all the lugs' bands or on some.
 
         Raises: SolveError where contact does not settle, or forces are not in balance.
         """
-        found = self.pressed(loads)
-        waves = self.waves(found)
+        states = self.pressed(loads)
+        waves = self.waves(states)
         patterns = self.patterns([(waves, MODE_TOLERANCE)])
-        return self.joined(found, patterns.loads(waves, loads, self.arcs(found)))
+        return self.joined(states, patterns.loads(waves, loads, self.arcs(states)))
 
-    def waves(self, found: Sequence[ContactState]) -> Floats:
+    def waves(self, states: Sequence[ContactState]) -> Floats:
         """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
-        return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in found], 1)
+        return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in states], 1)
 
     def patterns(
         self, parts: Sequence[tuple[Floats, float]], known: PressureModes | None = None
     ) -> PressureModes:
-        """Those of which harmonics of pressures (N + 1, T, R, 2) Pa are made, in some parts, each
-        with what is negligible; the known ones first.
+        """The patterns that reproduce harmonics of pressures (N + 1, T, R, 2) Pa in some parts.
+
+        parts: each with the fraction that is negligible.
+        known: existing patterns, which come first.
         """
         return pressure_modes(self.pin, self.rings, parts, known)
 
     @cached_property
     def on_shaft(self) -> Rings:
-        """Where the rings are."""
+        """The places of the rings on the pin."""
         bands, edge, exponent = self.bands, [], []
         for _, lug, ends in self.by_lug():
             middle, length = 0.5 * (ends[1:] + ends[:-1]), ends[-1]
@@ -307,22 +330,27 @@ class ContactModel:
             np.concatenate(edge), np.concatenate(exponent),
         )  # fmt: skip
 
-    def arcs(self, found: Sequence[ContactState], rings: Rings | None = None) -> PressedArcs:
-        """Where contact presses at some instants. rings: of the cells, where they are others."""
-        cells, angles = [x.pressure > 0.0 for x in found], [x.angle for x in found]
+    def arcs(self, states: Sequence[ContactState], rings: Rings | None = None) -> PressedArcs:
+        """The arcs in which contact presses at some instants.
+
+        rings: of the cells, where they are not the model's.
+        """
+        cells, angles = [x.pressure > 0.0 for x in states], [x.angle for x in states]
         return PressedArcs.of(rings or self.on_shaft, cells, angles)
 
-    def joined(self, found: Sequence[ContactState], loads: PressureLoads) -> JointContact:
-        """Contact at the instants of some loads, with them."""
+    def joined(self, states: Sequence[ContactState], loads: PressureLoads) -> JointContact:
+        """The contact at the instants of some loads, together with these."""
         contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
         cut, angles = contact.bands, contact.angles
-        return JointContact(self.pin, self.lugs, cut, angles, tuple(found), loads, mass)
+        return JointContact(self.pin, self.lugs, cut, angles, tuple(states), loads, mass)
 
     def pressed(self, loads: PinLoads, problem: ContactProblem | None = None) -> list[ContactState]:
-        """Contact at each of their instants, on cells that turn with the largest force of a link:
-        what turns as a whole is one solution. Each starts from that under the most similar loads;
-        without any gap to close, loads in proportion are one solution, too. problem: with other
-        cells than this model's.
+        """The contact at each instant of the loads, on cells that turn with the largest force of a
+        link.
+
+        Loads that differ by a rotation share one solution. Each starts from that under the most
+        similar loads; without any initial gap, loads in proportion share one solution, too.
+        problem: with other cells than this model's.
 
         Raises: SolveError as `solve`.
         """
@@ -336,19 +364,19 @@ class ContactModel:
         scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
         arm = couples / self.pin.length
         like = np.concatenate([forces.reshape(len(forces), -1), arm], axis=1) / scale[:, None]
-        found: list[ContactState] = []
+        states: list[ContactState] = []
         for t, (force, couple) in enumerate(zip(forces, couples.tolist(), strict=True)):
             apart = np.abs(like[:t] - like[t]).max(axis=1, initial=0.0)
             near = int(apart.argmin()) if t else None
             if near is not None and apart[near] <= EQUAL_LOAD_TOLERANCE:
-                found.append(found[near].times(float(scale[t] / scale[near])))
+                states.append(states[near].times(float(scale[t] / scale[near])))
                 continue
-            start = None if near is None else found[near].active
-            found.append(contact.solve(force, (couple[0], couple[1]), start))
-        return [x.turned(angle) for x, angle in zip(found, angles, strict=True)]
+            start = None if near is None else states[near].active
+            states.append(contact.solve(force, (couple[0], couple[1]), start))
+        return [x.turned(angle) for x, angle in zip(states, angles, strict=True)]
 
     def forces(self, loads: PinLoads) -> Floats:
-        """Of the links along x and y, last of the structure, (T, L, 2) N."""
+        """The forces of the links along x and y, last of the structure, (T, L, 2) N."""
         return link_forces(self.given, self._mass, loads, self.on_structure)
 
     @property
@@ -357,7 +385,7 @@ class ContactModel:
         return len(self.lugs) > len(self.given.connections)
 
     def couples(self, loads: PinLoads) -> Floats:
-        """About the middle of the bands along x and y, (T, 2) N m, of the body force."""
+        """The couples of the body force about the middle of the bands along x and y, (T, 2) N m."""
         z = self.bands.z
         middle = 0.5 * (z.min() + z.max())
         arm = centre_of_volume(self.whole) - middle
@@ -370,7 +398,7 @@ class ContactModel:
 
 
 def _directions(forces: Floats) -> list[float]:
-    """Angles (T) in rad of the largest of forces (T, L, 2), the first of equal ones."""
+    """The angles (T,), rad, of the largest of forces (T, L, 2), the first of equal ones."""
     size = np.linalg.norm(forces, axis=2)
     first = (size >= LARGEST_FORCE_SHARE * size.max(axis=1, keepdims=True)).argmax(axis=1)
     x, y = forces[np.arange(len(forces)), first].T

@@ -1,5 +1,5 @@
-"""By how much a pin's stress changes with its joint: with the cells of contact, and with what is
-seldom known of a joint, its clearance and how stiff its lugs are.
+"""The change of a pin's stress with its joint: with the cells of contact, with clearance, and with
+the stiffness of lugs.
 
 Contact is solved again at the governing instants with the flexibilities at hand, and all pressures
 act on one mesh, the first: its error is in all maxima alike, so that their ratios are compared.
@@ -28,21 +28,23 @@ from fea.support.lugs.changes import joint_variations
 from fea.support.lugs.rings import USUAL_RING_COUNT
 from fea.support.records import JointRange, Variation
 
-CELL_ERROR_SHARE = 0.6  # of the tolerance: what the cells may take
-# Orders of the error in the length of cells, on the surface and beneath, and in sections: what is
-# off is 0.52, 0.66 and 0.25 at most of the change by cells twice as large, where that is noticed
-# (benchmarks/joints/cells.py).
+# Of the tolerance: the part that the cells may use. Chosen by judgement; the rest is for meshes and
+# instants (MIN_TOLERANCE_SHARE of fea.core.requirement).
+CELL_ERROR_SHARE = 0.6
+# Orders of the error in the length of cells, on the surface and beneath, and in sections. They are
+# tuned on the random pins of benchmarks/joints/cells.py: the error there is 0.52, 0.66 and 0.25 at
+# most of the change by cells twice as large, where that is noticed.
 SURFACE_CELL_ORDER, SECTION_CELL_ORDER = 1.4, 2.0
-# Relative, of the usual number of rings, and less of more: by so much the stress beside the edges
-# of lugs goes up and down with where rings happen to end, whatever two sets of cells tell.
+# Relative, of the usual number of rings, and less of more: the stress beside the edges of lugs
+# scatters by this much with where rings happen to end, whatever two sets of cells show. With it the
+# estimate covers the error of all 24 pins of benchmarks/joints/cells.py (docs/measured/cells.md).
 RING_SCATTER = 0.01
-MIN_CELL_ERROR = (
-    0.06  # at least, of cells larger than the usual ones: two such can agree by chance (pin D
-)
-# of the landing gear to 2 %, while both are 4 to 5 % off)
-VARIATION_MODE_TOLERANCE = (
-    1e-2  # of the largest amplitude: what a pattern must add to that of a changed joint
-)
+# Relative, the least error of cells larger than the usual ones. Two such sets can agree by chance:
+# on pin D of the landing gear to 2 %, while both are 4 to 5 % off.
+MIN_CELL_ERROR = 0.06
+# Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
+# judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
+VARIATION_MODE_TOLERANCE = 1e-2
 
 
 @dataclass(frozen=True)
@@ -61,10 +63,12 @@ class AtPlaces:
 
 @dataclass(frozen=True)
 class ResolutionComparison:
-    """At one instant, on the first mesh: stress there, and by how much, relative, it may differ for
-    the cells. links: the loads. over: what is changed of the joint, the larger of surface and
-    section and what lies beneath contact relative to those of the joint as given; left_out: what
-    could not be, and why.
+    """The stress at one instant on the first mesh, and its relative error from the cells.
+
+    links: the loads.
+    over: variations of the joint, with the larger of surface and section, and the stress beneath
+    contact, relative to those of the joint as given.
+    left_out: the variations that could not be solved, and why.
     """
 
     stress: AtPlaces
@@ -74,7 +78,7 @@ class ResolutionComparison:
     left_out: str = ""
 
     def range(self, largest: float, below: float = 0.0) -> JointRange:
-        """Over the joint, of a maximum and of what lies beneath contact, Pa."""
+        """The range over the joint of a maximum and of the stress beneath contact, Pa."""
         over = tuple(
             replace(x, max_von_mises=largest * x.max_von_mises, beneath=below * (x.beneath or 0.0))
             for x in self.over
@@ -83,7 +87,9 @@ class ResolutionComparison:
         return JointRange((min(ends), max(ends)), over)
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
-        """Whether an instant is this one, or no farther from it than two of the case's are."""
+        """Return whether an instant is this one, or no farther from it than two of the case's are
+        apart.
+        """
         if links.times is None or self.links.times is None or case.times is None:
             return np.array_equal(links.forces, self.links.forces)
         apart = float(np.abs(links.times - self.links.times)[0])
@@ -92,41 +98,45 @@ class ResolutionComparison:
 
 @dataclass(frozen=True)
 class _Joint:
-    """Contact at an instant with something changed: the harmonics of its pressures, and the
+    """The contact at an instant with something changed: the harmonics of its pressures, and the
     cells.
     """
 
     waves: Floats
-    found: list[ContactState]
+    states: list[ContactState]
 
 
 def compare(
     model: ContactModel,
     at: Sequence[JointContact],
-    asked: Requirement,
+    requirement: Requirement,
     known: PressureModes | None = None,
     vary: Sequence[bool] | None = None,
 ) -> tuple[ResolutionComparison, ...]:
-    """Joints in contact, each at one instant. known: patterns of the pressures on them; vary: by
-    instant, whether joints with something changed are looked at, by default all.
+    """Compare joints in contact, each at one instant, with coarser cells and with a varied joint.
+
+    known: patterns of the pressures on them.
+    vary: by instant, whether the joint is varied, by default always.
     """
     if not at:
         return ()
     vary = (True,) * len(at) if vary is None else vary
-    few = (
-        model.cells.rings < USUAL_RING_COUNT
-    )  # twice as large cells are too large to tell changes apart
+    # Varied joints are solved on cells twice as large, which cost less, and compared with the joint
+    # as given on the same cells. Where the model's own cells are already large, they are used
+    # instead.
+    few = model.cells.rings < USUAL_RING_COUNT
     exact = _on_both_cells(model, at)
     over, varied, missing = _varied(model, at, few, vary)
     parts = [(one.waves, MODE_TOLERANCE) for both in exact for one in both]
     parts += [(one.waves, VARIATION_MODE_TOLERANCE) for one in itertools.chain(*varied)]
+    # One set of patterns for all, so that all stress comes from one solution on the first mesh.
     patterns = model.patterns(parts, known)
     out = []
     every = [
         [_loads(model, patterns, one, contact) for one in (*both, *others)]
         for contact, both, others in zip(at, exact, varied, strict=True)
     ]
-    stress = _at_places(model, asked, every)
+    stress = _at_places(model, requirement, every)
     for contact, names, loads, why in zip(at, over, every, missing, strict=True):
         first, twice, *others = (stress.pop(0) for _ in loads)
         like = first if few else twice  # on the same cells as the others
@@ -144,39 +154,41 @@ def compare(
     return tuple(out)
 
 
-def _by_cells(own: AtPlaces, twice: AtPlaces, rings: int) -> AtPlaces:
-    """The error of cells, relative, by the stress on them and on cells twice as large."""
-    chance = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
-    beside = max(RING_SCATTER * USUAL_RING_COUNT / rings, chance)
+def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:
+    """The relative error of the cells, from the stress on them and on cells twice as large."""
+    # Richardson's estimate: the error is the change over (2^q - 1), q being its order in the length
+    # of cells. It has floors, since two sets of cells can agree by chance.
+    agreement_floor = MIN_CELL_ERROR * (rings < USUAL_RING_COUNT)
+    surface_floor = max(RING_SCATTER * USUAL_RING_COUNT / rings, agreement_floor)
 
     def error(name: str, order: float, least: float) -> float:
-        x, y = getattr(own, name), getattr(twice, name)
+        x, y = getattr(stress, name), getattr(coarse, name)
         return max(abs(y / x - 1.0) / (2.0**order - 1.0), least) if x and y else 0.0
 
     return AtPlaces(
-        error("surface", SURFACE_CELL_ORDER, beside),
-        error("section", SECTION_CELL_ORDER, chance),
-        error("beneath", SURFACE_CELL_ORDER, beside),
+        error("surface", SURFACE_CELL_ORDER, surface_floor),
+        error("section", SECTION_CELL_ORDER, agreement_floor),
+        error("beneath", SURFACE_CELL_ORDER, surface_floor),
     )
 
 
 def _loads(
     model: ContactModel, patterns: PressureModes, one: _Joint, contact: JointContact
 ) -> PressureLoads:
-    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.found))
+    return patterns.loads(one.waves, contact.loads.links, model.arcs(one.states))
 
 
 def _at_places(
-    model: ContactModel, asked: Requirement, every: Sequence[Sequence[PressureLoads]]
+    model: ContactModel, requirement: Requirement, every: Sequence[Sequence[PressureLoads]]
 ) -> list[AtPlaces]:
-    """On the first mesh, of loads of one instant each."""
-    each = list(itertools.chain(*every))
-    whole = stacked(each)
-    singular = singularities_of(model.pin, model.material, (), (whole,), asked.distance)
+    """The stress at the places on the first mesh, of loads of one instant each."""
+    loads = list(itertools.chain(*every))
+    whole = stacked(loads)
+    singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
     answer = HarmonicField(section, singular)
-    on_rings = [one.on_rings for one in each]
+    on_rings = [one.on_rings for one in loads]
     sections = SectionField(model.pin, model.material, (), on_rings)
     return [
         AtPlaces(
@@ -184,7 +196,7 @@ def _at_places(
             sections.largest(other)[0],
             beneath(section.fields, one, singular).value,
         )
-        for one, other in zip(each, on_rings, strict=True)
+        for one, other in zip(loads, on_rings, strict=True)
     ]
 
 
@@ -203,9 +215,9 @@ def _on_both_cells(model: ContactModel, at: Sequence[JointContact]) -> list[tupl
 def _coarse(
     model: ContactModel, links: PinLoads, problem: ContactProblem, belongs: Floats
 ) -> _Joint:
-    found = model.pressed(links, problem)
-    found = [replace(x, pressure=belongs @ x.pressure) for x in found]
-    return _Joint(model.waves(found), found)
+    states = model.pressed(links, problem)
+    states = [replace(x, pressure=belongs @ x.pressure) for x in states]
+    return _Joint(model.waves(states), states)
 
 
 def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
@@ -213,19 +225,23 @@ def _own_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
 
 
 def _varied(
-    model: ContactModel, at: Sequence[JointContact], own: bool, vary: Sequence[bool]
+    model: ContactModel, at: Sequence[JointContact], own_cells: bool, vary: Sequence[bool]
 ) -> tuple[list[list[Variation]], list[list[_Joint]], list[list[str]]]:
-    """Of each contact, what is changed of the joint, contact then, and what could not be changed:
-    lugs that are free to tilt may leave a couple on the pin, and loads may be lost in a large
-    clearance. own: on the model's own cells, instead of cells twice as large; vary: which.
+    """The variations of the joint for each contact, the contact under each, and those that could
+    not be solved.
+
+    Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large
+    clearance.
+    own_cells: whether to use the model's own cells, instead of cells twice as large.
+    vary: the contacts for which the joint is varied.
     """
     names: list[list[Variation]] = [[] for _ in at]
-    found: list[list[_Joint]] = [[] for _ in at]
+    varied: list[list[_Joint]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
     for change in joint_variations(model.whole, model.lugs):
         other = model.varied(change.lugs, change.softness)
-        cells = _own_cells(other) if own else on_coarser_cells(other)
-        for contact, over, changed, why, so in zip(at, names, found, missing, vary, strict=True):
+        cells = _own_cells(other) if own_cells else on_coarser_cells(other)
+        for contact, over, changed, why, so in zip(at, names, varied, missing, vary, strict=True):
             if not so:
                 continue
             try:
@@ -234,4 +250,4 @@ def _varied(
                 why.append(f"{change.what} {change.value} ({error})")
                 continue
             over.append(Variation(change.what, change.value, 1.0, change.length))
-    return names, found, missing
+    return names, varied, missing

@@ -16,8 +16,10 @@ def contact_result(
     case: PinLoads,
     remark: str = "",
 ) -> JointResult:
-    """Of a contact at a single instant. case: what the rings do to the pin at
-    all instants; remark: what the range leaves out.
+    """The joint result of a contact at a single instant.
+
+    case: loads of the rings on the pin at all instants.
+    remark: what the range leaves out.
     """
     z = stations(contact.pin)
     moment = np.linalg.norm(contact.bending_moment(z)[0], axis=1)
@@ -34,21 +36,22 @@ def contact_result(
 
 def _band(contact: JointContact, b: int) -> BandContact:
     lug, bands = contact.lugs[b], contact.bands
-    own = bands.band == b
-    line = contact.line_load[0, own]
-    force = bands.length[own] @ line
+    on_band = bands.band == b
+    line = contact.line_load[0, on_band]
+    force = bands.length[on_band] @ line
     size = float(np.linalg.norm(force))
     along = force / size if size else np.array([1.0, 0.0])
-    arm = bands.z[own] - bands.middles[b]
-    couple = np.linalg.norm((bands.length[own] * arm) @ line)
-    half = bands.length[own] / 2.0
-    ends = [*(bands.z[own] - half).tolist(), float((bands.z[own] + half)[-1])]
-    pairs = zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)
+    arm = bands.z[on_band] - bands.middles[b]
+    couple = np.linalg.norm((bands.length[on_band] * arm) @ line)
+    half = bands.length[on_band] / 2.0
+    ends = [*(bands.z[on_band] - half).tolist(), float((bands.z[on_band] + half)[-1])]
+    pairs = zip(bands.z[on_band].tolist(), (line @ along).tolist(), strict=True)
     return BandContact(
         name=lug.connection,
         force=size,
         contact_angle=float(np.degrees(contact.contact_angle[0, b])),
-        mean_pressure=size / (2.0 * float(bands.radius[own][0]) * float(bands.length[own].sum())),
+        mean_pressure=size
+        / (2.0 * float(bands.radius[on_band][0]) * float(bands.length[on_band].sum())),
         line_load=tuple(pairs),
         couple=float(couple),
         clearance=lug.clearance,

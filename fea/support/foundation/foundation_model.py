@@ -40,24 +40,19 @@ from fea.support.lugs.lug import Lug
 from fea.support.lugs.rings import graded, ring, ringed
 from geometry import Pin, Segment
 
-COMPLIANCE_SHARE = (
-    0.70  # of the plane's compliance, fitted to the largest moments of 60 pins at random
-)
+# Of the plane's compliance, fitted to the largest moments of 60 random pins
+# (python -m benchmarks foundation).
+COMPLIANCE_SHARE = 0.70
 
 # Error of the largest bending moment, of contact without clearance over this model's, less 1: what
-# 19 in 20 of 180 pins at random are within (python -m benchmarks foundation).
+# 19 in 20 of 180 random pins are within (python -m benchmarks foundation).
 PLAIN_MOMENT_ERROR = 0.06
-SINGLE_SHEAR_ERROR = (
-    0.04  # more with two lugs: the moment is small, and where in the lugs loads are counts
-)
-TUBE_BORE_RATIO, TUBE_ERROR = (
-    0.4,
-    0.04,
-)  # bore over diameter beyond which the section deforms; more with it
-LONG_LUG_RATIO, LONG_LUG_ERROR = (
-    1.8,
-    0.05,
-)  # a middle lug's thickness over the diameter; more with a thicker one
+# Added with two lugs: the moment is small, and depends on where in the lugs the loads act.
+SINGLE_SHEAR_ERROR = 0.04
+# Bore over diameter beyond which the section deforms, and the error added there.
+TUBE_BORE_RATIO, TUBE_ERROR = 0.4, 0.04
+# A middle lug's thickness over the diameter, and the error added with a thicker one.
+LONG_LUG_RATIO, LONG_LUG_ERROR = 1.8, 0.05
 THICKNESS_LIMITS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
 WIDTH_LIMITS = 1.6, 4.0  # of the lug, over the diameter
 BORE_LIMITS = 0.0, 0.7  # over the diameter
@@ -70,7 +65,9 @@ Stiffness = Callable[[Segment, Material, Lug], float]
 
 
 def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> float:
-    """Of the foundation of a pin's segment in a lug, N/m^2: force per length over deflection."""
+    """The stiffness of the foundation of a pin's segment in a lug, N/m^2: force per length over
+    deflection.
+    """
     radii = segment.bore / 2.0, segment.diameter / 2.0
     return (
         plane_stiffness(radii, material, lug.outer_diameter / 2.0, lug.material) / COMPLIANCE_SHARE
@@ -79,8 +76,11 @@ def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> floa
 
 @dataclass(frozen=True)
 class JointFoundation:
-    """A case of a pin on foundations. pin: its bands cut into rings; loads: what the rings do to
-    it, forces and, where the line load rises along a ring, moments; mass: of its segments, kg/m.
+    """A case of a pin on foundations.
+
+    pin: with its bands cut into rings.
+    loads: of the rings on it, forces and, where the line load varies along a ring, moments.
+    mass: of its segments, kg/m.
     """
 
     pin: Pin
@@ -91,24 +91,27 @@ class JointFoundation:
 
     @property
     def line_load(self) -> Floats:
-        """Force per length of the lugs on the pin, the mean over each ring, along x and y,
-        (T, R, 2) N/m; where its sign is not that of the link's force the other side of the bore
-        carries.
+        """The force per length of the lugs on the pin along x and y, the mean over each ring, (T,
+        R, 2) N/m.
+
+        Where its sign is not that of the link's force the other side of the bore carries.
         """
         return np.asarray(self.loads.forces[:, :, :2] / self.bands.length[:, None])
 
     def bending_moment(self, z: Floats) -> Floats:
-        """By the foundations and the body force, of the part of the pin before z (Z,) m: (T, Z, 2)
-        N m, the integral of the shear along x and along y.
+        """The bending moment by the foundations and the body force of the part before z (Z,) m, (T,
+        Z, 2) N m.
+
+        It is the integral of the shear along x and along y.
         """
         return bending_moment(self.pin, self.mass, self.bands, self.loads, z)
 
     def shear_force(self, z: Floats) -> Floats:
-        """Sum of the loads across before z (Z,) m: (T, Z, 2) N."""
+        """The sum of the transverse loads before z (Z,) m, (T, Z, 2) N."""
         return shear_force(self.pin, self.mass, self.bands, self.loads, z)
 
     def along(self, z: Floats) -> tuple[Floats, Floats]:
-        """Of what acts before z (Z,) m, the axial force (T, Z) N and the torque (T, Z) N m."""
+        """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""
         part = np.clip((z[:, None] - self.bands.z) / self.bands.length + 0.5, 0.0, 1.0)
         ends = np.array(self.pin.stations)
         mass = np.clip(z[:, None] - ends[:-1], 0.0, np.diff(ends)) @ self.mass
@@ -117,9 +120,11 @@ class JointFoundation:
 
 
 class FoundationModel:
-    """A pin in its lugs as a beam, factorised for all cases. rings: of each band, into which loads
-    are cut; what they add up to does not depend on their number. stiffness: of foundations. Lugs
-    named after segments on which no link bears are those of a structure, which stands still.
+    """A pin in its lugs as a beam, factorised for all cases.
+
+    rings: of each band, into which loads are cut; their resultants do not depend on the number.
+    stiffness: the function for the stiffness of foundations.
+    Lugs named after segments on which no link bears are those of a structure, which is fixed.
 
     Raises: ValueError for a lug where nothing has its name, or a band without one.
     """
@@ -142,36 +147,41 @@ class FoundationModel:
         self.rings = tuple(ring(lug.connection, i) for lug in self.lugs for i in range(rings))
         self.bands = _bands(self.pin, self.rings, rings)
         self.mass = mass_per_length(self.pin, material.density)
-        own = [pin.segments[pin.labels.index(lug.connection)] for lug in self.lugs]
-        soft = [stiffness(s, material, lug) for s, lug in zip(own, self.lugs, strict=True)]
+        segments = [pin.segments[pin.labels.index(lug.connection)] for lug in self.lugs]
+        soft = [stiffness(s, material, lug) for s, lug in zip(segments, self.lugs, strict=True)]
         self._unit = self._of_rings(np.array(soft))
 
     def solve(self, loads: PinLoads, whole: bool = True) -> JointFoundation:
-        """All instants of a case. loads: of links on all the lugs' bands or on some. whole: false
-        for a part of loads, which need not be in balance.
+        """Solve all instants of a case.
+
+        loads: of links on all the lugs' bands or on some.
+        whole: false for a part of loads, which need not be in balance.
 
         Raises: SolveError where forces are not in balance, no lug reacts a couple, or links exert
         moments across the axis.
         """
-        asked = link_forces(self.given, self._weight, loads, any(self.structure), whole)
+        link_force = link_forces(self.given, self._weight, loads, any(self.structure), whole)
         on = np.zeros((len(loads), len(self.lugs), 2))
-        on[:, np.logical_not(self.structure)] = asked[:, : len(self.given.connections)]
+        on[:, np.logical_not(self.structure)] = link_force[:, : len(self.given.connections)]
         acting = np.concatenate([on, loads.body[:, None, :2]], axis=1)
         force = np.einsum("rp,tpa->tra", self._unit.force, acting)
         moment = np.einsum("rp,tpa->tra", self._unit.moment, acting)
         if whole:
-            self._require_couples(loads.case, moment, force, asked)
+            self._require_couples(loads.case, moment, force, link_force)
         pull = loads.body[:, 2] * self._weight
         forces = np.dstack([force, self._along(loads, loads.forces[:, :, 2], pull)])
         torque = self._along(loads, loads.moments[:, :, 2], 0.0 * pull)
         about = np.dstack([-moment[..., 1], moment[..., 0], torque])
-        made = replace(
+        ring_loads = replace(
             loads, surfaces=self.rings, forces=forces, moments=about, distribution="cosine"
         )
-        return JointFoundation(self.pin, self.lugs, self.bands, made, self.mass)
+        return JointFoundation(self.pin, self.lugs, self.bands, ring_loads, self.mass)
 
     def with_clearances(self, lugs: Sequence[Lug]) -> FoundationModel:
-        """The same, of which only the error depends on them; lugs: in the order of the bands."""
+        """The same model with lugs of other clearance, which changes the error alone.
+
+        lugs: in the order of the bands.
+        """
         other = copy.copy(self)
         other.lugs = tuple(lugs)
         return other
@@ -182,8 +192,10 @@ class FoundationModel:
         return float(self.mass @ np.diff(self.pin.stations))
 
     def _along(self, loads: PinLoads, amounts: Floats, body: Floats) -> Floats:
-        """Axial forces or torques (T, C) of the links as those of the rings, (T, R), even along a
-        band; a structure reacts, evenly, what they and the body's (T,) leave over.
+        """The axial forces or torques (T, C) of the links as those of the rings, (T, R), even along
+        a band.
+
+        A structure reacts, evenly, the remainder of these and of the body's (T,).
         """
         out = amounts @ ring_shares(self.pin, self.rings, loads.surfaces)
         react = self.bands.length * np.array(self.structure)[self.bands.band]
@@ -192,17 +204,17 @@ class FoundationModel:
         return np.asarray(out)
 
     def _of_rings(self, stiffness: Floats) -> Response:
-        """Of the rings, what the lugs do under unit loads."""
+        """The response of the rings to unit loads of the lugs."""
         beam, number = self._beam(stiffness)
         still = np.flatnonzero(self.structure).tolist() or [0]
-        found = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
-        own = (number == np.arange(len(self.rings))[:, None]).astype(float)
+        response = respond(beam, self.bands.middles, [lug.tilt for lug in self.lugs], still)
+        belongs = (number == np.arange(len(self.rings))[:, None]).astype(float)
         middles = 0.5 * (beam.stations[1:] + beam.stations[:-1])
-        arms = own * (middles - self.bands.z[:, None])
-        return Response(own @ found.force, own @ found.moment + arms @ found.force)
+        arms = belongs * (middles - self.bands.z[:, None])
+        return Response(belongs @ response.force, belongs @ response.moment + arms @ response.force)
 
     def _beam(self, stiffness: Floats) -> tuple[SupportedBeam, Ints]:
-        """Pieces, and the number of the ring that each is in, -1 outside."""
+        """The pieces of the beam, and the number of the ring that each is in, -1 outside."""
         bands, pin = self.bands, self.pin
         low, high = bands.z - bands.length / 2.0, bands.z + bands.length / 2.0
         z = np.sort([*pin.stations, *low, *high])
@@ -224,14 +236,19 @@ class FoundationModel:
         parts = soft[at, MOMENT], soft[at, SHEAR], foundation(number), self.mass[at], lug
         return SupportedBeam(z, *parts), number
 
-    def _require_couples(self, case: str, moment: Floats, force: Floats, asked: Floats) -> None:
-        """Raises: SolveError where a couple is left over, which a lug that is free would react."""
+    def _require_couples(
+        self, case: str, moment: Floats, force: Floats, link_force: Floats
+    ) -> None:
+        """Check that no couple is left on a lug that is free to tilt.
+
+        Raises: SolveError where one is.
+        """
         bands = self.bands
         arm = (bands.z - bands.middles[bands.band])[:, None]
-        least = COUPLE_TOLERANCE * self.pin.length * np.abs(asked).max(initial=0.0)
+        least = COUPLE_TOLERANCE * self.pin.length * np.abs(link_force).max(initial=0.0)
         for b, lug in enumerate(self.lugs):
-            own = bands.band == b
-            left = np.abs((moment + arm * force)[:, own].sum(axis=1)).max(initial=0.0)
+            on_band = bands.band == b
+            left = np.abs((moment + arm * force)[:, on_band].sum(axis=1)).max(initial=0.0)
             if lug.tilt == 0.0 and left > least:
                 raise SolveError(
                     f"pin {self.whole.name}, case {case}: its links leave a couple of {left:.3g} "
@@ -241,8 +258,10 @@ class FoundationModel:
 
 
 def moment_error(pin: Pin, material: Material, lugs: Sequence[Lug]) -> float:
-    """Relative error of the largest bending moment of FoundationModel, of frictionless contact
-    without clearance; inf outside of what was measured.
+    """The relative error of the largest bending moment of FoundationModel.
+
+    It is the difference from frictionless contact without clearance; inf outside of what was
+    measured.
 
     Raises: ValueError as FoundationModel.
     """
@@ -272,8 +291,8 @@ def _within(values: Sequence[float], limits: tuple[float, float]) -> bool:
     return all(low * (1.0 - LIMIT_ROUND_OFF) <= x <= high * (1.0 + LIMIT_ROUND_OFF) for x in values)
 
 
-def _bands(pin: Pin, rings: Sequence[str], each: int) -> Bands:
+def _bands(pin: Pin, rings: Sequence[str], rings_per_band: int) -> Bands:
     cut = [pin.band(name) for name in rings]
     z, length, radius = np.array([(b.middle, b.length, b.radius) for b in cut]).T
-    number = np.arange(len(cut)) // each
+    number = np.arange(len(cut)) // rings_per_band
     return Bands(z, length, radius, number, np.zeros(len(cut)))

@@ -51,7 +51,7 @@ MIN_GOVERNING_RATIO = 2.0  # times LOCAL of the largest pressure: a smaller stre
 
 
 class FoundationSupport:
-    """Lugs as springs along a beam (fea.support.support.Support)."""
+    """A support by lugs as springs along a beam (fea.support.support.Support)."""
 
     def hold(
         self,
@@ -60,7 +60,7 @@ class FoundationSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldFoundation:
-        """As of every support; nothing is discretised."""
+        """Hold the pin, as every support does; nothing is discretised."""
         progress(f"pin {problem.pin.name}, beam on foundations")
         assert isinstance(problem.pin, Pin)
         over = FoundationRange(
@@ -69,7 +69,9 @@ class FoundationSupport:
         return HeldFoundation(problem, over)
 
     def may_be_enough(self, problem: PinProblem, requirement: Requirement) -> bool:
-        """Whether its error, at least a tenth, may do; a beam sees no cuts."""
+        """Return whether the foundation's error, at least a tenth, may be small enough; never for a
+        pin with cuts.
+        """
         if not isinstance(problem.pin, Pin):
             return False
         known = problem.material.yield_strength is not None and requirement.required is not None
@@ -106,19 +108,19 @@ class HeldFoundation:
         return links
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Nothing is discretised."""
+        """Return True, since nothing is discretised."""
         return True
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
-        """All of it: there are none."""
+        """The whole requirement, since there are no meshes."""
         return requirement
 
     def finished(self, solution: Solution, requirement: Requirement) -> Solution:
-        """The solution: it has all that a foundation knows."""
+        """Return the solution unchanged: it has all that a foundation can tell."""
         return solution
 
     def solution(self, case: PinLoads, requirement: Requirement) -> Solution:
-        """Stress of a case, its error, sections and joint."""
+        """The stress of a case, its error, sections and joint."""
         try:
             return self._solution(case, requirement)
         except SolveError as error:
@@ -147,15 +149,16 @@ class HeldFoundation:
         return Solution(peak, answer, case, row.instant, self, joint)
 
     def bounded_everywhere(self, requirement: Requirement) -> bool:
-        """Whether no sharp corner of the pin or edge of a lug makes its stress singular."""
+        """Return whether no sharp corner of the pin or edge of a lug makes its stress singular."""
         nu, pin = self.problem.material.poisson_ratio, self.problem.pin
         assert isinstance(pin, Pin)
         rounded = all(lug.edge_radius > 0.0 for lug in self.problem.lugs)
         return rounded and not find_singularities(pin, (), (), nu, requirement.distance)
 
     def bending_governs(self, solution: Solution) -> bool:
-        """Whether the error is within the tolerance, and bending governs: not contact, whose
-        pressure is largest at the edges of lugs and on stubby pins.
+        """Return whether the error is within the tolerance, and bending governs.
+
+        Contact, whose pressure is largest at the edges of lugs and on stubby pins, must not govern.
         """
         peak, answer = solution.peak, solution.answer
         if peak.verdict != "converged" or not isinstance(answer, FoundationField):
@@ -165,7 +168,7 @@ class HeldFoundation:
 
 
 class FoundationField:
-    """What beams on foundations found, for any loads of the pin's links."""
+    """The stress of beams on foundations, for any loads of the pin's links."""
 
     def __init__(self, stress: FoundationStress, case: PinLoads) -> None:
         self.stress, self.case = stress, case
@@ -175,17 +178,17 @@ class FoundationField:
         return np.asarray(self._von_mises(loads).von_mises.max(axis=0))
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the index of its instant."""
+        """The largest von Mises stress over all instants, Pa, and the index of its instant."""
         top = self._von_mises(loads)
         return float(top.von_mises[top.place]), top.place[1]
 
     @property
     def points(self) -> Floats:
-        """Where its stress is, (S, 2): r, z in m."""
+        """The points at which stress is computed, (S, 2): r, z in m."""
         return np.stack([self.stress.r, self.stress.z], axis=1)
 
     def harmonics(self, loads: PinLoads) -> Floats:
-        """Stress there, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
+        """The stress at the points, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
         return self.stress.harmonics(self.stress.model.solve(loads))
 
     def _von_mises(self, loads: Loads) -> VonMisesMaxima:
@@ -194,18 +197,18 @@ class FoundationField:
         return self.stress.von_mises(self.stress.model.solve(links, whole))
 
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
-        """None: a beam has no field over its surface."""
+        """Return None, since a beam has no field over its surface."""
         return None
 
     def largest_load(self, solution: Solution) -> float:
-        """Largest load per length over the diameter at the governing instant, Pa."""
+        """The largest load per length over the diameter at the governing instant, Pa."""
         here = solution.loads.at(np.array([solution.instant]))
-        made = self.stress.model.solve(here)
-        return float((np.linalg.norm(made.line_load, axis=2) / (2.0 * made.bands.radius)).max())
+        joint = self.stress.model.solve(here)
+        return float((np.linalg.norm(joint.line_load, axis=2) / (2.0 * joint.bands.radius)).max())
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
-    """Forces and moments of unit loads such as those of other loads."""
+    """The forces and moments of unit loads such as those of other loads."""
     none = np.zeros((len(amounts), 2))
 
     def amount(surface: str, kind: str, n: int) -> Floats:
@@ -228,8 +231,9 @@ def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
 
 @dataclass(frozen=True)
 class FoundPlaces:
-    """The largest stress of the surface and of the sections; bounds of the row are those of both,
-    and of what lies beneath contact.
+    """The largest stress of the surface and of the sections.
+
+    The bounds of the row cover both, and the stress beneath contact.
     """
 
     surface: StressBounds
@@ -238,7 +242,9 @@ class FoundPlaces:
 
     @classmethod
     def of(cls, stress: FoundationStress, every: JointFoundation) -> FoundPlaces:
-        """Of a case at all its instants; sections by the line loads of the foundations."""
+        """The places of a case at all its instants; sections by the line loads of the
+        foundations.
+        """
         sections = SectionField(every.pin, stress.model.material, (), [every.loads])
         both, surface = (stress_bounds(x, every) for x in (stress, stress.on_surface))
         return cls(surface, sections.place(every.loads), both)
@@ -249,7 +255,7 @@ class FoundPlaces:
 
     @property
     def row(self) -> StressBounds:
-        """Of the larger one."""
+        """The bounds of the larger place."""
         of, at = self.surface, self.section
         if self.governs == "surface":
             return replace(of, bounds=self.both.bounds)
@@ -258,7 +264,10 @@ class FoundPlaces:
         return replace(both, maximum=at.value, place=place, theta=theta, instant=at.instant)
 
     def said(self, peak: Maximum, case: PinLoads, material: Material, tolerance: float) -> Places:
-        """As results have them; peak: of the row."""
+        """The places in the form of results.
+
+        peak: of the row.
+        """
         of, at, strength = self.surface, self.section, material.yield_strength
         error = of.maximum if of.error is None else of.error
         known = "converged" if error <= tolerance * of.maximum else "unconverged"
@@ -281,41 +290,43 @@ def _time(case: PinLoads, instant: int) -> float | None:
 def _peak(
     over: FoundationRange,
     case: str,
-    found: StressBounds,
+    bounds: StressBounds,
     rise: float,
-    asked: Requirement,
+    requirement: Requirement,
 ) -> Maximum:
-    """With an error of the whole value where it is not known."""
-    parts = ErrorParts(0.0, rise, model=found.maximum if found.error is None else found.error)
-    relative = parts.total / found.maximum if found.maximum else 0.0
-    known = found.error is not None and relative <= asked.tolerance
-    own = accuracy(relative, asked.tolerance, known)
-    if found.error is None:
-        own = Reason(f"no error is known: {found.why}", ("no-error-known",))
-    own = own + Reason(f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",))
+    """The maximum of a case, with an error of the whole value where none is known."""
+    parts = ErrorParts(0.0, rise, model=bounds.maximum if bounds.error is None else bounds.error)
+    relative = parts.total / bounds.maximum if bounds.maximum else 0.0
+    known = bounds.error is not None and relative <= requirement.tolerance
+    verdict_reason = accuracy(relative, requirement.tolerance, known)
+    if bounds.error is None:
+        verdict_reason = Reason(f"no error is known: {bounds.why}", ("no-error-known",))
+    verdict_reason = verdict_reason + Reason(
+        f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",)
+    )
     return Maximum(
         pin=over.own.model.given.name,
         case=case,
         model="foundation",
         verdict="converged" if known else "unconverged",
-        note=own.text,
-        max_von_mises=found.maximum,
+        note=verdict_reason.text,
+        max_von_mises=bounds.maximum,
         error_estimate=parts.total,
-        location=point_of(found),
+        location=point_of(bounds),
         parts=parts,
-        reasons=own.codes,
+        reasons=verdict_reason.codes,
     )
 
 
 def _joint(
-    found: JointFoundation, model: FoundationModel, over: JointRange | None, remark: str
+    joint: JointFoundation, model: FoundationModel, over: JointRange | None, remark: str
 ) -> JointResult:
-    """Of a single instant."""
-    z = stations(found.pin)
-    moment = np.linalg.norm(found.bending_moment(z)[0], axis=1)
+    """The joint result at a single instant."""
+    z = stations(joint.pin)
+    moment = np.linalg.norm(joint.bending_moment(z)[0], axis=1)
     return JointResult(
         model="foundation",
-        bands=tuple(_band(found, model, b) for b in range(len(found.lugs))),
+        bands=tuple(_band(joint, model, b) for b in range(len(joint.lugs))),
         bending_moment=float(moment.max()),
         bending_moments=tuple(zip(z.tolist(), moment.tolist(), strict=True)),
         range=over,
@@ -323,18 +334,22 @@ def _joint(
     )
 
 
-def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact:
-    """The angle is that of plane contact at the largest load per length."""
-    lug, bands = found.lugs[b], found.bands
-    own = bands.band == b
-    line, length, half = found.line_load[0, own], bands.length[own], bands.length[own] / 2.0
+def _band(joint: JointFoundation, model: FoundationModel, b: int) -> BandContact:
+    """The contact of a band, with the angle of plane contact at the largest load per length."""
+    lug, bands = joint.lugs[b], joint.bands
+    on_band = bands.band == b
+    line, length, half = (
+        joint.line_load[0, on_band],
+        bands.length[on_band],
+        bands.length[on_band] / 2.0,
+    )
     force = length @ line
     size = float(np.linalg.norm(force))
     along = force / size if size else np.array([1.0, 0.0])
-    arm = bands.z[own] - bands.middles[b]
-    turning = found.loads.moments[0, own, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
+    arm = bands.z[on_band] - bands.middles[b]
+    turning = joint.loads.moments[0, on_band, :2].sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])
     most = float(np.linalg.norm(line, axis=1).max())
-    radius = float(bands.radius[own][0])
+    radius = float(bands.radius[on_band][0])
     stiff = 1.0 / model.material.plane_compliance
     gap = 0.5 * lug.clearance * stiff / most if most else 0.0
     return BandContact(
@@ -342,9 +357,9 @@ def _band(found: JointFoundation, model: FoundationModel, b: int) -> BandContact
         force=size,
         contact_angle=math.degrees(half_angle(gap)) if most else 0.0,
         mean_pressure=size / (2.0 * radius * float(length.sum())),
-        line_load=tuple(zip(bands.z[own].tolist(), (line @ along).tolist(), strict=True)),
+        line_load=tuple(zip(bands.z[on_band].tolist(), (line @ along).tolist(), strict=True)),
         couple=float(np.linalg.norm((length * arm) @ line + turning)),
         clearance=lug.clearance,
         outer_diameter=lug.outer_diameter,
-        ends=(*(bands.z[own] - half).tolist(), float((bands.z[own] + half)[-1])),
+        ends=(*(bands.z[on_band] - half).tolist(), float((bands.z[on_band] + half)[-1])),
     )

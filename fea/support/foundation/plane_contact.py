@@ -35,10 +35,12 @@ _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(
 def plane_stiffness(
     radii: tuple[float, float], pin: Material, outer: float, lug: Material
 ) -> float:
-    """Force per length over displacement of the lug's outer surface against the pin's section,
-    N/m^2, without friction and clearance.
+    """The stiffness of plane contact without friction and clearance, N/m^2.
 
-    radii: of the pin's bore, 0 if solid, and of its surface, m; outer: the lug's outer radius, m.
+    It is the force per length over the displacement of the lug's outer surface against the pin's
+    section.
+    radii: of the pin's bore, 0 if solid, and of its surface, m.
+    outer: the lug's outer radius, m.
     """
     inner, r = radii
     flexible = pin_harmonics(inner, r, pin) + lug_harmonics(r, outer, lug)
@@ -51,8 +53,9 @@ def plane_stiffness(
 
 
 def largest_pressure(gap: float) -> float:
-    """p0 R / Q of a disc in a plate of its material: the largest pressure p0 under a load per
-    length Q; gap: E / (1 - nu^2) times the radial clearance over Q.
+    """The largest pressure p0 R / Q of a disc in a plate of its material under a load per length Q.
+
+    gap: E / (1 - nu^2) times the radial clearance over Q.
 
     Source: Persson 1964; Ciavarella & Decuzzi, Int. J. Solids Struct. 38 (2001) 4507.
     """
@@ -63,7 +66,10 @@ def largest_pressure(gap: float) -> float:
 
 
 def half_angle(gap: float) -> float:
-    """Of contact, rad, by the same."""
+    """The half angle of contact, rad.
+
+    gap and source: as `largest_pressure`.
+    """
 
     def off(angle: float) -> float:
         b2 = math.tan(angle / 2.0) ** 2
@@ -73,28 +79,34 @@ def half_angle(gap: float) -> float:
 
 
 def pin_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, inwards under pressure on a pin's surface."""
+    """The flexibility C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, inwards under pressure on a pin's
+    surface.
+    """
     hole = inner / outer  # lengths over the loaded radius, so that powers stay within range
     high = [-_many(n, hole, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return outer * np.array([_even(hole, material), _section(hole, material), *high])
 
 
 def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, outwards under pressure in a lug's bore."""
+    """The flexibility C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, outwards under pressure in a lug's
+    bore.
+    """
     wide = outer / inner
     high = [_many(n, wide, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return inner * np.array([_even(wide, material), _eye(wide, material), *high])
 
 
 def _even(other: float, material: Material) -> float:
-    """n = 0: Lame's tube."""
+    """The radial displacement of harmonic 0, by Lame's tube."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return (1.0 + nu) / E * (1.0 - 2.0 * nu + other**2) / abs(1.0 - other**2)
 
 
 def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
-    """Of Michell's powers of r: 2 mu u_r, 2 mu u_theta, s_rr, s_rt, (4, 4 or 2 for a solid); for
-    n = 1 without those that are rigid or have a resultant.
+    """The terms of Michell's solution at r: 2 mu u_r, 2 mu u_theta, s_rr, s_rt, (4, 4 or 2 for a
+    solid).
+
+    For n = 1 the rigid ones and those with a resultant are left out.
     """
     up = [
         (-n, n, -n * (n - 1), n * (n - 1)),  # r^n
@@ -105,25 +117,30 @@ def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
         (kappa + n - 1, n - 1 - kappa, -(n + 2) * (n - 1), -n * (n - 1)),  # r^(2 - n)
     ]
     rows, powers = [*up, *down], [n, n + 2, -n, 2 - n]
-    kept = [1, 2] if n == 1 else [0, 1, 2, 3]
-    kept = [i for i in kept if i < 2 or not solid]
-    columns = [np.array(rows[i]) * r ** (powers[i] - np.array([1.0, 1.0, 2.0, 2.0])) for i in kept]
+    columns_used = [1, 2] if n == 1 else [0, 1, 2, 3]
+    columns_used = [i for i in columns_used if i < 2 or not solid]
+    columns = [
+        np.array(rows[i]) * r ** (powers[i] - np.array([1.0, 1.0, 2.0, 2.0])) for i in columns_used
+    ]
     return np.stack(columns, axis=1)
 
 
 def _many(n: int, other: float, material: Material) -> float:
-    """n > 1, along r."""
+    """The radial displacement of a harmonic n > 1."""
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
     solid = other == 0.0
     here = _powers(n, 1.0, kappa, solid)
     rows = here[2:] if solid else np.vstack([here[2:], _powers(n, other, kappa)[2:]])
     scale, load = np.abs(rows).max(axis=0), -np.eye(len(rows))[0]
-    found = np.linalg.solve(rows / scale, load) / scale
-    return float(here[0] @ found) / (2.0 * mu)
+    constants = np.linalg.solve(rows / scale, load) / scale
+    return float(here[0] @ constants) / (2.0 * mu)
 
 
 def _section(hole: float, material: Material) -> float:
-    """n = 1 of a pin; the pressure along -x is held by a force per volume along x."""
+    """The displacement of a pin for harmonic 1.
+
+    The pressure along -x is held by a force per volume along x.
+    """
     (lam, mu), kappa, solid = material.lame, 3.0 - 4.0 * material.poisson_ratio, hole == 0.0
     alpha = -3.0 / (8.0 * (lam + 2.0 * mu) * (1.0 - hole**2))
     beta = -alpha / 3.0
@@ -132,11 +149,11 @@ def _section(hole: float, material: Material) -> float:
     rows = np.vstack([_powers(1, r, kappa, solid)[2:] for r in ends])
     load = np.concatenate([-stress * r for r in ends])
     load[0] -= 1.0
-    found = np.linalg.lstsq(rows, load)[0]  # one row follows from the others, by equilibrium
+    constants = np.linalg.lstsq(rows, load)[0]  # one row follows from the others, by equilibrium
 
     def moved(r: float) -> Floats:
-        own = np.array([alpha, beta]) * r**2
-        return np.asarray(_powers(1, r, kappa, solid)[:2] @ found / (2.0 * mu) + own)
+        particular = np.array([alpha, beta]) * r**2
+        return np.asarray(_powers(1, r, kappa, solid)[:2] @ constants / (2.0 * mu) + particular)
 
     at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS_POINTS
     along = np.array([0.5 * (u - v) for u, v in map(moved, at.tolist())])
@@ -145,11 +162,13 @@ def _section(hole: float, material: Material) -> float:
 
 
 def _eye(wide: float, material: Material) -> float:
-    """n = 1 of a lug."""
+    """The displacement of a lug for harmonic 1."""
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
 
     def terms(r: float) -> Floats:
-        """As _powers, with the pair that has a resultant, in proportions that have one value."""
+        """The terms of `_powers`, and the pair with a resultant in proportions that give one
+        value.
+        """
         k, ln = kappa, math.log(r)
         first = np.array([(k + 1.0) * ln - 1.0, -(k + 1.0) * ln - 1.0, 4.0 / r, 0.0]) / 2.0
         second = np.array([(k - 1.0) * ln - 1.0, -(k - 1.0) * ln - 1.0, 2.0 / r, 2.0 / r]) / 2.0
@@ -157,6 +176,6 @@ def _eye(wide: float, material: Material) -> float:
 
     held = 0.5 / wide  # of constant direction: s_rr = -held cos, s_rt = held sin
     rows = np.vstack([terms(1.0)[2:], terms(wide)[2:]])
-    found = np.linalg.lstsq(rows, np.array([-1.0, 0.0, -held, held]))[0]
-    here, there = (terms(r)[:2] @ found / (2.0 * mu) for r in (1.0, wide))
-    return float(here[0] - 0.5 * (there[0] - there[1]))
+    constants = np.linalg.lstsq(rows, np.array([-1.0, 0.0, -held, held]))[0]
+    bore, outside = (terms(r)[:2] @ constants / (2.0 * mu) for r in (1.0, wide))
+    return float(bore[0] - 0.5 * (outside[0] - outside[1]))

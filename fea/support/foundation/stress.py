@@ -28,19 +28,21 @@ from fea.support.foundation.foundation_model import FoundationModel, JointFounda
 from geometry import Pin
 
 SHOULDER_REACH = 0.5  # of the diameter: so far a sharp shoulder is felt
-MIN_FILLET_EDGE_DISTANCE = (
-    0.15  # of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3
-)
-# times the bound at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
+# Of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3 times the bound
+# at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
+MIN_FILLET_EDGE_DISTANCE = 0.15
 NEGLIGIBLE_STRESS_SHARE = 1e-6  # of the largest
 POINTS_PER_RADIUS = 17  # points of a segment at a radius, besides the ends of rings
 
 
 @dataclass(frozen=True)
 class FoundationStress:
-    """What serves all loads of a pin. r, z: of the points (S,), m. per_force: (S, 6, 4), amplitudes
-    there per V, M, N, T. near: (S,) what shoulders may add, relative. notches: those that are not
-    left out, whose points are the last.
+    """The part of a pin's stress that serves all loads.
+
+    r, z: of the points (S,), m.
+    per_force: (S, 6, 4), amplitudes there per V, M, N, T.
+    near: (S,) what shoulders may add, relative.
+    notches: those that are not excluded; their points are the last.
     """
 
     model: FoundationModel
@@ -52,7 +54,10 @@ class FoundationStress:
 
     @classmethod
     def of(cls, model: FoundationModel, distance: float = 0.1) -> Self:
-        """distance: of the local diameter, that is left out at sharp corners."""
+        """The stress per section force of a pin on foundations.
+
+        distance: excluded at sharp corners, of the local diameter.
+        """
         pin, nu = model.whole, model.material.poisson_ratio
         corners = find_singularities(pin, (), (), nu, distance)
         every = notches(pin)
@@ -67,12 +72,12 @@ class FoundationStress:
         return cls(model, r[keep], z[keep], per_force[keep], near[keep], left)
 
     def in_lugs(self, model: FoundationModel) -> FoundationStress:
-        """Of the same pin in other lugs."""
+        """The stress of the same pin in other lugs."""
         return replace(self, model=model)
 
     @cached_property
     def on_surface(self) -> FoundationStress:
-        """Without what is on the axis."""
+        """The stress without the points on the axis."""
         out = self.r > 0.0
         return replace(
             self, r=self.r[out], z=self.z[out], per_force=self.per_force[out], near=self.near[out]
@@ -80,20 +85,21 @@ class FoundationStress:
 
     @property
     def bending(self) -> Floats:
-        """Stress along the axis per bending moment, (S,) 1/m^3."""
+        """The axial stress per bending moment, (S,) 1/m^3."""
         return np.abs(self.per_force[:, ZZ, MOMENT])
 
-    def von_mises(self, found: JointFoundation) -> VonMisesMaxima:
-        """At all points and instants, the largest over the circumference."""
-        return von_mises_maxima(self.harmonics(found))
+    def von_mises(self, joint: JointFoundation) -> VonMisesMaxima:
+        """The von Mises stress at all points and instants, the largest over the circumference."""
+        return von_mises_maxima(self.harmonics(joint))
 
-    def lacking(self, found: JointFoundation, von_mises: Floats) -> list[str]:
-        """Of the notches that loads reach, why there is no factor, or none that holds. von_mises:
-        (S, T) Pa.
+    def lacking(self, joint: JointFoundation, von_mises: Floats) -> list[str]:
+        """The reasons why notches that loads reach have no factor, or none that holds.
+
+        von_mises: (S, T) Pa.
         """
         first = len(self.z) - len(self.notches)
-        torque = np.abs(found.along(self.z[first:])[1]).max(axis=0)
-        turned = torque > NEGLIGIBLE_STRESS_SHARE * np.abs(found.loads.moments).max(initial=0.0)
+        torque = np.abs(joint.along(self.z[first:])[1]).max(axis=0)
+        turned = torque > NEGLIGIBLE_STRESS_SHARE * np.abs(joint.loads.moments).max(initial=0.0)
         reached = von_mises[first:].max(axis=1) > NEGLIGIBLE_STRESS_SHARE * von_mises.max()
         pin, edges = self.model.whole, _edges(self.model)
         return [
@@ -110,11 +116,13 @@ class FoundationStress:
             or (t and n.torsion is None)
         ]
 
-    def harmonics(self, found: JointFoundation) -> Floats:
-        """(3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has them."""
-        across = np.stack([-found.shear_force(self.z), found.bending_moment(self.z)], axis=-1)
+    def harmonics(self, joint: JointFoundation) -> Floats:
+        """The stress, (3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has
+        them.
+        """
+        across = np.stack([-joint.shear_force(self.z), joint.bending_moment(self.z)], axis=-1)
         first, second = np.einsum("siq,tsaq->asit", self.per_force[:, :, :AXIAL], across)
-        rest = -np.stack(found.along(self.z), axis=-1)
+        rest = -np.stack(joint.along(self.z), axis=-1)
         even = np.einsum("siq,tsq->sit", self.per_force[:, :, AXIAL:], rest)
         even[:, TZ] *= -1.0
         cosine, sine = first.copy(), second.copy()
@@ -126,7 +134,7 @@ Points = tuple[Floats, Floats, Floats]  # r, z and per_force
 
 
 def _shaft(pin: Pin, cuts: Floats, nu: float) -> Iterator[Points]:
-    """Along every segment, at its surface and its bore or axis."""
+    """The points along every segment, at its surface and its bore or axis."""
     for (a, b), segment in zip(pairwise(pin.stations), pin.segments, strict=True):
         z = np.union1d(np.linspace(a, b, POINTS_PER_RADIUS), cuts[(cuts >= a) & (cuts <= b)])
         for r in (segment.diameter / 2.0, segment.bore / 2.0):
@@ -141,13 +149,13 @@ def _at(pin: Pin, notch: Notch, nu: float) -> Points:
 
 
 def _edges(model: FoundationModel) -> Floats:
-    """Of all lugs, z in m."""
+    """The edges of all lugs, z in m."""
     bands = [model.whole.band(lug.connection) for lug in model.lugs]
     return np.array([z for band in bands for z in (band.z0, band.z1)])
 
 
 def _distance(pin: Pin, notch: Notch, edges: Floats) -> float:
-    """Of a shoulder's fillet, from where it begins to where it ends, from the nearest edge, m."""
+    """The distance of a shoulder's fillet, between its ends, from the nearest edge, m."""
     corner = min(pin.stations, key=lambda z: abs(z - notch.z))
     radius = pin.fillet_at(pin.stations.index(corner) - 1)
     ends = corner, corner + math.copysign(radius, notch.z - corner)

@@ -24,20 +24,22 @@ from scipy.linalg import expm
 
 from fea.core.pin_loads import Floats
 
-U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(
-    7
-)  # REACTION_INTEGRAL: the integral of k u, REACTION_DOUBLE_INTEGRAL: that of REACTION_INTEGRAL
+# REACTION_INTEGRAL: the integral of k u; REACTION_DOUBLE_INTEGRAL: the integral of that.
+U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(7)
 STATE_COUNT = 4
-MAX_FOUNDATION_LENGTHS = (
-    1.0  # most of a foundation's length 1 / lambda in a piece: exponentials remain moderate
-)
+# Of a foundation's length 1 / lambda: a piece is no longer, so that exponentials remain moderate.
+MAX_FOUNDATION_LENGTHS = 1.0
 
 
 @dataclass(frozen=True)
 class SupportedBeam:
-    """Pieces (N,) of a beam between stations (N + 1,) m. bending: 1 / (E I), 1 / (N m^2); shear:
-    1 / (kappa G A), 1 / N; foundation: N/m^2, 0 outside lugs; mass: kg/m; lug: number of the lug
-    that holds each, -1 for none.
+    """The pieces (N,) of a beam between stations (N + 1,) m.
+
+    bending: 1 / (E I), 1 / (N m^2).
+    shear: 1 / (kappa G A), 1 / N.
+    foundation: N/m^2, 0 outside lugs.
+    mass: kg/m.
+    lug: number of the lug that holds each, -1 for none.
     """
 
     stations: Floats
@@ -53,10 +55,11 @@ class SupportedBeam:
 
 @dataclass(frozen=True)
 class Response:
-    """What the lugs do to the pieces of a beam under P loads, one newton on each lug and a body
-    force of 1 m/s^2: force (N, P), N, and moment (N, P), N m, about the middles of the pieces, of
-    forces along x. The lugs that stand still react what each load leaves over; one newton on one of
-    them does nothing.
+    """The reaction of the lugs on the pieces of a beam under P loads: one newton on each lug, and a
+    body force of 1 m/s^2.
+
+    force: (N, P), N, and moment: (N, P), N m, about the middles of the pieces, of forces along x.
+    The fixed lugs react the remainder of each load; one newton on one of them does nothing.
     """
 
     force: Floats
@@ -64,7 +67,7 @@ class Response:
 
 
 def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
-    """Stations (m) with pieces (N,) cut where they are long for the foundation they are on."""
+    """The stations, m, with pieces (N,) cut where they are long for the foundation they are on."""
     length = np.diff(stations)
     waves = length * (foundation * bending / 4.0) ** 0.25
     counts = np.maximum(1, np.ceil(waves / MAX_FOUNDATION_LENGTHS)).astype(int)
@@ -78,9 +81,12 @@ def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
 def respond(
     beam: SupportedBeam, middles: Floats, tilt: Sequence[float], still: Sequence[int] = (0,)
 ) -> Response:
-    """middles: of the lugs, (B,) m. tilt: N m/rad of the lugs' tilt, inf guided, 0 free. still: the
-    lugs that do not shift; where there is one, and all are free, it is guided and reacts the couple
-    that is left over.
+    """The response of a beam in its lugs.
+
+    middles: of the lugs, (B,) m.
+    tilt: N m/rad of the lugs' tilt, inf guided, 0 free.
+    still: the fixed lugs; where there is one, and all are free to tilt, it is guided and reacts the
+    remaining couple.
     """
     length = float(beam.stations[-1] - beam.stations[0]) / len(beam)
     stiff = 1.0 / float(beam.bending.max() * length**2)  # N; makes numbers near 1 of all
@@ -95,8 +101,8 @@ def respond(
         foundation=beam.foundation * length**2 / stiff,
         mass=beam.mass * length,
     )
-    found = _System(unit, np.asarray(middles) / length, held, still).solve()
-    return Response(found.force, found.moment * length)
+    response = _System(unit, np.asarray(middles) / length, held, still).solve()
+    return Response(response.force, response.moment * length)
 
 
 class _System:
@@ -129,7 +135,7 @@ class _System:
         return len(self.middles) + 1
 
     def _against(self, i: int, end: int) -> Floats:
-        """State at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
+        """The state at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
         out, lug = np.zeros((STATE_COUNT, self.size)), int(self.beam.lug[i])
         at = STATE_COUNT * (i + end)
         out[:, at : at + STATE_COUNT] = np.eye(STATE_COUNT)
@@ -139,7 +145,7 @@ class _System:
         return out
 
     def _hold(self, rows: Floats, loads: Floats) -> None:
-        """Equations of the lugs: a force, or no shift, and a couple each."""
+        """Add the equations of the lugs: a force, or no shift, and a couple each."""
         for b, stiffness in enumerate(self.tilt.tolist()):
             force, couple = self._reactions(b)
             if b in self.still:
@@ -153,8 +159,10 @@ class _System:
             rows[2 * b + 1] = turn
 
     def _reactions(self, lug: int) -> tuple[Floats, Floats]:
-        """Force and couple about its middle that a lug exerts on the beam, (size + 1,) each, by the
-        states and, last, by the body force.
+        """The force and the couple about its middle that a lug exerts on the beam, (size + 1,)
+        each.
+
+        They are linear in the states and, last, in the body force.
         """
         force, couple = np.zeros(self.size + 1), np.zeros(self.size + 1)
         for i in np.flatnonzero(self.beam.lug == lug).tolist():
@@ -177,7 +185,10 @@ class _System:
 
 
 def _rates(beam: SupportedBeam) -> Floats:
-    """Derivatives of (u, psi, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, 1), (N, 7, 7)."""
+    """The matrices (N, 7, 7) that give the derivatives of each piece's state.
+
+    The state is (u, psi, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, 1).
+    """
     out = np.zeros((len(beam), 7, 7))
     out[:, U, PSI], out[:, U, V], out[:, PSI, M] = 1.0, beam.shear, beam.bending
     out[:, M, V], out[:, V, U], out[:, V, UNIT_LOAD] = -1.0, beam.foundation, -beam.mass

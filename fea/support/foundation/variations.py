@@ -28,7 +28,11 @@ from geometry import ArgumentError, Pin
 
 @dataclass(frozen=True)
 class Varied:
-    """A joint with something changed: what, to what in words, and as a length, m, if it is one."""
+    """A joint with one property changed.
+
+    what, value: the property, and its value in words.
+    length: the value, m, if it is a length.
+    """
 
     what: str
     value: str
@@ -37,7 +41,9 @@ class Varied:
 
 
 class FoundationRange:
-    """Of one pin, for all cases. assumed: whether its lugs are.
+    """The range of a pin's maximum over its joint, for all cases.
+
+    assumed: whether its lugs are assumed.
 
     Raises: ValueError for lugs that do not fit; SolveError for lugs that it cannot answer.
     """
@@ -52,24 +58,27 @@ class FoundationRange:
         self.varied = tuple(_varied(self.own))
 
     def at(self, loads: PinLoads) -> tuple[JointRange | None, str]:
-        """At a single instant; and what is left out, or why all is.
+        """The range at a single instant, and the variations it leaves out, or the reason why there
+        is none.
 
         Raises: SolveError as FoundationModel.solve.
         """
-        own = stress_bounds(self.own, self.own.model.solve(loads))
-        if own.bounds is None:
-            return None, own.why
+        given = stress_bounds(self.own, self.own.model.solve(loads))
+        if given.bounds is None:
+            return None, given.why
         over, left_out = [], []
         for joint in self.varied:
-            found = _tried(joint.stress, loads)
-            if found is None:
+            varied_bounds = _tried(joint.stress, loads)
+            if varied_bounds is None:
                 continue
-            if found.bounds is None:
+            if varied_bounds.bounds is None:
                 left_out.append(f"{joint.what} {joint.value}")
                 continue
-            size = found.maximum
-            over.append(Variation(joint.what, joint.value, size, joint.length, found.bounds))
-        bounds = [own.bounds, *(v.interval for v in over if v.interval)]
+            size = varied_bounds.maximum
+            over.append(
+                Variation(joint.what, joint.value, size, joint.length, varied_bounds.bounds)
+            )
+        bounds = [given.bounds, *(v.interval for v in over if v.interval)]
         ends = min(low for low, _ in bounds), max(high for _, high in bounds)
         beyond = f"beyond the range of the measurements, and not included: {', '.join(left_out)}"
         whole = JointRange(ends, tuple(over), "foundation", self.assumed)
@@ -83,9 +92,10 @@ def prescribed_ranges(
     loads: Sequence[PinLoads | None],
     how: tuple[float, bool],
 ) -> tuple[JointResult | None, ...]:
-    """Of a pin that is supported otherwise, if it sat in these lugs. loads: at the governing
-    instants of its cases, None where there is none. how: distance and assumed, as of
-    FoundationRange.
+    """The ranges of a pin with another support, as if it sat in these lugs.
+
+    loads: at the governing instants of its cases, None where there is none.
+    how: distance and assumed, as of FoundationRange.
     """
     try:
         over = FoundationRange(pin, material, lugs, *how)
@@ -99,26 +109,28 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
     if np.any(loads.moments[:, :, :2]):
         return JointResult("prescribed", remark="its links exert moments across its axis")
     try:
-        found, remark = over.at(loads)
+        joint_range, remark = over.at(loads)
     except SolveError as error:
         return JointResult("prescribed", remark=str(error))
-    return JointResult("prescribed", range=found, remark=remark)
+    return JointResult("prescribed", range=joint_range, remark=remark)
 
 
 def _tried(stress: FoundationStress, loads: PinLoads) -> StressBounds | None:
-    """None where lugs that are free to tilt leave a couple on the pin."""
+    """The bounds with a varied joint; None where lugs that are free to tilt leave a couple on the
+    pin.
+    """
     try:
         return stress_bounds(stress, stress.model.solve(loads))
     except SolveError:
         return None
 
 
-def _varied(own: FoundationStress) -> Iterator[Varied]:
-    model = own.model
+def _varied(given: FoundationStress) -> Iterator[Varied]:
+    model = given.model
     for change in joint_variations(model.whole, model.lugs):
         if change.length is not None:
             other = model.with_clearances(list(change.lugs))
         else:
             both = zip(change.lugs, change.softness, strict=True)
             other = FoundationModel(model.given, model.material, [with_stiffness(*x) for x in both])
-        yield Varied(change.what, change.value, change.length, own.in_lugs(other))
+        yield Varied(change.what, change.value, change.length, given.in_lugs(other))

@@ -1,1 +1,3 @@
-"""What surrounds a pin: eyes, their fit, their links, and the rings into which bands are cut."""
+"""The surroundings of a pin: eyes, their fit, their links, and the rings into which bands are
+cut.
+"""

@@ -1,8 +1,8 @@
-"""What is seldom known of a joint, and how far it is changed to see what depends on it.
+"""Variations of the uncertain properties of a joint, to see which results depend on them.
 
 By default a clearance goes from none to twice the given one (to a free running fit where none is
 given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
-of its own. Of everything both ends are tried, for all lugs at once.
+of its own. Both ends of each range are tried, for all lugs at once.
 """
 
 from __future__ import annotations
@@ -23,8 +23,12 @@ RANGE_ENDS = (0, 1)
 
 @dataclass(frozen=True)
 class JointChange:
-    """A joint with something changed: what, to what in words, the lugs, and by how much each is
-    softer. length: the value, m, where it is one, the largest of all lugs.
+    """A joint with one property changed.
+
+    what, value: the property, and its value in words.
+    lugs: with the change.
+    softness: how many times softer each lug is.
+    length: the value, m, if it is a length, the largest of all lugs.
     """
 
     what: str
@@ -35,32 +39,34 @@ class JointChange:
 
 
 def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
-    """Of the lugs on a pin's bands, one thing at a time; not what changes nothing."""
+    """The variations of the lugs on a pin's bands, one property at a time, without those that
+    change nothing.
+    """
     same = (1.0,) * len(lugs)
-    found = []
+    changes = []
     for end in RANGE_ENDS:
         loose, words = zip(*(_with_clearance(pin, lug, end) for lug in lugs), strict=True)
         size = max(lug.clearance for lug in loose)
-        found.append(JointChange("clearance", _in_words(words), loose, same, size))
+        changes.append(JointChange("clearance", _in_words(words), loose, same, size))
     for end in RANGE_ENDS:
         stiff, words = zip(*(_stiffness(lug, end) for lug in lugs), strict=True)
         by = tuple(1.0 / times for times in stiff)
-        found.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
+        changes.append(JointChange("stiffness of the lugs", _in_words(words), tuple(lugs), by))
     for end in RANGE_ENDS:
         tilted, words = zip(*(_tilted(lug, end) for lug in lugs), strict=True)
-        found.append(JointChange("tilt", _in_words(words), tilted, same))
+        changes.append(JointChange("tilt", _in_words(words), tilted, same))
     unchanged = (tuple(lugs), same)
-    return (change for change in found if (change.lugs, change.softness) != unchanged)
+    return (change for change in changes if (change.lugs, change.softness) != unchanged)
 
 
 def with_stiffness(lug: Lug, times: float) -> Lug:
-    """Also its bushing."""
+    """The lug, and its bushing, so many times as stiff."""
 
-    def made(material: Material) -> Material:
+    def softened(material: Material) -> Material:
         return replace(material, youngs_modulus=material.youngs_modulus / times)
 
-    bushing = lug.bushing and replace(lug.bushing, material=made(lug.bushing.material))
-    return replace(lug, material=made(lug.material), bushing=bushing)
+    bushing = lug.bushing and replace(lug.bushing, material=softened(lug.bushing.material))
+    return replace(lug, material=softened(lug.material), bushing=bushing)
 
 
 def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:

@@ -16,11 +16,11 @@ MIN_WALL_ELEMENTS = 2.0  # with one element pressure at a rounded edge is 6 % hi
 
 
 def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> MeridianMesh:
-    """Of a lug's annulus, one surface for each segment outside and in the bore.
+    """The mesh of a lug's annulus, with one surface for each segment outside and in the bore.
 
-    across: elements over the bore's diameter where it is pressed, of which each ring, and what is
-    between bore and interface, has MIN_WALL_ELEMENTS at least. interface: a radius (m) along which
-    elements end.
+    across: elements over the bore's diameter where it is pressed; each ring, and the wall between
+    bore and interface, has at least MIN_WALL_ELEMENTS of them.
+    interface: a radius, m, along which elements end.
     """
     bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
     ends = [bore, *([] if interface is None else [interface]), outer]
@@ -38,27 +38,27 @@ def _rings(eye: Pin) -> list[tuple[float, float]]:
 
 
 def _even(start: float, end: float, size: float) -> Floats:
-    """Ends of elements after the start, of `size` at most."""
+    """The ends of elements after the start, of `size` at most."""
     count = max(1, int(np.ceil((end - start) / size - 1e-9)))
     return np.linspace(start, end, count + 1)[1:]
 
 
 def _layers(ends: list[float], size: float) -> list[Floats]:
-    """Radii after the first of `ends`, from `size` on growing outwards, with the others among
+    """The radii after the first of `ends`, from `size` on growing outwards, with the others among
     them.
     """
-    found, step = [], size
+    radii, step = [], size
     for start, end in pairwise(ends):
         ratio = 1.0 + (end - start) * (LAYER_GROWTH - 1.0) / step
         count = max(1, int(np.ceil(np.log(ratio) / np.log(LAYER_GROWTH) - 1e-9)))
         parts = LAYER_GROWTH ** np.arange(count)
-        found.append(start + (end - start) * np.cumsum(parts) / parts.sum())
+        radii.append(start + (end - start) * np.cumsum(parts) / parts.sum())
         step *= LAYER_GROWTH**count
-    return found
+    return radii
 
 
 def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np.dtype[np.int64]]]:
-    """By surface, the edges counter-clockwise (E, 3): ends, then middle."""
+    """The edges (E, 3) of each surface, counter-clockwise: ends, then middle."""
     facets = grid.boundary_facets()
     ends, middle = grid.facets[:, facets], grid.dofs.facet_dofs[0, facets]
     x, at = grid.doflocs, grid.doflocs[:, middle]
@@ -69,9 +69,9 @@ def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np
     along = x[:, ends[1]] - x[:, ends[0]]
     back = along[0] * rightwards + along[1] * onwards < 0.0
     nodes = np.stack([*np.where(back, ends[::-1], ends), middle], axis=1).astype(np.int64)
-    found = {"start": nodes[rightwards > 0.0], "end": nodes[rightwards < 0.0]}
+    edges = {"start": nodes[rightwards > 0.0], "end": nodes[rightwards < 0.0]}
     for label, (z0, z1) in zip(eye.labels, _rings(eye), strict=True):
         here = (at[1] > z0) & (at[1] < z1)
-        found[label] = nodes[here & (onwards > 0.0)]
-        found[f"bore {label}"] = nodes[here & (onwards < 0.0)]
-    return found
+        edges[label] = nodes[here & (onwards > 0.0)]
+        edges[f"bore {label}"] = nodes[here & (onwards < 0.0)]
+    return edges

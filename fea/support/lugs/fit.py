@@ -1,8 +1,8 @@
-"""Whether lugs fit a pin: what is refused before anything is computed.
+"""Checks that lugs fit a pin, made before anything is computed.
 
 Interference presses pin and eye as tubes one in the other, of which every wall follows Lame with
-free ends: u = r / E (s_tt - nu s_rr), s = A -+ B / r^2. Beyond a few times what yields one of them
-linear elasticity says nothing.
+free ends: u = r / E (s_tt - nu s_rr), s = A -+ B / r^2. Beyond a few times the interference that
+yields one of them linear elasticity does not apply.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Wall = tuple[float, float, Material]  # inner and outer radius, m
 
 
 def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
-    """The same pin, its bands in lugs of the structure (by the segments' names) among its
+    """The same pin with bands in lugs of the structure (by the segments' names) among its
     connections.
     """
     held = {lug.connection for lug in lugs} - set(pin.connections)
@@ -41,8 +41,9 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
 
 
 def carried(pin: PinLike, lugs: Sequence[Lug], foundations: bool = False) -> Carried:
-    """What the lugs of a pin carry of what its links leave over; foundations: by a beam on these,
-    on which a structure carries what is along the axis too.
+    """The part of the links' imbalance that the lugs of a pin carry.
+
+    foundations: whether the pin is a beam on these, on which a structure carries axial loads too.
     """
     structure = sum(lug.connection not in pin.connections for lug in lugs)
     tilts = any(lug.tilt > 0.0 for lug in lugs)
@@ -124,8 +125,11 @@ def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> N
 
 
 def yielding_interference(lug: Lug, radius: float, bore: float, material: Material) -> float:
-    """Interference of the diameters, m, at which a wall begins to yield (von Mises), free of other
-    loads; inf where no material has a yield strength. radius, bore: of the pin, both radii, m.
+    """The interference of the diameters, m, at which a wall begins to yield (von Mises), without
+    other loads.
+
+    It is inf where no material has a yield strength.
+    radius, bore: of the pin, both radii, m.
     """
     walls: list[Wall] = [(bore, radius, material), (radius, lug.outer_diameter / 2.0, lug.material)]
     if lug.bushing is not None:
@@ -136,7 +140,7 @@ def yielding_interference(lug: Lug, radius: float, bore: float, material: Materi
 
 
 def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
-    """By wall, yield strength over von Mises stress under an interference of 1 m."""
+    """The yield strength over the von Mises stress of each wall under an interference of 1 m."""
     yield math.inf
     for (inner, outer, material), (a, b) in zip(walls, fields, strict=True):
         if material.yield_strength is not None:
@@ -147,8 +151,10 @@ def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
 
 
 def _press_fit(walls: Sequence[Wall]) -> Floats:
-    """A and B (walls, 2) of s_rr, s_tt = A -+ B / r^2 in tubes one in the other, the first pressed
-    into the second by 1 m of the diameters, Pa and Pa m^2; the others are bonded.
+    """The constants A and B (walls, 2), Pa and Pa m^2, of s_rr, s_tt = A -+ B / r^2 in tubes one in
+    the other.
+
+    The first is pressed into the second by 1 m of the diameters; the others are bonded.
     """
     size = 2 * len(walls)
     system, right = np.zeros((size, size)), np.zeros(size)
@@ -156,27 +162,28 @@ def _press_fit(walls: Sequence[Wall]) -> Floats:
     system[0, :2] = (0.0, 1.0) if inner == 0.0 else (1.0, -1.0 / inner**2)
     system[1, -2:] = 1.0, -1.0 / outer**2
     for k in range(len(walls) - 1):
-        r, here = walls[k][1], slice(2 * k, 2 * k + 2)
-        there = slice(2 * k + 2, 2 * k + 4)
-        system[2 * k + 2, here], system[2 * k + 2, there] = (1.0, -1.0 / r**2), (-1.0, 1.0 / r**2)
-        system[2 * k + 3, here] = -_widening(r, walls[k][2])
-        system[2 * k + 3, there] = _widening(r, walls[k + 1][2])
+        r, this_wall = walls[k][1], slice(2 * k, 2 * k + 2)
+        next_wall = slice(2 * k + 2, 2 * k + 4)
+        system[2 * k + 2, this_wall], system[2 * k + 2, next_wall] = (
+            (1.0, -1.0 / r**2),
+            (-1.0, 1.0 / r**2),
+        )
+        system[2 * k + 3, this_wall] = -_widening(r, walls[k][2])
+        system[2 * k + 3, next_wall] = _widening(r, walls[k + 1][2])
     right[3] = 0.5
     scale = np.abs(system).max(axis=0)
-    found = np.linalg.solve(system / scale, right) / scale
-    return np.asarray(found.reshape(-1, 2))
+    constants = np.linalg.solve(system / scale, right) / scale
+    return np.asarray(constants.reshape(-1, 2))
 
 
 def _widening(r: float, material: Material) -> Floats:
-    """u_r by A and by B."""
+    """The factors of A and B in u_r."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
 
 
 def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
-    """What of pin and lugs a beam on foundations cannot answer (fea.joint.foundation), if
-    anything.
-    """
+    """The property of pin and lugs that a beam on foundations cannot represent, if any."""
     if not pin.stepped:
         return f"pin {pin.name} has cones or rounded edges, and its beams have only cylinders"
     for lug in lugs:

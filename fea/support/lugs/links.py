@@ -1,7 +1,8 @@
-"""What links ask of a pin in its lugs: one lug for each band, forces in balance with the body's.
+"""The loads of links on a pin in its lugs: one lug for each band, forces in balance with the
+body's.
 
 Lugs on bands where no link bears are those of a structure, which holds still: together they take
-what the links leave over.
+the remainder of the links' loads.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from geometry import Pin
 
 
 def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np.int64]:
-    """Of each band (B,) the number of its link, after the last for the structure."""
+    """The number of each band's link (B,); the structure comes after the last one."""
     number = {name: k for k, name in enumerate(links)}
     return np.array([number.get(name, len(links)) for name in connections], dtype=np.int64)
 
@@ -26,10 +27,12 @@ def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np
 def link_forces(
     pin: Pin, mass: float, loads: PinLoads, structure: bool = False, whole: bool = True
 ) -> Floats:
-    """Of the links along x and y by connection, (T, L, 2) N, and last of the structure, if any of
-    the lugs is its; mass: of the pin, kg. A small imbalance with the body force, as where a weight
-    is rounded, is shared by the links. whole: false for a part of loads, whose imbalance need not
-    be small.
+    """The forces of the links along x and y by connection, (T, L, 2) N.
+
+    The last is that of the structure, if it has any of the lugs. A small imbalance with the body
+    force, as where a weight is rounded, is shared by the links.
+    mass: of the pin, kg.
+    whole: false for a part of loads, whose imbalance need not be small.
 
     Raises: SolveError where it is not small, and for moments of links across the axis.
     """

@@ -1,4 +1,4 @@
-"""What surrounds a band of a pin: the eye of a link, with a bushing or without."""
+"""The surroundings of a band of a pin: the eye of a link, with or without a bushing."""
 
 from __future__ import annotations
 
@@ -29,8 +29,12 @@ class Bushing:
 
 @dataclass(frozen=True)
 class LugRange:
-    """Between what values something of a lug may lie, None where the usual ones are tried
-    (fea.support.lugs.changes): clearance, m; stiffness, times that of the lug; tilt, N m/rad.
+    """The ranges of the uncertain properties of a lug, None where the usual ones are tried
+    (fea.support.lugs.changes).
+
+    clearance: m.
+    stiffness: times that of the lug.
+    tilt: N m/rad.
 
     Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
     """
@@ -53,13 +57,17 @@ class LugRange:
 
 @dataclass(frozen=True)
 class Lug:
-    """The eye of the link at a connection, as an annulus; m.
+    """The eye of the link at a connection, as an annulus, m.
 
-    clearance: of the diameters, negative for interference. edge_radius: of the bore's edges. tilt:
-    N m/rad, of the link against the others about any axis across the pin; inf: guided, 0: free.
-    The pin bears on the bushing, if there is one. range: of what is not known of it.
+    clearance: of the diameters, negative for interference.
+    edge_radius: of the bore's edges.
+    tilt: N m/rad, stiffness of the link's tilt against the others about any axis across the pin;
+    inf: guided, 0: free.
+    bushing: the pin bears on it, if there is one.
+    range: of the uncertain properties of the lug.
 
-    Raises: ArgumentError for what cannot be; fea.support.lugs.fit has what depends on the pin.
+    Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
+    the pin.
     """
 
     connection: str
@@ -86,24 +94,26 @@ class Lug:
 
     @property
     def bearing(self) -> Material:
-        """What the pin bears on: the bushing's material or the lug's."""
+        """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material
 
     def gap(self, ends: Floats) -> Floats:
-        """Gap on the radius, (R,) m, on the mean over each ring with `ends` (R + 1,) m along z,
-        before anything moves: half of the clearance, and what the edges are rounded by.
+        """The gap on the radius, (R,) m, on the mean over each ring, before anything moves.
+
+        It is half of the clearance, and the depth of the edges' rounding.
+        ends: of the rings, (R + 1,) m along z.
         """
         return 0.5 * self.clearance + np.diff(self._rounded(ends)) / np.diff(ends)
 
     def _rounded(self, z: Floats) -> Floats:
-        """Integral of what the rounding of both edges takes from the bore, from its start to z."""
+        """The integral of the depth of rounding of both edges, from the bore's start to z."""
         first, last = z[0], z[-1]
         return _segment(self.edge_radius, z - first) - _segment(self.edge_radius, last - z)
 
 
 def _segment(radius: float, x: Floats) -> Floats:
-    """Integral from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t < r from
-    the edge, m^2.
+    """The integral, m^2, from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t
+    < r from the edge.
     """
     if radius == 0.0:
         return np.zeros_like(x)

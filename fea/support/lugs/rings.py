@@ -14,12 +14,10 @@ from geometry import Band, Pin, Segment
 
 USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
 MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many
-RING_PART_RATIO = (
-    2.5  # times as long each part of an outermost ring that is cut is with the next one
-)
-FILLET_PEAK_OFFSET = (
-    0.25  # of a fillet's radius from where it begins: its largest stress is not nearer
-)
+# Length of each part of an outermost ring that is cut, over that of the part before it.
+RING_PART_RATIO = 2.5
+# Of a fillet's radius: its largest stress is at least this far from where the fillet begins.
+FILLET_PEAK_OFFSET = 0.25
 MIN_RING_LENGTH = 1e-3  # ring, of the diameter
 # Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
 # begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
@@ -34,14 +32,15 @@ def ring_ends(
     beside: float | None = None,
     longest_last: tuple[float, float] = (math.inf, math.inf),
 ) -> Floats:
-    """Ends of the rings of a band, (R + 1,) m from its start on, as fine as `count` says: so many
-    where the bore is straight, but for long bands. Where its edges are rounded, the first rings of
-    the rounding are so short that contact may end in them.
+    """The ends of the rings of a band, (R + 1,) m from its start on.
 
+    Where its edges are rounded, the first rings of the rounding are so short that contact may end
+    in them.
+    count: number of rings where the bore is straight; more for long bands.
     beside: to resolve the peak of pressure where rounding begins, rings of `beside` times the
-    radius there, for the usual count, and as many as lead from them to the middle. longest_last:
-    the length, m, of the outermost rings at both ends at most, which are cut in parts for it where
-    edges are sharp; where they are rounded contact ends in short ones anyway.
+    radius there, for the usual count, and as many as lead from them to the middle.
+    longest_last: the largest length, m, of the outermost rings at both ends, which are cut in parts
+    for it where edges are sharp; where they are rounded contact ends in short ones anyway.
     """
     coarser = USUAL_RING_COUNT / count
     longest = 2.0 * MAX_RING_LENGTH * band.radius * coarser
@@ -64,8 +63,10 @@ def ring_ends(
 
 
 def _parts(length: float, most: float) -> Floats:
-    """Ends but the far one of the parts of an outermost ring, from the edge on: the first part no
-    longer than `most`, each so many times as long as those before it together.
+    """The ends, except the far one, of the parts of an outermost ring, from the edge on.
+
+    The first part is no longer than `most`; each is so many times as long as those before it
+    together.
     """
     count = 0 if length <= most else math.ceil(math.log(length / most) / math.log(RING_PART_RATIO))
     return np.asarray(
@@ -74,8 +75,10 @@ def _parts(length: float, most: float) -> Floats:
 
 
 def beside_fillets(pin: Pin, band: Band) -> tuple[float, float]:
-    """The longest, m, that the outermost rings of a band may be at both ends, so that a fillet's
-    largest stress is beyond what is not read beside them (fea.core.pressed).
+    """The largest length, m, of the outermost rings of a band at both ends.
+
+    It is such that a fillet's largest stress is beyond what is not read beside the rings
+    (fea.core.pressed).
     """
     near = [
         min(
@@ -104,7 +107,7 @@ def _to_the_peak(
 
 
 def _from_edge(length: float, even: float, first: float, growth: float, longest: float) -> Floats:
-    """Lengths that add up to `length`, m: alike over `even`, then growing."""
+    """Lengths that add up to `length`, m: equal over `even`, then growing."""
     even = min(even, length)
     count = math.ceil(even / first - 1e-9)
     alike = np.full(count, even / max(count, 1))
@@ -112,12 +115,14 @@ def _from_edge(length: float, even: float, first: float, growth: float, longest:
 
 
 def graded(length: float, count: int) -> Floats:
-    """Ends of rings, (count + 1,) m from 0 on, shorter towards both ends, where pressure rises."""
+    """The ends of rings, (count + 1,) m from 0 on, shorter towards both ends, where pressure
+    rises.
+    """
     return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
 
 
 def _growing(length: float, first: float, growth: float, longest: float) -> Floats:
-    """Lengths that add up to `length`, m: from about `first` on each `growth` times the one before,
+    """Lengths that add up to `length`, m, from about `first` on each `growth` times the one before,
     up to `longest`.
     """
     most = math.ceil(length / longest) + math.ceil(
@@ -129,12 +134,12 @@ def _growing(length: float, first: float, growth: float, longest: float) -> Floa
 
 
 def ring(connection: str, i: int) -> str:
-    """Name of a ring's surface, i from 0 on."""
+    """The name of a ring's surface, i from 0 on."""
     return f"{connection} ring {i + 1}"
 
 
 def rings(connection: str, ends: Floats) -> list[str]:
-    """Names of all that have these ends."""
+    """The names of all rings with these ends."""
     return [ring(connection, i) for i in range(len(ends) - 1)]
 
 
@@ -161,8 +166,8 @@ def whole_names(pin: Pin, ends: Mapping[str, Floats]) -> dict[str, str]:
     """The pin's own names of the surfaces of `ringed`, by the names there."""
     cut, k, names = ringed(pin, ends), 0, {}
     for i, s in enumerate(pin.segments):
-        own = ends.get(s.connection or "")
-        for _ in range(1 if own is None else len(own) - 1):
+        band_ends = ends.get(s.connection or "")
+        for _ in range(1 if band_ends is None else len(band_ends) - 1):
             for bore in ("", "bore "):
                 names[f"{bore}{cut.labels[k]}"] = f"{bore}{pin.labels[i]}"
             k += 1

@@ -1,7 +1,7 @@
 """Limit loads of the rows of a task that the study or `--limit-load` requests.
 
-A row that yields has its limit load without being asked, if that is a matter of seconds of
-processor time. Whether it is may depend on the computer; what is found never does.
+The limit load of a row that yields is also computed without a request if that takes seconds of
+processor time. Whether it is computed may depend on the computer; its value never does.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that wa
 
 
 def limit_rung(study: Study, pin: str) -> Rung | None:
-    """Which model finds the limit loads of a pin; None: they are not requested."""
+    """Return the model for the limit loads of a pin, None where they are not requested."""
     asked = study.table.analysis.limit_load
     if isinstance(asked, list):
         return "solid" if pin in asked else None
@@ -35,22 +35,22 @@ def limit_rung(study: Study, pin: str) -> Rung | None:
 
 
 def rung_of(plan: Plan, pin: str) -> Rung | None:
-    """The same in a run, which may request more than the study."""
+    """Return `limit_rung` for a run, which may request more than the study."""
     return limit_rung(plan.study, pin) or ("auto" if plan.limit_load else None)
 
 
 def limit_seconds(plan: Plan) -> float:
-    """Processor time that a limit load may take, s: endless where someone asked for it."""
+    """Return the processor time that a limit load may take, s; infinite where it was requested."""
     asked = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
     return inf if asked else UNASKED_LIMIT_LOAD_SECONDS
 
 
 def limit_loads(
-    plan: Plan, task: Task, found: Iterable[Solution], tell: Tell
+    plan: Plan, task: Task, solutions: Iterable[Solution], tell: Tell
 ) -> tuple[LimitLoad | None, ...]:
-    """One for each case of a task, None where it is not requested."""
+    """Return the limit load of each case of a task, None where it is not requested."""
     rung = rung_of(plan, task.pin.name)
-    return tuple(_limit_load(plan, task, solved, rung, tell) for solved in found)
+    return tuple(_limit_load(plan, task, solved, rung, tell) for solved in solutions)
 
 
 def _limit_load(
@@ -75,7 +75,7 @@ def _limit_load(
 
 
 def limit_asked(peak: Maximum, task: Task, rung: Rung) -> bool:
-    """Whether the limit load of a row is computed."""
+    """Return whether the limit load of a row is computed."""
     factor = peak.safety_factor(task.material.yield_strength)
     if factor is None or peak.governing is None:
         return False

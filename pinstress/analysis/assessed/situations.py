@@ -1,4 +1,4 @@
-"""The situation of each row and its margins of safety, and the arms of its bending moment."""
+"""The situation of each row, its margins of safety, and the arms of its bending moment."""
 
 from __future__ import annotations
 
@@ -30,10 +30,11 @@ LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
 
 @dataclass(frozen=True)
 class Assessed:
-    """What was made of one pin in one case.
+    """The assessment of one pin in one case.
 
-    margins: of every check at every place and level; these have the hand checks. worst: the worst
-    place of each check, of those that count. arms: None where formulas do not apply.
+    margins: of every check at every place and level; the hand checks use these.
+    worst: the worst place of each check that counts.
+    arms: None where the formulas do not apply.
     """
 
     margins: tuple[Margin, ...]
@@ -48,8 +49,9 @@ def assessed(
     joint: JointResult | None,
     limit: LimitLoad | None = None,
 ) -> Assessed:
-    """The margins of a row, by formula and by the model. A pin that is cut is checked as if it were
-    not.
+    """Return the margins of a row, by formula and by the model.
+
+    A pin with cuts is checked as if it had none.
     """
     loads = next(x for x in task.loads if x.case == peak.case)
     required = study.table.analysis.required_safety_factor
@@ -71,16 +73,16 @@ def assessed(
 
 
 def load_factors(study: Study) -> LoadFactors:
-    """Those of a study."""
+    """Return the load factors of a study."""
     a = study.table.analysis
     return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
 
 
-def factor_assumption(study: Study, found: Sequence[Assessed]) -> tuple[str, ...]:
-    """A sentence on the factors that the study does not give, if any margin depends on them."""
+def factor_assumption(study: Study, assessments: Sequence[Assessed]) -> tuple[str, ...]:
+    """Return a sentence on the factors that the study omits, if any margin depends on them."""
     table = study.table.analysis
     assumed = [key for key in LOAD_FACTOR_KEYS if key not in table.model_fields_set]
-    if not assumed or not any(x.worst for x in found):
+    if not assumed or not any(x.worst for x in assessments):
         return ()
     values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
     return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)
@@ -89,8 +91,10 @@ def factor_assumption(study: Study, found: Sequence[Assessed]) -> tuple[str, ...
 def _situation(
     study: Study, task: Task, loads: PinLoads, joint: JointResult | None
 ) -> tuple[Situation, str]:
-    """The situation, and why it has no profile or, where neither the joint nor equilibrium gives
-    all forces, is not complete; empty where it has and is.
+    """Return the situation of a row and the reason why it is incomplete.
+
+    The reason says why there is no profile, or that neither the joint nor equilibrium gives all
+    forces; it is empty for a complete situation.
     """
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
@@ -120,8 +124,10 @@ def _situation(
 
 
 def _not_made(s: Situation, why: str) -> Iterable[Margin]:
-    """The checks that a situation does not allow, and those of lugs at clamps, whose force no
-    formula has. why: what the checks by formula need.
+    """Yield the checks that a situation does not allow, and those of lugs at clamps, whose force no
+    formula gives.
+
+    why: what the checks by formula need.
     """
     lacking = {FORMULA_CHECKS: why} if why else {}
     if s.profile is not None:
@@ -136,7 +142,7 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
 
 
 def _arms(s: Situation, task: Task, peak: Maximum, joint: JointResult | None) -> BendingArms:
-    """At the governing instant, which is one of the joint's."""
+    """Return the arms of the bending moment at the governing instant, one of the joint's."""
     now = s.by_formula.at(np.array([0]))
     if peak.time is not None and s.joint is None and peak.case in task.between:
         now = task.between[peak.case](np.array([peak.time]))

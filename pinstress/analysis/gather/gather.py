@@ -1,4 +1,4 @@
-"""From what the rooms found, in SI, to the results that reports are made from."""
+"""Results for reports, gathered in SI from the solutions and assessments of a run."""
 
 from __future__ import annotations
 
@@ -46,38 +46,44 @@ WITHOUT_FRICTION_NOTE = (
 
 
 def _in_lugs(study: Study) -> bool:
-    """Whether lugs support any pin."""
+    """Return whether lugs support any pin."""
     joints = study.table.analysis.joints
     return joints in ("contact", "foundation") or (
         joints == "auto" and any(pin.lug for pin in study.table.pin.values())
     )
 
 
-def results_of(plan: Plan, found: list[PinOutcome]) -> plain.Results:
-    """A plan's results from what was found of its tasks."""
+def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
+    """Return a plan's results from the outcomes of its tasks."""
     study = plan.study
-    found = [
-        replace(made, histories=with_sequences(study, plan.loads, made.histories)) for made in found
+    outcomes = [
+        replace(outcome, histories=with_sequences(study, plan.loads, outcome.histories))
+        for outcome in outcomes
     ]
     pins, cases = list(study.table.pin), list(plan.loads)
     rows = [
         (task, *row)
-        for task, made in zip(plan.tasks, found, strict=True)
+        for task, outcome in zip(plan.tasks, outcomes, strict=True)
         for row in zip(
-            made.peaks, made.joints or [None] * len(made.peaks), made.strength, strict=True
+            outcome.peaks,
+            outcome.joints or [None] * len(outcome.peaks),
+            outcome.strength,
+            strict=True,
         )
     ]
-    opinions = {(o.pin, o.case): o for made in found for o in made.opinions}
+    opinions = {(o.pin, o.case): o for outcome in outcomes for o in outcome.opinions}
     limits = {
         (peak.pin, peak.case): limit
-        for made in found
-        for peak, limit in zip(made.peaks, made.limits, strict=False)  # none of a task that failed
+        for outcome in outcomes
+        for peak, limit in zip(
+            outcome.peaks, outcome.limits, strict=False
+        )  # none of a task that failed
     }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
-    beam = next((made.beam for made in found if made.beam is not None), None)
+    beam = next((outcome.beam for outcome in outcomes if outcome.beam is not None), None)
     results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
-    landing = {(r.pin, r.case): r for made in found for r in made.landing}
-    fatigue, fatigue_margins = fatigue_of(plan, found)
+    landing = {(r.pin, r.case): r for outcome in outcomes for r in outcome.landing}
+    fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
         pins=tuple(
@@ -90,27 +96,32 @@ def results_of(plan: Plan, found: list[PinOutcome]) -> plain.Results:
             for p in results.pins
         ),
         landing=tuple(landing.values()),
-        surfaces=tuple(surface for made in found for surface in made.surfaces),
-        changes=_worst_changes(found),
-        sensitivities=_in_order(found, pins, cases, plan.sensitive),
-        histories=tuple(history for made in found for history in made.histories),
+        surfaces=tuple(surface for outcome in outcomes for surface in outcome.surfaces),
+        changes=_worst_changes(outcomes),
+        sensitivities=_in_order(outcomes, pins, cases, plan.sensitive),
+        histories=tuple(history for outcome in outcomes for history in outcome.histories),
         fatigue=fatigue,
         margins=(*results.margins, *fatigue_margins),
     )
     return _in_study_units(results, study)
 
 
-def _worst_changes(found: list[PinOutcome]) -> tuple[Remedy, ...]:
-    """One for each pin, for the worst of its cases; the pin with the worst first."""
-    rows = sorted((x.change for x in found if x.change), key=lambda change: change.load_factor)
+def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
+    """Return one remedy for each pin, for the worst of its cases; the pin with the worst comes
+    first.
+    """
+    rows = sorted((x.change for x in outcomes if x.change), key=lambda change: change.load_factor)
     return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
 
 
 def _in_order(
-    found: list[PinOutcome], pins: list[str], cases: list[str], every: bool
+    outcomes: list[PinOutcome], pins: list[str], cases: list[str], every: bool
 ) -> tuple[PinSensitivities, ...]:
-    """As the rows are; without `every` one for each pin, for the worst of its cases."""
-    rows = [row for made in found for row in made.sensitivities]
+    """Return the sensitivities in the order of the rows.
+
+    every: whether of all cases; otherwise of each pin's worst case only.
+    """
+    rows = [row for outcome in outcomes for row in outcome.sensitivities]
     if not every:
         rows = list({row.pin: row for row in sorted(rows, key=lambda row: row.maximum)}.values())
     return tuple(sorted(rows, key=lambda row: (pins.index(row.pin), cases.index(row.case))))
@@ -122,7 +133,10 @@ def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
 
 
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
-    """The mechanics of a study without stresses. Raises: InputError for bad input."""
+    """Return the mechanics of a study without stresses.
+
+    Raises: InputError for bad input.
+    """
     published = read_published(study)
     loads = all_loads(study, chosen_cases(study, cases))
     tolerance = study.table.analysis.tolerance
@@ -137,10 +151,13 @@ def _results(
     published: Published,
     tolerance: float,
 ) -> plain.Results:
-    """Everything a run found, in SI. rows: each peak with its task, in the order of the table."""
+    """Return all results of a run, in SI.
+
+    rows: each peak with its task, in the order of the table.
+    """
     table = study.table
     tasks = {task.pin.name: task for task, *_ in reversed(rows)}
-    strength = [found for *_, found in rows]
+    strength = [assessment for *_, assessment in rows]
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -154,8 +171,8 @@ def _results(
             for name in table.pin
             if name in tasks
         ),
-        margins=tuple(margin for found in strength for margin in found.worst),
-        arms=tuple(found.arms for found in strength if found.arms),
+        margins=tuple(margin for assessment in strength for margin in assessment.worst),
+        arms=tuple(assessment.arms for assessment in strength if assessment.arms),
         **mechanics(study, loads, published),
         beam_check=beam,
         provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
@@ -184,7 +201,7 @@ def _pin_result(
     task: Task,
     peak: Maximum,
     joint: JointResult | None,
-    found: Assessed,
+    assessment: Assessed,
     published: Published,
 ) -> plain.PinResult:
     strength = task.material.yield_strength
@@ -222,7 +239,7 @@ def _pin_result(
         published_safety_factor=theirs[1],
         why=peak.why,
         singular_at=peak.singular_at,
-        margins=found.margins,
+        margins=assessment.margins,
         max_von_mises_interval=peak.interval,
         safety_factor_interval=_factors(peak, strength),
         error_parts={} if peak.parts is None else asdict(peak.parts),
@@ -237,7 +254,9 @@ def _held(task: Task, joint: JointResult | None) -> str:
 
 
 def _factors(peak: Maximum, strength: float | None) -> tuple[float, float | None] | None:
-    """Factor of safety over the interval of the maximum; None above, where no stress is left."""
+    """Return the factors of safety at both ends of the interval of the maximum; the upper one is
+    None where no stress is left.
+    """
     if peak.interval is None or strength is None:
         return None
     low, high = peak.interval
@@ -254,7 +273,7 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
 
 
 def _meets(peak: Maximum, strength: float | None, required: float | None) -> bool | None:
-    """Whether the required factor, or yield, is reached; None where that is open."""
+    """Return whether the required factor, or yield, is reached; None where that is not decided."""
     return None if strength is None else meets_limit(peak, strength / (required or 1.0))
 
 
@@ -275,7 +294,7 @@ def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
 def landing_range(
     loads: Mapping[str, CaseLoads], task: Task, solution: Solution
 ) -> plain.LandingRange | None:
-    """A pin over the ranges of its landing's impulse: unit fields superposed."""
+    """Return a pin's results over the ranges of its landing's impulse, by superposition."""
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
@@ -298,7 +317,9 @@ def landing_range(
 
 
 def _maxima(task: Task, solution: Solution, loads: PinLoads) -> plain.Floats:
-    """The larger of surface and section, Pa, under other loads of a case, at each instant."""
+    """Return the larger of the stresses of surface and section, Pa, at each instant of other loads
+    of a case.
+    """
     acting, clamps = solution.pressed(loads), tuple[str, ...]()
     if task.lugs:
         pin = solution.rings
@@ -322,12 +343,12 @@ def _spread(peak: Maximum) -> tuple[float, float] | None:
 
 
 def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
-    """The cuts of a pin as reports draw them, in SI."""
+    """Yield the cuts of a pin as reports draw them, in SI."""
     for name, cut in pin.cuts.items():
-        found = drawn(cut, pin.profile)
+        drawing = drawn(cut, pin.profile)
         size, offset, depth = _cut_sizes(cut)
         low, high = (cut.z, cut.z) if isinstance(cut, Hole) else _cut_ends(cut)
-        lines = tuple((tuple((z, x) for z, x in at.tolist()), hide) for at, hide in found.lines)
+        lines = tuple((tuple((z, x) for z, x in at.tolist()), hide) for at, hide in drawing.lines)
         yield CutShape(
             name,
             (max(low, 0.0), min(high, pin.length)),
@@ -336,7 +357,7 @@ def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
             depth,
             math.degrees(cut.angle),
             lines,
-            found.notches,
+            drawing.notches,
         )
 
 
@@ -346,7 +367,7 @@ def _cut_ends(cut: Cut) -> tuple[float, float]:
 
 
 def _cut_sizes(cut: Cut) -> tuple[float, float, float | None]:
-    """Diameter, width or distance, offset, depth."""
+    """Return the diameter, width or distance of a cut, its offset and its depth."""
     if isinstance(cut, Flat):
         return cut.distance, 0.0, None
     if isinstance(cut, Slot):

@@ -1,4 +1,4 @@
-"""From histories of stress to damage under the study's spectrum."""
+"""Damage under the study's spectrum, from histories of stress."""
 
 from __future__ import annotations
 
@@ -36,16 +36,17 @@ GRADIENT_SUPPORT_NOTE = (
 
 @dataclass(frozen=True)
 class _Open:
-    """Why a pin's fatigue is not decided, and what would decide it."""
+    """The reason why a pin's fatigue is not decided, and what would decide it."""
 
     reason: str
     needs: str
 
 
-def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, list[PinMargin]]:
-    """Of all critical points, the worst first, and the margins; None and none without a spectrum.
+def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, list[PinMargin]]:
+    """Return the fatigue of all critical points, the worst first, and the margins; None and no
+    margins without a spectrum.
 
-    Whatever fails here fails for a pin, whose fatigue is then not decided: other results stay.
+    A failure here leaves the fatigue of its pin open; other results are unaffected.
     """
     table = plan.study.table.fatigue
     if table is None:
@@ -56,9 +57,11 @@ def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, lis
     for pin in dict.fromkeys(task.pin.name for task in plan.tasks):
         if pin in without:
             continue
-        own, failed = _points(plan, [h for m in found for h in m.histories if h.pin == pin], table)
-        points += own
-        if (missing := _missing(plan, found, pin, table) or failed) is not None:
+        pin_points, failed = _points(
+            plan, [h for m in outcomes for h in m.histories if h.pin == pin], table
+        )
+        points += pin_points
+        if (missing := _missing(plan, outcomes, pin, table) or failed) is not None:
             opens[pin] = missing
     points.sort(key=lambda p: (-p.damage, -float(p.amplitudes.max(initial=0.0))))
     # More damage cannot help a pin that has too much already.
@@ -73,7 +76,7 @@ def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, lis
         probability=table.failure_probability,
         life=table.life,
         points=tuple(points),
-        left_out=(*short, *_left_out(plan, found, table, points)),
+        left_out=(*short, *_left_out(plan, outcomes, table, points)),
         not_decided={pin: open_.reason for pin, open_ in opens.items() if pin not in failing},
     )
     needs = {pin: open_.needs for pin, open_ in opens.items() if pin not in failing}
@@ -82,16 +85,17 @@ def fatigue_of(plan: Plan, found: list[PinOutcome]) -> tuple[Fatigue | None, lis
     return fatigue, _margins(plan, fatigue, needs)
 
 
-def _margins(plan: Plan, found: Fatigue, needs: dict[str, str]) -> list[PinMargin]:
-    """The margins of checks over all cases of a pin, the worst pin first. needs: what is missing of
-    pins whose damage is not decided.
+def _margins(plan: Plan, result: Fatigue, needs: dict[str, str]) -> list[PinMargin]:
+    """Return the margins of checks over all cases of a pin, the worst pin first.
+
+    needs: by pin whose damage is not decided, what is missing.
     """
     tasks = {task.pin.name: task for task in plan.tasks}
-    damaged = dict.fromkeys(p.pin for p in found.points if p.pin not in needs)
+    damaged = dict.fromkeys(p.pin for p in result.points if p.pin not in needs)
     margins = []
     for pin in (*damaged, *needs):
-        points = tuple(p for p in found.points if p.pin == pin)
-        fatigue = PinFatigue(points, found.life, found.unit, found.method, needs.get(pin, ""))
+        points = tuple(p for p in result.points if p.pin == pin)
+        fatigue = PinFatigue(points, result.life, result.unit, result.method, needs.get(pin, ""))
         s = Situation(None, tasks[pin].material, factors=load_factors(plan.study), fatigue=fatigue)
         margins += [PinMargin(pin, "", m) for m in worst_places(margins_of(s, "pin"))]
     return margins
@@ -103,12 +107,12 @@ def _material(plan: Plan, pin: str) -> FatigueMaterial:
 
 
 def _pressed(lugs: Iterable[Lug]) -> bool:
-    """Whether any is an interference fit."""
+    """Return whether any lug has an interference fit."""
     return any(lug.clearance < 0.0 for lug in lugs)
 
 
 def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
-    """Pins whose material has no data for the method."""
+    """Return the pins whose material has no data for the method."""
     pins = dict.fromkeys(task.pin.name for task in plan.tasks)
     data = {pin: _material(plan, pin) for pin in pins}
     needs_fkm = table.method == "fkm-p-ram"
@@ -118,7 +122,7 @@ def _without_data(plan: Plan, table: FatigueTable) -> list[str]:
 def _points(
     plan: Plan, histories: list[PointHistory], table: FatigueTable
 ) -> tuple[list[PointFatigue], _Open | None]:
-    """Of one pin, and what is open at any of its points."""
+    """Return the fatigue of the points of one pin, and what is not decided at any of them."""
     points, failed = [], None
     for history in histories:
         at = f"at point {history.point}"
@@ -136,8 +140,8 @@ def _points(
     return points, failed
 
 
-def _missing(plan: Plan, found: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
-    """What of the spectrum no stress of the pin is known of."""
+def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTable) -> _Open | None:
+    """Return the part of the spectrum for which no stress of the pin is known."""
     sequences = plan.study.table.sequence
     cases: dict[str, None] = {}
     for name in table.occurrences:
@@ -146,15 +150,22 @@ def _missing(plan: Plan, found: list[PinOutcome], pin: str, table: FatigueTable)
     idle = [case for case in cases if case not in plan.loads]
     if idle:
         return _Open(f"{_named(idle)} not run", f"{_named(idle, verb='')} to be run")
-    mine = [m for t, m in zip(plan.tasks, found, strict=True) if t.pin.name == pin]
-    there = {c.case for made in mine for h in made.histories for c in h.cases}
-    peaks = [p for made in mine for p in made.peaks if p.case in cases and p.case not in there]
+    pin_outcomes = [m for t, m in zip(plan.tasks, outcomes, strict=True) if t.pin.name == pin]
+    covered = {c.case for outcome in pin_outcomes for h in outcome.histories for c in h.cases}
+    peaks = [
+        p
+        for outcome in pin_outcomes
+        for p in outcome.peaks
+        if p.case in cases and p.case not in covered
+    ]
     if unsolved := [p.case for p in peaks if p.max_von_mises is None]:
         verdict = next(p.verdict for p in peaks if p.max_von_mises is None)
         return _Open(f"{_named(unsolved)} not solved ({verdict})",
                      f"a solution of {_named(unsolved, verb='')}")  # fmt: skip
     if peaks:
-        reason = next((made.no_histories for made in mine if made.no_histories), "")
+        reason = next(
+            (outcome.no_histories for outcome in pin_outcomes if outcome.no_histories), ""
+        )
         text = f"no history of stress in {_named([p.case for p in peaks], verb='')}"
         return _Open(f"{text} ({reason})" if reason else text, "a history of stress")
     tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
@@ -165,22 +176,24 @@ def _missing(plan: Plan, found: list[PinOutcome], pin: str, table: FatigueTable)
 
 
 def _named(cases: list[str], verb: str = "was") -> str:
-    """A case was, cases were; without a verb the cases alone."""
+    """Return "case A was" or "cases A, B were"; without a verb the cases alone."""
     many = len(cases) > 1
     ending = f" {'were' if many else 'was'}" if verb else ""
     return f"case{'s' * many} {', '.join(cases)}{ending}"
 
 
 def _left_out(
-    plan: Plan, found: list[PinOutcome], table: FatigueTable, points: list[PointFatigue]
+    plan: Plan, outcomes: list[PinOutcome], table: FatigueTable, points: list[PointFatigue]
 ) -> tuple[str, ...]:
     elastic = {p.pin for p in points if p.method != "fkm-p-ram"}
-    singular = dict.fromkeys(p.pin for made in found for p in made.peaks if p.verdict == "singular")
+    singular = dict.fromkeys(
+        p.pin for outcome in outcomes for p in outcome.peaks if p.verdict == "singular"
+    )
     yields = [
         task.pin.name
-        for task, made in zip(plan.tasks, found, strict=True)
+        for task, outcome in zip(plan.tasks, outcomes, strict=True)
         if task.pin.name in elastic
-        and any(meets_limit(p, task.material.yield_strength or inf) is False for p in made.peaks)
+        and any(meets_limit(p, task.material.yield_strength or inf) is False for p in outcome.peaks)
     ]
     tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
     left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)
@@ -210,12 +223,12 @@ def _left_out(
 
 
 def _spectrum(table: FatigueTable) -> Spectrum:
-    """Of a study."""
+    """Return the spectrum of a study."""
     return Spectrum(table.occurrences, table.method, table.failure_probability, table.life)
 
 
 def _fatigue_material(table: MaterialTable) -> FatigueMaterial:
-    """What is given of a material."""
+    """Return the fatigue data that the study gives for a material."""
     sn, fkm, ultimate = table.fatigue, table.fkm, table.ultimate_strength
     return FatigueMaterial(
         None if sn is None else _sn_curve(sn, ultimate),

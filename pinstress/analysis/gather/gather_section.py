@@ -1,4 +1,4 @@
-"""What a pin shows when it is cut open through its maximum."""
+"""Section of a pin through its maximum, as reports draw it."""
 
 from __future__ import annotations
 
@@ -22,35 +22,38 @@ RADIUS_TOLERANCE = 2e-3  # of the radius
 def half_section(
     plane: MeridianPlane, loads: PinLoads, instant: int, maximum: float, at: tuple[float, ...]
 ) -> HalfSection:
-    """Through the point `at` (x, y, z) of the surface's maximum, which is outside of what is
-    excluded; what exceeds it is cut down to it, but not what lies beneath lugs.
+    """Return the half section through the surface's maximum, which lies outside the excluded zones.
+
+    Stress that exceeds the maximum is limited to it, except beneath lugs.
+
+    at: the point of the maximum (x, y, z), m.
     """
     x, y, z = at
     angle, r = atan2(y, x), hypot(x, y)
     stations = np.union1d(_stations(plane), [z])
     inner, outer = plane.walls(stations)
     k = int(np.searchsorted(stations, z))
-    own = np.clip((r - inner[k]) / (outer[k] - inner[k]), 0.0, 1.0)
-    part = np.union1d(np.sin(np.linspace(0.0, 0.5 * np.pi, SECTION_ROWS)), [own])
-    j = int(np.searchsorted(part, own))
+    fraction = np.clip((r - inner[k]) / (outer[k] - inner[k]), 0.0, 1.0)
+    part = np.union1d(np.sin(np.linspace(0.0, 0.5 * np.pi, SECTION_ROWS)), [fraction])
+    j = int(np.searchsorted(part, fraction))
     grid = _grid(stations, inner, outer, part)
-    found = plane.von_mises(loads, instant, angle, grid)
+    stress = plane.von_mises(loads, instant, angle, grid)
     if loads.pressed is None:
-        found = np.minimum(found, maximum)
-    found[0, k, j] = maximum
+        stress = np.minimum(stress, maximum)
+    stress[0, k, j] = maximum
     allowed = np.broadcast_to(
-        np.where(plane.outside(grid), SECTION_STRESS_TOLERANCE * maximum, np.inf), found.shape
+        np.where(plane.outside(grid), SECTION_STRESS_TOLERANCE * maximum, np.inf), stress.shape
     )
     walls = np.stack([inner, outer], axis=1)
-    rows = _needed(stations, found, allowed, k, walls)
-    found, allowed = (np.swapaxes(x[:, rows], 1, 2) for x in (found, allowed))
-    columns = _needed(part, found, allowed, j)
-    found = np.swapaxes(found[:, columns], 1, 2)
-    return HalfSection(angle, stations[rows], inner[rows], outer[rows], part[columns], found)
+    rows = _needed(stations, stress, allowed, k, walls)
+    stress, allowed = (np.swapaxes(x[:, rows], 1, 2) for x in (stress, allowed))
+    columns = _needed(part, stress, allowed, j)
+    stress = np.swapaxes(stress[:, columns], 1, 2)
+    return HalfSection(angle, stations[rows], inner[rows], outer[rows], part[columns], stress)
 
 
 def _stations(plane: MeridianPlane) -> Floats:
-    """Along z, close together where the mesh is, twice at shoulders."""
+    """Return stations along z, close together where the mesh is fine, double at shoulders."""
     r, z = plane.skin.T
     low, high = float(z.min()), float(z.max())
     near = SHOULDER_OFFSET * (high - low)
@@ -63,7 +66,7 @@ def _stations(plane: MeridianPlane) -> Floats:
 
 
 def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
-    """Points (Z, R, 2), r and z, none of them outside by round-off."""
+    """Return points (Z, R, 2) r and z, none of them outside the pin by round-off."""
     safe = 1.0 - SHOULDER_OFFSET
     r = inner[:, None] + (outer - inner)[:, None] * (0.5 + safe * (part - 0.5))
     near = SHOULDER_OFFSET * (z[-1] - z[0])
@@ -72,14 +75,19 @@ def _grid(z: Floats, inner: Floats, outer: Floats, part: Floats) -> Floats:
 
 
 def _needed(
-    at: Floats, found: Floats, allowed: Floats, own: int, radii: Floats | None = None
+    at: Floats, stress: Floats, allowed: Floats, peak: int, radii: Floats | None = None
 ) -> Mask:
-    """Which of N places to keep, `own` among them, for stresses (2, N, ..) and radii (N, 2)."""
-    values, within = (np.moveaxis(x, 1, 0).reshape(len(at), -1) for x in (found, allowed))
+    """Return which of N places to keep.
+
+    stress: (2, N, ..).
+    peak: index of a place that is kept in any case.
+    radii: (N, 2) inner and outer.
+    """
+    values, within = (np.moveaxis(x, 1, 0).reshape(len(at), -1) for x in (stress, allowed))
     if radii is not None:
         values = np.concatenate([values, radii], axis=1)
         within = np.concatenate(
             [within, np.full(radii.shape, RADIUS_TOLERANCE * radii.max())], axis=1
         )
     # A pin without any stress allows nothing, and misses nothing.
-    return needed(at, values, within + np.finfo(float).tiny, np.arange(len(at)) == own)
+    return needed(at, values, within + np.finfo(float).tiny, np.arange(len(at)) == peak)

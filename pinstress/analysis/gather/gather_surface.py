@@ -1,4 +1,4 @@
-"""From a pin's solutions to the surfaces that reports show."""
+"""Surfaces of a pin as reports show them, from its solutions."""
 
 from __future__ import annotations
 
@@ -39,20 +39,20 @@ def surfaces_of(
     solutions: Sequence[Solution],
     pressures: Sequence[CellPressure | None],
 ) -> tuple[Surface, ...]:
-    """A pin's surfaces with all the cases that some model with fields solved, one for each mesh.
+    """Return a pin's surfaces, one for each mesh, with all cases that a model with fields solved.
 
-    pressures: of contact with its lugs, by solution.
+    pressures: contact pressure of the lugs, by solution.
     """
     together: dict[int, list[tuple[Solution, CellPressure | None]]] = {}
     for solution, pressure in zip(solutions, pressures, strict=True):
-        own = id(_unit_fields(solution.answer))
-        together.setdefault(own, []).append((solution, pressure))
-    found = (_surface(loads, task, each) for each in together.values())
-    return tuple(surface for surface in found if surface is not None)
+        mesh_id = id(_unit_fields(solution.answer))
+        together.setdefault(mesh_id, []).append((solution, pressure))
+    surfaces = (_surface(loads, task, group) for group in together.values())
+    return tuple(surface for surface in surfaces if surface is not None)
 
 
 def _unit_fields(answer: StressField | None) -> object:
-    """What answers from one mesh share."""
+    """Return the object that answers from one mesh share."""
     if isinstance(answer, SolidField):
         return answer.solution.fields
     if isinstance(answer, CutField):
@@ -63,11 +63,11 @@ def _unit_fields(answer: StressField | None) -> object:
 def _surface(
     loads: dict[str, CaseLoads],
     task: Task,
-    each: Sequence[tuple[Solution, CellPressure | None]],
+    solved: Sequence[tuple[Solution, CellPressure | None]],
 ) -> Surface | None:
-    """Of cases solved on one mesh; None where no model has fields."""
-    found = [(s, s.answer, p) for s, p in each if s.answer is not None]
-    with_fields = [(s, a, p) for s, a, p in found if unit_surface(a) is not None]
+    """Return the surface of the cases solved on one mesh; None where no model has fields."""
+    answers = [(s, s.answer, p) for s, p in solved if s.answer is not None]
+    with_fields = [(s, a, p) for s, a, p in answers if unit_surface(a) is not None]
     if not with_fields:
         return None
     surface = unit_surface(with_fields[0][1])
@@ -79,12 +79,12 @@ def _surface(
     ]
     keep = np.ones(len(surface.points), dtype=bool)
     if surface.revolved:
-        kept = np.any(
+        required = np.any(
             [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
             axis=0,
         )
         surface, cases = fewer_loads(surface, cases)
-        keep = meridian_points(surface, cases, kept)
+        keep = meridian_points(surface, cases, required)
         cases = [
             replace(c, unread=_unread(loads[c.case], s, np.flatnonzero(keep), c.location))
             for c, (s, _, _) in zip(cases, with_fields, strict=True)
@@ -111,7 +111,7 @@ def _plane(answer: StressField) -> MeridianPlane | None:
 def _case(
     case: CaseLoads, task: Task, solution: Solution, plane: MeridianPlane | None
 ) -> SurfaceCase:
-    """At the case's samples and the governing instant."""
+    """Return a case's fields at its samples and the governing instant."""
     shown, answer = at_samples(solution, case), solution.answer
     assert answer is not None
     maxima = answer.maxima(shown.loads)
@@ -134,7 +134,9 @@ def _case(
 def _unread(
     case: CaseLoads, solution: Solution, points: Ints, at: tuple[float, ...] | None
 ) -> Mask | None:
-    """Of points (J,) of a meridian, from the angle of a location on."""
+    """Return where points (J,) of a meridian are not read, by instant and by angle from a
+    location.
+    """
     assert solution.answer is not None
     start = 0.0 if at is None else atan2(at[1], at[0])
     turns = start + 2.0 * np.pi * np.arange(SURFACE_SECTORS) / SURFACE_SECTORS
@@ -142,12 +144,12 @@ def _unread(
 
 
 def _zones(answer: StressField) -> Floats:
-    found = answer.singularities if isinstance(answer, HarmonicField | CutField) else ()
-    return np.array([(p.r, p.z, p.radius) for p in found]).reshape(-1, 3)
+    singularities = answer.singularities if isinstance(answer, HarmonicField | CutField) else ()
+    return np.array([(p.r, p.z, p.radius) for p in singularities]).reshape(-1, 3)
 
 
 def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
-    """Of every band on which a link bears."""
+    """Return the load courses of every band on which a link bears."""
     links = loads.links
     none = np.zeros((len(loads), 3))
     acting = {name: links.forces[:, c] for c, name in enumerate(links.surfaces)}
@@ -167,18 +169,20 @@ def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -
 
 
 def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
-    """Points (P,) of a meridian that the case needs: where its maximum is if it is on the surface,
-    and where contact pressure jumps.
+    """Return the points (P,) of a meridian that the case needs.
+
+    These are the point of its maximum, if that is on the surface, and those where contact pressure
+    jumps.
     """
-    kept = np.zeros(len(points), dtype=bool)
+    required = np.zeros(len(points), dtype=bool)
     if case.rings is not None:
         jumps = np.flatnonzero(np.diff(case.rings))
-        kept[jumps] = kept[jumps + 1] = True
+        required[jumps] = required[jumps + 1] = True
     if case.location is not None:
         x, y, z = case.location
         away = np.hypot(points[:, 0] - np.hypot(x, y), points[:, 2] - z)
-        kept |= away <= away.min() * (1.0 + 1e-9)
-    return kept
+        required |= away <= away.min() * (1.0 + 1e-9)
+    return required
 
 
 def _kept(case: SurfaceCase, keep: Mask) -> SurfaceCase:

@@ -1,4 +1,4 @@
-"""From drops to their records in results, in SI."""
+"""Records of drops for the results, in SI."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STROKE_SAMPLES = 101  # at which force over stroke is drawn
 
 
 def drop_record(study: Study, name: str, loads: CaseLoads) -> DropRecord:
-    """Of a case of kind drop."""
+    """Return the record of a case of kind drop."""
     case, landing, times = study.table.case[name], loads.landing, loads.reactions.times
     assert isinstance(case, DropCase)
     assert landing is not None
@@ -64,8 +64,9 @@ def _spin_up(landing: Landing) -> float | None:
 
 
 def _over_stroke(landing: Landing) -> tuple[Floats, Floats, Floats]:
-    """Strokes (P,) with the vertical force while the strut first closes and then opens; NaN where
-    it does not get there.
+    """Return strokes (P,) m with the vertical force while the strut first closes and then opens.
+
+    The force is NaN at strokes that the strut does not reach.
     """
     spans = [span for span in landing.spans if span.mode.strut]
     most = landing.peaks["stroke"].value

@@ -1,4 +1,4 @@
-"""From what the loads room found to the results that reports are made from, in SI."""
+"""Results of the mechanics for reports, gathered in SI from the dynamics."""
 
 from __future__ import annotations
 
@@ -73,12 +73,12 @@ LEG_SCALARS = ("actuator", "spin_moment", "kinetic_energy")
 
 
 def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -> dict[str, Any]:
-    """The parts of plain.Results that need no stresses."""
-    made = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
+    """Return the parts of plain.Results that need no stresses."""
+    dynamics = {n: c.dynamics for n, c in loads.items() if c.dynamics is not None}
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
-        "drive": tuple(t for n, d in made.items() for t in _drives(study, n, d, loads[n])),
-        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in made.items()),
+        "drive": tuple(t for n, d in dynamics.items() for t in _drives(study, n, d, loads[n])),
+        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
@@ -88,18 +88,18 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
 
 
 def _drive_positions(study: Study, dynamics: Dynamics) -> Floats:
-    """(T, A) what is shown as positions: lengths less their offsets, angles in degrees."""
+    """Return the displayed positions (T, A): lengths less their offsets, angles in degrees."""
     shown, less = dynamics.course[0], offsets(study)
-    for k, each in enumerate(dynamics.actuators):
-        if isinstance(each, Slider):
-            shown[:, k] = shown[:, k] - less.get(each.name, 0.0)
+    for k, actuator in enumerate(dynamics.actuators):
+        if isinstance(actuator, Slider):
+            shown[:, k] = shown[:, k] - less.get(actuator.name, 0.0)
         else:
             shown[:, k] = np.degrees(shown[:, k])
     return shown
 
 
 def drive_position(study: Study, case: CaseLoads) -> Floats | None:
-    """(T,) position of the only drive along a motion; None without one or with several."""
+    """Return the position (T,) of the only drive along a motion; None unless there is one."""
     dynamics = case.dynamics
     if dynamics is None or case.reactions.times is None or dynamics.drive.shape[1] != 1:
         return None
@@ -107,7 +107,7 @@ def drive_position(study: Study, case: CaseLoads) -> Floats | None:
 
 
 def position_unit(study: Study, case: CaseLoads) -> str:
-    """Of what `drive_position` gives: "deg", or empty for a length."""
+    """Return the unit of `drive_position`: "deg", or empty for a length."""
     if drive_position(study, case) is None or case.dynamics is None:
         return ""
     (drive,) = case.dynamics.actuators
@@ -141,22 +141,22 @@ def _reactions(
 def _peaks(study: Study, case: CaseLoads) -> tuple[plain.PeakReaction, ...]:
     if case.peaks is None:
         return ()
-    found = case.peaks
-    position: list[float | None] = [None] * len(found.force)
+    peaks = case.peaks
+    position: list[float | None] = [None] * len(peaks.force)
     if drive_position(study, case) is not None and case.solve is not None:
-        there = case.solve(np.array([peak.time for peak in found.force.values()]))
-        position = list(_drive_positions(study, there)[:, 0].tolist())
+        dynamics = case.solve(np.array([peak.time for peak in peaks.force.values()]))
+        position = list(_drive_positions(study, dynamics)[:, 0].tolist())
     return tuple(
         plain.PeakReaction(
             name,
             peak.value,
             peak.time,
-            tuple(found.vector[name].tolist()),
+            tuple(peaks.vector[name].tolist()),
             position[c],
-            found.moment[name].value,
+            peaks.moment[name].value,
             None if case.frictionless is None else case.frictionless.peaks.force[name].value,
         )
-        for c, (name, peak) in enumerate(found.force.items())
+        for c, (name, peak) in enumerate(peaks.force.items())
     )
 
 
@@ -169,14 +169,14 @@ def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> lis
     stored, shown = energy(motion), _drive_positions(study, dynamics)
     power, (_, speeds, rates) = dynamics.power, dynamics.course
     tables = []
-    for k, each in enumerate(dynamics.actuators):
-        slides = isinstance(each, Slider)
+    for k, actuator in enumerate(dynamics.actuators):
+        slides = isinstance(actuator, Slider)
         effort = None if case.over is None else case.over.drives[k]
         free = None if case.frictionless is None else case.frictionless.drives[k].largest.value
         tables.append(
             plain.DriveTable(
                 case=name,
-                name=each.name,
+                name=actuator.name,
                 kind="slider" if slides else "rotary",
                 time=dynamics.reactions.times,
                 position=shown[:, k],
@@ -193,15 +193,15 @@ def _drives(study: Study, name: str, dynamics: Dynamics, case: CaseLoads) -> lis
     return tables
 
 
-def _effort(found: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
+def _effort(effort: Effort, slides: bool, frictionless: float | None) -> plain.DriveEffort:
     return plain.DriveEffort(
-        found.largest.value,
-        found.largest.time,
-        found.mean,
-        found.rms,
-        found.power.value,
-        found.power.time,
-        found.stroke if slides else float(np.degrees(found.stroke)),
+        effort.largest.value,
+        effort.largest.time,
+        effort.mean,
+        effort.rms,
+        effort.power.value,
+        effort.power.time,
+        effort.stroke if slides else float(np.degrees(effort.stroke)),
         frictionless,
     )
 
@@ -277,14 +277,14 @@ def _motion(
 def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:
     mechanism, motion = study.table.mechanism, dynamics.motion
     assert mechanism is not None
-    found = {}
+    paths = {}
     for name, point in mechanism.point.items():
         at = point.at if not isinstance(point.at, str) else motion.linkage.joint(point.at).at
         position, velocity, _ = motion.point(point.body, at)
         speed = np.linalg.norm(velocity, axis=1)
         curvature = motion.curvature(point.body, at)
-        found[name] = plain.PointPath(position, velocity, speed, curvature)
-    return found
+        paths[name] = plain.PointPath(position, velocity, speed, curvature)
+    return paths
 
 
 def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:
@@ -300,22 +300,24 @@ def _ledger(dynamics: Dynamics, over: OverTime | None) -> plain.PowerLedger:
 
 
 def _slider_forces(dynamics: Dynamics) -> dict[str, plain.GuideForces]:
-    found = dynamics.sliders
+    sliders = dynamics.sliders
     return {
-        s.name: plain.GuideForces(found.normal[:, k], found.couple[:, k], found.friction[:, k])
+        s.name: plain.GuideForces(
+            sliders.normal[:, k], sliders.couple[:, k], sliders.friction[:, k]
+        )
         for k, s in enumerate(dynamics.motion.linkage.sliders)
     }
 
 
 def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
-    found, times = case.leg, case.reactions.times
-    assert found is not None
+    leg, times = case.leg, case.reactions.times
+    assert leg is not None
     assert times is not None
 
     def quantity(key: str, dimension: str) -> plain.Dimensioned:
-        return plain.Dimensioned(getattr(found, key), dimension, study.system.unit(dimension))
+        return plain.Dimensioned(getattr(leg, key), dimension, study.system.unit(dimension))
 
-    beta = plain.Dimensioned(np.degrees(found.motion.beta), "degrees", "deg")
+    beta = plain.Dimensioned(np.degrees(leg.motion.beta), "degrees", "deg")
     axes = "x' to the aircraft's right, y' ahead, z' up from the slope"
     return plain.LegTable(
         name,
@@ -327,7 +329,7 @@ def _leg(study: Study, name: str, case: CaseLoads) -> plain.LegTable:
 
 
 def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
-    """Joints on a body, around their middle so that lines between them do not cross."""
+    """Return the joints on a body, around their middle so that lines between them do not cross."""
     joints = linkage.joints_on(body)
     at = np.array([complex(*j.at) for j in joints])
     if len(joints) < 4:
@@ -336,8 +338,10 @@ def _joints_to_draw(linkage: Linkage, body: str) -> tuple[str, ...]:
 
 
 def _direction(dynamics: Dynamics, body: str) -> Floats:
-    """(T,) degrees from x of the line from the body's first joint to its second, or with fewer
-    joints of the slider it belongs to, or else since the drawing; NaN for a particle.
+    """Return the direction of a body (T,), degrees from x; NaN for a particle.
+
+    It is that of the line from the body's first joint to its second. With fewer joints it is the
+    direction of the body's slider, or else the rotation since the drawing.
     """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     joints = linkage.joints_on(body)
@@ -351,29 +355,31 @@ def _direction(dynamics: Dynamics, body: str) -> Floats:
 
 
 def _pitch_curves(motion: Motion) -> tuple[PitchCurve, ...]:
-    """Pitch circles of gears and pitch lines of racks as drawn: of all teeth, each circle once."""
-    found: dict[tuple[str, str, float], PitchCurve] = {}
+    """Return the pitch circles of gears and pitch lines of racks as drawn, each circle once."""
+    curves: dict[tuple[str, str, float], PitchCurve] = {}
     for teeth in motion.linkage.teeth:
         for side in teeth.sides:
             if isinstance(side, Rack):
-                found[side.body, side.slider, 0.0] = _pitch_line(motion, teeth, side)
+                curves[side.body, side.slider, 0.0] = _pitch_line(motion, teeth, side)
                 continue
             centre = motion.linkage.joint(side.joint).at
             radius = float(f"{math.dist(centre, teeth.at):.9g}")
-            if (key := (side.body, side.joint, radius)) not in found:
-                found[key] = PitchCurve(
+            if (key := (side.body, side.joint, radius)) not in curves:
+                curves[key] = PitchCurve(
                     side.body, _moving_points(motion, side, centre, teeth.at), True
                 )
-    return tuple(found.values())
+    return tuple(curves.values())
 
 
 def _moving_points(motion: Motion, side: Gear | Rack, first: Point, second: Point) -> np.ndarray:
-    """(T, 2, 2) of two points of a body, m as drawn."""
+    """Return the positions (T, 2, 2) of two points of a body, m as drawn."""
     return np.stack([motion.point(side.body, p)[0] for p in (first, second)], axis=1)
 
 
 def _pitch_line(motion: Motion, teeth: Teeth, rack: Rack) -> PitchCurve:
-    """What of the pitch line meets the gear, and as much again as its radius on both sides."""
+    """Return the part of the pitch line that meets the gear, extended by its radius at both
+    ends.
+    """
     slider = next(s for s in motion.linkage.sliders if s.name == rack.slider)
     gear = next(side for side in teeth.sides if isinstance(side, Gear))
     radius = math.dist(motion.linkage.joint(gear.joint).at, teeth.at)

@@ -1,4 +1,6 @@
-"""Cases one after the other on one time axis: from the results of each, nothing is solved again."""
+"""Sequences: cases one after the other on one time axis, joined from their results without solving
+again.
+"""
 
 from __future__ import annotations
 
@@ -23,8 +25,10 @@ JUMP_TOLERANCE = 1e-6
 
 
 def _joined(parts: Sequence[Any]) -> Any:
-    """Arrays one after the other, as are those in dataclasses, tuples and dictionaries; None where
-    any part has none; else the first.
+    """Return parts joined one after the other.
+
+    Arrays are concatenated, also those in dataclasses, tuples and dictionaries. The result is None
+    where any part has none; of other values the first is taken.
     """
     first: Any = parts[0]
     if any(part is None for part in parts):
@@ -32,35 +36,42 @@ def _joined(parts: Sequence[Any]) -> Any:
     if isinstance(first, np.ndarray):
         return np.concatenate(parts)
     if is_dataclass(first):
-        own = {f.name: _joined([getattr(p, f.name) for p in parts]) for f in fields(first)}
-        return replace(first, **own)  # type: ignore[type-var]
+        joined = {f.name: _joined([getattr(p, f.name) for p in parts]) for f in fields(first)}
+        return replace(first, **joined)  # type: ignore[type-var]
     if isinstance(first, dict):
         return {k: _joined([p[k] for p in parts]) for k in first if all(k in p for p in parts)}
     if isinstance(first, tuple) and any(map(is_dataclass, first)):
-        return tuple(_joined(each) for each in zip(*parts, strict=True))
+        return tuple(_joined(items) for items in zip(*parts, strict=True))
     return first
 
 
 def _course(
     parts: Mapping[str, T], times: Mapping[str, Floats | None], order: list[Occurrence]
 ) -> T:
-    """What there is of every step's case; one at rest at its beginning and its end."""
+    """Return the joined parts of every step's case; one at rest is taken at its beginning and its
+    end.
+    """
     every = [parts[s.case] for s in order for _ in range(2 if times[s.case] is None else 1)]
     joined: T = _joined(every)
     return joined
 
 
 def _axis(times: Mapping[str, Floats | None], order: list[Occurrence]) -> Floats:
-    """(T,) s, to go with `_course`."""
+    """Return the times (T,) s that belong to `_course`."""
     out = []
     for step in order:
-        own = times[step.case]
-        out.append(step.begin + (np.array([0.0, step.duration]) if own is None else own - own[0]))
+        case_times = times[step.case]
+        out.append(
+            step.begin
+            + (np.array([0.0, step.duration]) if case_times is None else case_times - case_times[0])
+        )
     return np.concatenate(out)
 
 
 def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
-    """The reactions, drives and motions of the sequences whose cases are all among the parts."""
+    """Return the reactions, drives and motions of the sequences whose cases are all among the
+    parts.
+    """
     reactions = {t.case: t for t in parts["reactions"]}
     motions = {m.case: m for m in parts["motion"]}
     drives = {(d.case, d.name): d for d in parts["drive"]}
@@ -68,18 +79,18 @@ def sequence_tables(study: Study, parts: dict[str, Any]) -> dict[str, Any]:
     out: dict[str, list[Any]] = {"reactions": [], "drive": [], "motion": []}
     for name in complete(study, reactions):
         order = list(steps(study.table.sequence[name], times))
-        own = [step.case for step in order]
+        cases = [step.case for step in order]
         table = _reactions(name, reactions, order)
-        if all(case in motions for case in own):
-            held = dict.fromkeys(d for case, d in drives if case in own)
-            of = [{case: drives.get((case, drive)) for case in own} for drive in held]
-            found = [_drive(name, there, times, order) for there in of]
-            note = f"{table.note} {_work(study, found)}{_jumps(motions, order)}"
+        if all(case in motions for case in cases):
+            held = dict.fromkeys(d for case, d in drives if case in cases)
+            of = [{case: drives.get((case, drive)) for case in cases} for drive in held]
+            joined_drives = [_drive(name, by_case, times, order) for by_case in of]
+            note = f"{table.note} {_work(study, joined_drives)}{_jumps(motions, order)}"
             table = replace(table, note=note)
             out["motion"].append(_motion(name, motions, order))
-            out["drive"] += found
+            out["drive"] += joined_drives
         out["reactions"].append(table)
-    return {key: (*parts[key], *found) for key, found in out.items()}
+    return {key: (*parts[key], *tables) for key, tables in out.items()}
 
 
 def _reactions(
@@ -112,20 +123,20 @@ def _first(times: Floats | None) -> float:
 def _with_all(
     table: plain.ReactionTable, names: list[str], of: Mapping[str, plain.ReactionTable]
 ) -> plain.ReactionTable:
-    """With all connections, in one order: without force where the case has none."""
+    """Return a table with all connections in one order, without force where the case has none."""
     have = {c: k for k, c in enumerate(table.connections)}
     owner = {c: t for t in of.values() for c in t.connections}
     at = [have.get(c, -1) for c in names]
-    there = np.array([k >= 0 for k in at])
-    turn = None if table.turn is None else np.where(there, table.turn[:, at], 0.0)
+    present = np.array([k >= 0 for k in at])
+    turn = None if table.turn is None else np.where(present, table.turn[:, at], 0.0)
     of_name = {peak.connection: peak for peak in table.largest}
     return replace(
         table,
         connections=tuple(names),
         bodies=tuple(owner[c].bodies[owner[c].connections.index(c)] for c in names),
         pins=tuple(owner[c].pins[owner[c].connections.index(c)] for c in names),
-        forces=np.where(there[:, None], table.forces[:, at], 0.0),
-        moments=np.where(there[:, None], table.moments[:, at], 0.0),
+        forces=np.where(present[:, None], table.forces[:, at], 0.0),
+        moments=np.where(present[:, None], table.moments[:, at], 0.0),
         turn=turn,
         peaks=tuple(of_name.get(c, plain.PeakReaction(c, 0.0, None)) for c in names),
     )
@@ -134,15 +145,15 @@ def _with_all(
 def _peak(
     c: int, tables: Mapping[str, plain.ReactionTable], order: list[Occurrence]
 ) -> plain.PeakReaction:
-    """Of connection number c, where it first occurs."""
-    found = [(s, tables[s.case].peaks[c]) for s in order]
-    step, peak = max(found, key=lambda each: each[1].force)
-    own = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
-    rubs = [p.frictionless for _, p in found if p.frictionless is not None]
+    """Return the peak of connection number c, at its first occurrence."""
+    peaks = [(s, tables[s.case].peaks[c]) for s in order]
+    step, peak = max(peaks, key=lambda pair: pair[1].force)
+    case_time = 0.0 if peak.time is None else peak.time - _first(tables[step.case].times)
+    rubs = [p.frictionless for _, p in peaks if p.frictionless is not None]
     return replace(
         peak,
-        time=step.begin + own,
-        moment=max(p.moment for _, p in found),
+        time=step.begin + case_time,
+        moment=max(p.moment for _, p in peaks),
         frictionless=max(rubs, default=None),
     )
 
@@ -154,9 +165,9 @@ def _steps_in_words(order: list[Occurrence]) -> str:
             runs[-1].append(step)
         else:
             runs.append([step])
-    each = (f"{len(r)} × {r[0].case}" if len(r) > 1 else r[0].case for r in runs)
+    run_texts = (f"{len(r)} × {r[0].case}" if len(r) > 1 else r[0].case for r in runs)
     end = order[-1].begin + order[-1].duration
-    return f"Sequence of {', '.join(each)}; {end:g} s. Stresses are those of its cases."
+    return f"Sequence of {', '.join(run_texts)}; {end:g} s. Stresses are those of its cases."
 
 
 def _motion(
@@ -166,10 +177,10 @@ def _motion(
     times = {case: m.time for case, m in used.items()}
     whole = _course(used, times, order)
 
-    def later(step: Occurrence, found: tuple[float, float | None]) -> tuple[float, float]:
-        value, time = found
-        own = 0.0 if time is None else time - _first(times[step.case])
-        return value, step.begin + own
+    def later(step: Occurrence, extreme: tuple[float, float | None]) -> tuple[float, float]:
+        value, time = extreme
+        case_time = 0.0 if time is None else time - _first(times[step.case])
+        return value, step.begin + case_time
 
     links = [(k, later(s, v)) for s in order for k, v in used[s.case].poorest.items()]
     angles = {k: min((v for link, v in links if link == k)) for k in dict.fromkeys(dict(links))}
@@ -185,14 +196,16 @@ def _motion(
 
 
 def _jumps(motions: Mapping[str, plain.LinkageMotion], order: list[Occurrence]) -> str:
-    """A sentence on the cases that do not begin where those before them end; empty without any."""
-    found: dict[str, None] = {}
+    """Return a sentence on the cases that do not begin where those before them end; empty without
+    any.
+    """
+    jumps: dict[str, None] = {}
     for one, two in pairwise(order):
         end, begin = (motions[s.case].joint_position for s in (one, two))
         size = float(np.ptp(begin[0], axis=0).max()) or 1.0
         if np.abs(end[-1] - begin[0]).max() > JUMP_TOLERANCE * size:
-            found[f"{one.case} and {two.case}"] = None
-    return f" The linkage jumps between {'; '.join(found)}." if found else ""
+            jumps[f"{one.case} and {two.case}"] = None
+    return f" The linkage jumps between {'; '.join(jumps)}." if jumps else ""
 
 
 def _drive(
@@ -201,17 +214,20 @@ def _drive(
     times: Mapping[str, Floats | None],
     order: list[Occurrence],
 ) -> plain.DriveTable:
-    """tables: of the drive by case; None where something else holds, and its force is zero."""
+    """Return a drive's table over a sequence.
+
+    tables: of the drive by case; None where something else holds, so that its force is zero.
+    """
     like = next(t for t in tables.values() if t is not None)
     whole = {
-        case: t or _idle(like, 1 if (own := times[case]) is None else len(own))
+        case: t or _idle(like, 1 if (course := times[case]) is None else len(course))
         for case, t in tables.items()
     }
     joined, axis = _course(whole, times, order), _axis(times, order)
     work, done = [], 0.0
     for step in order:
-        own = whole[step.case].work
-        work.append(done + (own if times[step.case] is not None else np.zeros(2)))
+        case_work = whole[step.case].work
+        work.append(done + (case_work if times[step.case] is not None else np.zeros(2)))
         done = float(work[-1][-1])
     efforts = [(step, _effort(whole[step.case])) for step in order]
     effort = _over(efforts, float(np.nanmax(joined.position) - np.nanmin(joined.position)))
@@ -220,8 +236,8 @@ def _drive(
 
 def _work(study: Study, drives: list[plain.DriveTable]) -> str:
     unit, factor = study.system.unit("energy"), study.system.factor("energy")
-    each = (f"{d.name} {engineering(d.work[-1] / factor)} {unit}" for d in drives)
-    return f"Work per cycle: {', '.join(each)}."
+    drive_texts = (f"{d.name} {engineering(d.work[-1] / factor)} {unit}" for d in drives)
+    return f"Work per cycle: {', '.join(drive_texts)}."
 
 
 def _idle(like: plain.DriveTable, count: int) -> plain.DriveTable:
@@ -232,7 +248,7 @@ def _idle(like: plain.DriveTable, count: int) -> plain.DriveTable:
 
 
 def _effort(table: plain.DriveTable) -> plain.DriveEffort:
-    """Over the case's own time, which begins at zero."""
+    """Return a drive's effort over the case's own time, which begins at zero."""
     if table.effort is not None:
         begin, e = _first(table.time), table.effort
         return replace(e, time=e.time - begin, power_time=e.power_time - begin)
@@ -243,8 +259,8 @@ def _effort(table: plain.DriveTable) -> plain.DriveEffort:
 def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) -> plain.DriveEffort:
     lasts = np.array([step.duration for step, _ in efforts])
     mean, rms = (np.array([getattr(e, key) for _, e in efforts]) for key in ("mean", "rms"))
-    step, most = max(efforts, key=lambda each: each[1].largest)
-    busy, strongest = max(efforts, key=lambda each: each[1].power)
+    step, most = max(efforts, key=lambda pair: pair[1].largest)
+    busy, strongest = max(efforts, key=lambda pair: pair[1].power)
     rubs = [e.frictionless for _, e in efforts if e.frictionless is not None]
     return plain.DriveEffort(
         most.largest,
@@ -261,10 +277,11 @@ def _over(efforts: list[tuple[Occurrence, plain.DriveEffort]], stroke: float) ->
 def with_sequences(
     study: Study, loads: Mapping[str, CaseLoads], histories: tuple[PointHistory, ...]
 ) -> tuple[PointHistory, ...]:
-    """The same with the stress over every sequence whose cases are all among the loads: zero in
-    those that do not load the pin.
+    """Return the histories with the stress over every sequence whose cases are all among the loads.
+
+    The stress is zero in cases that do not load the pin.
     """
-    times = {case: found.reactions.times for case, found in loads.items()}
+    times = {case: case_loads.reactions.times for case, case_loads in loads.items()}
     orders = {n: list(steps(study.table.sequence[n], times)) for n in complete(study, loads)}
     return tuple(
         replace(history, cases=(*history.cases, *_sequences(history, orders)))

@@ -1,1 +1,1 @@
-"""What would make a pin reach its factor of safety, and what its dimensions do to it."""
+"""Remedies by which a pin reaches its factor of safety, and the sensitivities of that factor."""

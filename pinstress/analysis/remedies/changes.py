@@ -1,10 +1,10 @@
-"""What would make a pin reach its factor of safety: stronger, larger, or loaded less.
+"""Changes by which a pin reaches its factor of safety: stronger, larger, or loaded less.
 
-Stress is proportional to the loads and, of a linear-elastic pin, does not depend on the strength.
-An impulse acts with the other loads, so its permissible time is found by superposing the unit loads
-that are solved. Larger pins are solved again at the governing instant on the first mesh only, and
-the ratio of two such maxima is taken, in which most of the error of the mesh cancels: a few parts
-in a hundred remain (`pinstress size` solves them as a run does).
+Stress is proportional to the loads and, in a linear-elastic pin, does not depend on the strength.
+An impulse acts with the other loads, so its permissible time is computed by superposing the unit
+loads that are solved. Larger pins are solved again at the governing instant on the first mesh only,
+and the ratio of two such maxima is taken, in which most of the error of the mesh cancels: a few per
+cent remain (`pinstress size` solves them as a run does).
 """
 
 from __future__ import annotations
@@ -33,8 +33,10 @@ SIZED_BY_COMMAND = "diameters are found by pinstress size"
 
 @dataclass(frozen=True)
 class FailingCase:
-    """A case whose factor is too small: its solution, and what part of all loads is permissible, by
-    the upper end of its stress where that is a range, and by what lies beneath contact.
+    """A case whose factor is too small: its solution, and the permissible share of all loads.
+
+    The share follows from the upper end of the stress where that is a range, and from the stress
+    beneath contact.
     """
 
     task: Task
@@ -43,16 +45,18 @@ class FailingCase:
 
 
 def change(asked: Requirement, task: Task, solutions: tuple[Solution, ...]) -> Remedy | None:
-    """What to change of a pin, for the worst of its cases; None where none is below the required
-    factor (below yield where none is required) with its error, nor beneath contact.
+    """Return the change that a pin needs in the worst of its cases.
+
+    None where no case is below the required factor (yield where none is required), with its error
+    and beneath contact.
     """
     strength, required = task.material.yield_strength, asked.required or 1.0
     worst = max(solutions, key=lambda s: max(s.peak.max_von_mises or 0.0, _beneath(s)))
     peak = worst.peak
     if strength is None or not peak.max_von_mises:
         return None
-    own = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
-    if max(own, _beneath(worst)) <= strength / required:
+    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    if max(stress, _beneath(worst)) <= strength / required:
         return None
     high = max(peak.upper_end, _beneath(worst))
     failing = FailingCase(task, worst, strength / required / high)
@@ -76,14 +80,15 @@ def change(asked: Requirement, task: Task, solutions: tuple[Solution, ...]) -> R
 
 
 def _beneath(solution: Solution) -> float:
-    """What lies beneath contact with its error, Pa; 0 without any."""
+    """Return the stress beneath contact with its error, Pa; 0 without contact."""
     contact = solution.peak.places and solution.peak.places.contact
     return contact.upper_end if contact else 0.0
 
 
 def _share(failing: FailingCase, loads: PinLoads) -> float | None:
-    """The part of an impulse's force that is permissible with the other loads. loads: without and
-    with the impulse.
+    """Return the share of an impulse's force that is permissible with the other loads.
+
+    loads: without and with the impulse.
     """
     answer, whole = failing.solution.answer, failing.solution.peak.max_von_mises
     if answer is None or whole is None:
@@ -109,7 +114,7 @@ def _maxima(answer: StressField, loads: PinLoads, shares: Floats) -> Floats:
 
 
 def _problem(asked: Requirement, failing: FailingCase) -> Problem | None:
-    """The governing instant on one mesh; None where contact or a solid would take too long."""
+    """Return the governing instant on one mesh; None where that would take too long."""
     task, loads = failing.task, failing.solution.peak.governing
     if task.lugs or not isinstance(task.pin, Pin) or loads is None:
         return None
@@ -119,7 +124,10 @@ def _problem(asked: Requirement, failing: FailingCase) -> Problem | None:
 def _diameters(
     problem: Problem | None, failing: FailingCase, required: float
 ) -> tuple[float | None, str]:
-    """By how much all diameters must be larger, or why no pin does that is longer than wide."""
+    """Return the factor on all diameters that suffices, or why none does.
+
+    A pin must stay longer than wide.
+    """
     pin = failing.task.pin
     if problem is None or not isinstance(pin, Pin):
         return None, SIZED_BY_COMMAND
@@ -132,8 +140,9 @@ def _diameters(
 
 
 def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> float:
-    """By how much all diameters must be larger. Raises: NoSizeError, GeometryError, MeshError,
-    SolveError.
+    """Return the factor by which all diameters must grow.
+
+    Raises: NoSizeError, GeometryError, MeshError, SolveError.
     """
     most = slenderness(pin)
     if most <= 1.0:
@@ -144,18 +153,18 @@ def _widening(problem: Problem, pin: Pin, factor: float, required: float) -> flo
         if scale == 1.0:
             return factor
         wide = replace(problem, pin=widened(pin, min(scale, most)))
-        found = factor * before / result_on(wide, FIRST_RUNG).maximum
-        if scale > most and found < required:
+        new_factor = factor * before / result_on(wide, FIRST_RUNG).maximum
+        if scale > most and new_factor < required:
             raise NoSizeError(
                 f"a pin as wide as long, {most:.2g} times its diameters, has a factor of only "
-                f"{found:.2g}: lengthen its bands, strengthen it or reduce its loads"
+                f"{new_factor:.2g}: lengthen its bands, strengthen it or reduce its loads"
             )
-        return found
+        return new_factor
 
     return min(smallest(factor_at, required, close=FIRST_MESH_TOLERANCE).scale, most)
 
 
 def widened(pin: Pin, scale: float) -> Pin:
-    """The pin with its diameters, bores and fillets scaled; lengths stay."""
+    """Return the pin with its diameters, bores and fillets scaled; lengths stay."""
     segments = tuple(s.widened(lambda x: x * scale) for s in pin.segments)
     return replace(pin, segments=segments, fillet=pin.fillet * scale)

@@ -18,9 +18,11 @@ Z_INDEX, R_INDEX, RADIUS_INDEX = range(3)  # of a corner
 
 
 def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
-    """Those of a body of revolution that are not zero, in m: of its profile
-    (geometry.shape.dimensions), or of its outline by corners: "meridian[3][2]" is the radius of the
-    third one. None of any other pin, and none of one from a file.
+    """Yield the non-zero dimensions of a body of revolution, m; none of any other pin or of one
+    from a file.
+
+    They are those of its profile (geometry.shape.dimensions), or of its outline by corners, where
+    "meridian[3][2]" is the radius of the third corner.
     """
     table = study.table.pin[pin.name]
     if not isinstance(pin, Pin) or table.geometry is not None:
@@ -59,22 +61,22 @@ def _band(name: str, end: int) -> TableChange:
 
 
 def _along(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
-    """z: of all corners and bands at one z together."""
-    found: list[tuple[float, str, TableChange]] = []
+    """Yield the dimensions along z; corners and bands at one z change together."""
+    coordinates: list[tuple[float, str, TableChange]] = []
     for line in MERIDIAN_KEYS:
         for k, corner in enumerate(getattr(table, line) or ()):
-            found.append((corner[Z_INDEX], f"{line}[{k + 1}][1]", _corner(line, k, Z_INDEX)))
+            coordinates.append((corner[Z_INDEX], f"{line}[{k + 1}][1]", _corner(line, k, Z_INDEX)))
     for name, band in table.band.items():
         for end, z in enumerate(band.z or ()):
-            found.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
-    for z, run in groupby(sorted(found, key=lambda one: one[0]), lambda one: one[0]):
+            coordinates.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
+    for z, run in groupby(sorted(coordinates, key=lambda one: one[0]), lambda one: one[0]):
         some = list(run)
         if z:
             yield some[0][1], z, [change for _, __, change in some]
 
 
 def _across(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
-    """r: of neighbours where it is equal together."""
+    """Yield the dimensions along r; neighbours of equal radius change together."""
     for line in MERIDIAN_KEYS:
         corners = enumerate(getattr(table, line) or ())
         for r, run in groupby(corners, lambda one: one[1][R_INDEX]):

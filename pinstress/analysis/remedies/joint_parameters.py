@@ -1,5 +1,5 @@
-"""All that a pin in contact with its lugs depends on, by the keys of the study: dimensions of pin
-and lugs, and what they are made of.
+"""Parameters of a pin in contact with its lugs, by the keys of the study: the dimensions and
+materials of pin and lugs.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ CLEARANCE_SCALE = 1e-3
 
 @dataclass(frozen=True)
 class StudyParameter:
-    """One of them; kind: its dimension ("length", "stress", .., "1")."""
+    """A parameter of a joint; kind: its dimension ("length", "stress", .., "1")."""
 
     kind: str
     of_joint: JointParameter
 
 
 def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
-    """Those of a pin in lugs that are not zero, and its clearances."""
+    """Yield the non-zero parameters of a pin in lugs, and its clearances."""
     pin = task.pin
     assert isinstance(pin, Pin)
     for d in dimensions_of(study, pin):
@@ -75,10 +75,10 @@ def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
-    own = "pin", task.pin.name, "lug", name
+    lug_path = "pin", task.pin.name, "lug", name
     if name not in study.table.pin[task.pin.name].lug:
-        study = _changed(study, own, LugTable())
-    return _made_anew(_changed(study, (*own, *key.split(".")), value), task)
+        study = _changed(study, lug_path, LugTable())
+    return _made_anew(_changed(study, (*lug_path, *key.split(".")), value), task)
 
 
 def _with_material(study: Study, task: Task, name: str, key: str, value: float) -> Joint:
@@ -97,7 +97,7 @@ def _changed(study: Study, path: tuple[str, ...], value: Any) -> Study:
 
 
 def _set(table: Any, path: tuple[str, ...], value: Any) -> Any:
-    """A table with another value at a path of names."""
+    """Return a table with another value at a path of names."""
     first, *rest = path
     named = isinstance(table, dict)
     if rest:

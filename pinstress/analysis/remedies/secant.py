@@ -35,11 +35,13 @@ def smallest(
     start: float = 1.0,
     close: float = FACTOR_TOLERANCE,
 ) -> Trial:
-    """The smallest scale whose factor is at least `required`, and at most `close` more of it, from
-    `start` on.
+    """Return the smallest scale whose factor is at least `required`, and at most `close` (relative)
+    more.
 
-    The factor grows with the scale; log factor against log scale is nearly a line, so secants find
-    it; trials on both sides keep them in bounds. The scale that is returned was itself tried.
+    The factor grows with the scale. Its logarithm is nearly linear in that of the scale, so secants
+    converge fast; trials on both sides bound them. The returned scale was itself tried.
+
+    start: the smallest scale allowed.
 
     Raises: NoSizeError.
     """

@@ -1,8 +1,9 @@
-"""What a little more of anything does to a pin's factor of safety: true derivatives.
+"""Sensitivities of a pin's factor of safety: derivatives with respect to dimensions, loads and
+material.
 
-They are of the row's number: of the stress of a section where that governs, otherwise of the
-surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic model's
-first mesh are taken, relative to its own maximum.
+They are derivatives of the row's number: of the stress of a section where that governs, otherwise
+of the surface's on its own mesh (fea.derivatives). Where a beam answers, those of the harmonic
+model's first mesh are taken, relative to its own maximum.
 """
 
 from __future__ import annotations
@@ -58,16 +59,18 @@ def sensitivities(
     step: float,
     every: bool = False,
 ) -> tuple[PinSensitivities, ...]:
-    """Of a task's worst case, or of every one. step: of a dimension (m) whose effect is shown; a
-    tenth of it, or a hundredth, where that is no small part of the dimension.
+    """Return the sensitivities of a task's worst case, or of every case.
+
+    step: the change of a dimension (m) whose effect is shown; a tenth of it, or a hundredth, where
+    it is not small relative to the dimension.
     """
-    found = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
+    ranked = sorted((s for s in solutions if _largest(s)), key=lambda s: _largest(s), reverse=True)
     dimensions = tuple(dimensions_of(study, task.pin))
     return tuple(
         _of_lugs(study, task, s, step if every else None)
         if task.lugs
         else _of_case(asked, task, s, dimensions, step)
-        for s in found[: None if every else 1]
+        for s in ranked[: None if every else 1]
     )
 
 
@@ -83,8 +86,12 @@ def differentiated_in_lugs(
     alone: bool = False,
     place: Place | None = None,
 ) -> JointDerivatives | None:
-    """Of the maximum of a pin in contact, or of a place at the row's instant; None where it has
-    none. alone: by the parameters only, not by loads. Raises: MeshError, SolveError.
+    """Return the derivatives of the maximum of a pin in contact, or of the stress at a place at the
+    row's instant; None where there is none.
+
+    alone: differentiate by the parameters only, not by loads.
+
+    Raises: MeshError, SolveError.
     """
     solution, held, rings = joined, joined.held, joined.rings
     peak, answer = solution.peak, solution.answer
@@ -110,14 +117,17 @@ def differentiated_in_lugs(
 
 
 def governing_place(peak: Maximum) -> Place:
-    """Of which place the maximum is."""
+    """Return the place whose stress is the maximum."""
     return "surface" if peak.places is None else peak.places.governs
 
 
 def differentiated(
     asked: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> Derivatives | None:
-    """Of a solution's maximum; None where it has none. Raises: MeshError, SolveError."""
+    """Return the derivatives of a solution's maximum; None where it has none.
+
+    Raises: MeshError, SolveError.
+    """
     peak, pin, answer = solution.peak, task.pin, solution.answer
     if not peak.max_von_mises or peak.governing is None or not isinstance(pin, Pin):
         return None
@@ -140,19 +150,19 @@ def differentiated(
     return scaled(derivatives(solved, dimensions), peak.max_von_mises)
 
 
-def scaled(found: Derivatives, maximum: float) -> Derivatives:
-    """With another maximum, Pa, and the same relative derivatives."""
-    times = maximum / found.maximum
+def scaled(gradient: Derivatives, maximum: float) -> Derivatives:
+    """Return derivatives of another maximum, Pa, with the same relative derivatives."""
+    times = maximum / gradient.maximum
     if times == 1.0:
-        return found
+        return gradient
     return replace(
-        found,
+        gradient,
         maximum=maximum,
-        by_dimension={key: times * x for key, x in found.by_dimension.items()},
-        by_force={key: times * x for key, x in found.by_force.items()},
-        by_moment={key: times * x for key, x in found.by_moment.items()},
-        poisson_ratio=times * found.poisson_ratio,
-        density=times * found.density,
+        by_dimension={key: times * x for key, x in gradient.by_dimension.items()},
+        by_force={key: times * x for key, x in gradient.by_force.items()},
+        by_moment={key: times * x for key, x in gradient.by_moment.items()},
+        poisson_ratio=times * gradient.poisson_ratio,
+        density=times * gradient.density,
     )
 
 
@@ -170,33 +180,33 @@ def _of_case(
     if not isinstance(task.pin, Pin):
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:
-        found = differentiated(asked, task, solution, dimensions)
+        gradient = differentiated(asked, task, solution, dimensions)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
-    if found is None or peak.governing is None:
+    if gradient is None or peak.governing is None:
         return replace(out, note=f"no derivatives with the {peak.model} model")
     rows = (
-        *_of_dimensions(found, dimensions, step),
-        *_of_loads(found, peak.governing),
-        *_of_material(found, task.material),
+        *_of_dimensions(gradient, dimensions, step),
+        *_of_loads(gradient, peak.governing),
+        *_of_material(gradient, task.material),
     )
-    return _with_rows(out, found, rows)
+    return _with_rows(out, gradient, rows)
 
 
 def _with_rows(
-    out: PinSensitivities, found: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
+    out: PinSensitivities, gradient: Derivatives | JointDerivatives, rows: Iterable[_Parameter]
 ) -> PinSensitivities:
     return replace(
         out,
         rows=_sorted(rows, out.factor),
-        tied_places=found.tied_places,
-        tied_times=found.tied_times,
-        without=tuple(found.without.items()),
+        tied_places=gradient.tied_places,
+        tied_times=gradient.tied_times,
+        without=tuple(gradient.without.items()),
     )
 
 
 def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> PinSensitivities:
-    """Of a pin in contact; without a step, why there are none."""
+    """Return the sensitivities of a pin in contact; without a step, why there are none."""
     peak = joined.peak
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing
@@ -209,20 +219,20 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
         return replace(out, note=IN_LUGS_NOTE)
     try:
         parameters = [x.of_joint for x in joint_parameters(study, task)]
-        found = differentiated_in_lugs(joined, task, parameters)
+        gradient = differentiated_in_lugs(joined, task, parameters)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
-    if found is None:
+    if gradient is None:
         return replace(out, note=f"no derivatives with the {peak.model} model")
     rows = [
-        *_of_forces(found.by_force, "force", links.surfaces, links.forces[0], maximum),
-        *_of_forces(found.by_moment, "moment", links.surfaces, links.moments[0], maximum),
-        *_of_joint(joint_parameters(study, task), found.by_parameter, maximum, step),
+        *_of_forces(gradient.by_force, "force", links.surfaces, links.forces[0], maximum),
+        *_of_forces(gradient.by_moment, "moment", links.surfaces, links.moments[0], maximum),
+        *_of_joint(joint_parameters(study, task), gradient.by_parameter, maximum, step),
     ]
     if strength is not None:
         key, more = f"material.{task.material.name}.yield_strength", STEP_FRACTION * strength
         rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
-    return _with_rows(replace(out, changing=found.changing), found, rows)
+    return _with_rows(replace(out, changing=gradient.changing), gradient, rows)
 
 
 def _of_joint(
@@ -243,7 +253,9 @@ def _of_joint(
 
 
 def _little(step: float, value: float) -> float:
-    """A step (m) of a dimension, a power of ten smaller where that would be no small part of it."""
+    """Return a step (m) of a dimension, reduced by powers of ten where it is not small relative to
+    it.
+    """
     while step > MAX_STEP_FRACTION * value:
         step /= 10.0
     return step
@@ -251,7 +263,7 @@ def _little(step: float, value: float) -> float:
 
 @dataclass(frozen=True)
 class _Parameter:
-    """As a Sensitivity; relative: derivative of the factor over the factor."""
+    """A parameter as in Sensitivity; relative: derivative of the factor over the factor."""
 
     key: str
     kind: str
@@ -262,11 +274,11 @@ class _Parameter:
 
     @property
     def effect(self) -> float:
-        """Of the step on the factor, relative."""
+        """The relative effect of the step on the factor."""
         return self.relative * self.step
 
     def sensitivity(self, factor: float | None) -> Sensitivity:
-        """Of this factor."""
+        """Return the sensitivity of a given factor."""
         of_factor = None if factor is None else factor * self.relative
         after = None if factor is None else factor * (1.0 + self.effect)
         return Sensitivity(
@@ -275,27 +287,27 @@ class _Parameter:
 
 
 def _of_dimensions(
-    found: Derivatives, dimensions: tuple[Dimension, ...], step: float
+    gradient: Derivatives, dimensions: tuple[Dimension, ...], step: float
 ) -> Iterator[_Parameter]:
     for dimension in dimensions:
-        if dimension.key in found.by_dimension:
+        if dimension.key in gradient.by_dimension:
             more = _little(step, dimension.value)
-            stress = found.by_dimension[dimension.key]
-            relative = -stress / found.maximum
+            stress = gradient.by_dimension[dimension.key]
+            relative = -stress / gradient.maximum
             yield _Parameter(dimension.key, "length", dimension.value, more, stress, relative)
 
 
 def _sorted(rows: Iterable[_Parameter], factor: float | None) -> tuple[Sensitivity, ...]:
-    """The largest effects first."""
-    return tuple(each.sensitivity(factor) for each in sorted(rows, key=lambda x: -abs(x.effect)))
+    """Return the sensitivities, the largest effects first."""
+    return tuple(row.sensitivity(factor) for row in sorted(rows, key=lambda x: -abs(x.effect)))
 
 
-def _of_loads(found: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
+def _of_loads(gradient: Derivatives, loads: PinLoads) -> Iterator[_Parameter]:
     for kind, by, given in (
-        ("force", found.by_force, loads.forces[0]),
-        ("moment", found.by_moment, loads.moments[0]),
+        ("force", gradient.by_force, loads.forces[0]),
+        ("moment", gradient.by_moment, loads.moments[0]),
     ):
-        yield from _of_forces(by, kind, loads.surfaces, given, found.maximum)
+        yield from _of_forces(by, kind, loads.surfaces, given, gradient.maximum)
 
 
 def _of_forces(
@@ -313,16 +325,16 @@ def _of_forces(
             yield _Parameter(f"{kind} {surface} {axis}", kind, value, step, stress, relative)
 
 
-def _of_material(found: Derivatives, material: Material) -> Iterator[_Parameter]:
+def _of_material(gradient: Derivatives, material: Material) -> Iterator[_Parameter]:
     rho, strength = material.density, material.yield_strength
     for name, kind, value, step, stress in (
-        ("youngs_modulus", "stress", material.youngs_modulus, None, found.youngs_modulus),
-        ("poisson_ratio", "1", material.poisson_ratio, POISSON_RATIO_STEP, found.poisson_ratio),
-        ("density", "density", rho, None, found.density),
+        ("youngs_modulus", "stress", material.youngs_modulus, None, gradient.youngs_modulus),
+        ("poisson_ratio", "1", material.poisson_ratio, POISSON_RATIO_STEP, gradient.poisson_ratio),
+        ("density", "density", rho, None, gradient.density),
         ("yield_strength", "stress", strength, None, 0.0),
     ):
         if value is not None:
-            relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / found.maximum
+            relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / gradient.maximum
             more = STEP_FRACTION * value if step is None else step
             yield _Parameter(
                 f"material.{material.name}.{name}", kind, value, more, stress, relative

@@ -1,1 +1,1 @@
-"""Error against time and memory, for every model and mesh."""
+"""Charts of error against time and memory, for every model and mesh."""

@@ -1,4 +1,4 @@
-"""The speed-accuracy chart of one pin: every model on a ladder of meshes compared with a
+"""The speed-accuracy chart of one pin: every model on a sequence of meshes compared with a
 reference.
 """
 
@@ -52,9 +52,11 @@ ELEMENT_NAMES = {
 
 @dataclass(frozen=True)
 class ChartPlan:
-    """What is to be charted, every input read and found usable. peak: what `auto` says of it on
-    its first mesh. beam_error: relative, of the beam by itself. chosen: of a pin in its lugs, on
-    which mesh of contact a run ends.
+    """A plan of a chart, with all input read and found usable.
+
+    peak: maximum by `auto` on its first mesh.
+    beam_error: relative error of the beam model's own estimate.
+    chosen: for a pin in its lugs, the mesh of contact on which a run ends.
     """
 
     study: Study
@@ -66,7 +68,10 @@ class ChartPlan:
 
 
 def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None) -> ChartPlan:
-    """Raises: InputError for bad input, an unconstrained pin, or one without any stress."""
+    """Read the input of a chart and return its plan.
+
+    Raises: InputError for bad input, an unconstrained pin, or one without any stress.
+    """
     select(study.table.pin, [pin], "pin", "pin")
     loads = all_loads(study, select(study.table.case, [case], "case", "case"))
     (task,) = tasks(study, [pin_of(study, pin)], loads)
@@ -82,10 +87,10 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     clamps = tuple(task.pin.surface(c) for c in task.clamps)
 
     def first(model: Requirement) -> Solution:
-        found = solve_pin(
+        solutions = solve_pin(
             task.pin, task.material, task.clamps, task.loads, model, between=task.between
         )
-        return found[0]
+        return solutions[0]
 
     solution = first(replace(asked, meshes=1))
     peak = solution.peak
@@ -108,7 +113,7 @@ def _require_stress(study: Study, peak: Maximum) -> None:
 
 
 def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
-    """Of a pin in its lugs: solved as a run would."""
+    """Return the plan for a pin in its lugs, solved as a run would."""
     if not isinstance(task.pin, Pin):
         raise study.error(
             f"pin {task.pin.name} has cuts and is held by lugs; charts of contact are of pins "
@@ -141,8 +146,12 @@ def chart(
     progress: Progress = lambda _, __: None,
     calculix: bool = False,
 ) -> Chart:
-    """Climb all ladders. measure: of one rung. meshes: of each solid element, by default as many as
-    are quick. runs: the times are their medians. calculix: of a pin in its lugs also by CalculiX.
+    """Solve all models on their meshes and return the chart.
+
+    measure: solves one mesh and measures it.
+    meshes: number of meshes for each solid element, by default as many as are quick.
+    runs: number of runs; the times are their medians.
+    calculix: whether CalculiX also solves a pin in its lugs.
 
     Raises: SolveError when there is no reference.
     """
@@ -183,7 +192,10 @@ def _joined(
     reference: tuple[ModelMesh | JointRung, MeshHistory],
     cells: float = 0.0,
 ) -> Chart:
-    """cells: the part of the reference's error from cells of contact, relative."""
+    """Return the chart of the meshes that were solved.
+
+    cells: part of the reference's error that comes from cells of contact, relative.
+    """
     at, seen = reference
     stress, best = plan.study.system.factor("stress"), seen.results[-1]
     ends = plan.chosen or chosen(climb)
@@ -197,16 +209,16 @@ def _joined(
         ChartPoint(
             rung.model,
             name(rung),
-            found.result.unknowns,
-            found.seconds,
-            found.memory,
-            found.result.maximum / stress,
-            abs(found.result.maximum / best.maximum - 1.0),
+            measured.result.unknowns,
+            measured.seconds,
+            measured.memory,
+            measured.result.maximum / stress,
+            abs(measured.result.maximum / best.maximum - 1.0),
             rung == ends,
         )
-        if found.result is not None
-        else ChartPoint(rung.model, name(rung), failed=found.failed)
-        for rung, found in climb.done
+        if measured.result is not None
+        else ChartPoint(rung.model, name(rung), failed=measured.failed)
+        for rung, measured in climb.done
     ]
     return Chart(
         pin=plan.problem.pin.name,
@@ -226,7 +238,7 @@ def _joined(
 
 
 def _note(peak: Maximum) -> str:
-    """Where the maximum is one of a part of the pin only."""
+    """Explain that the maximum is one of a part of the pin only; empty where it is not."""
     governing = [zone for zone in peak.singular_at if zone.governs]
     if not governing:
         return ""

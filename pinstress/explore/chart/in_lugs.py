@@ -1,5 +1,5 @@
-"""The ladders of a chart of a pin in its lugs: contact on several cells and meshes, the beam on
-foundations and, where it is requested, CalculiX.
+"""The mesh sequences of a chart of a pin in its lugs: contact on several cells and meshes, the beam
+on foundations and, where it is requested, CalculiX.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ CALCULIX_MESHES = (*HALF_MODEL_MESHES, Fineness(sectors=32, layers=3, eye=2))
 
 
 def rings_of(problem: JointProblem, cells: Resolution) -> int:
-    """Of all bands."""
+    """Return the number of rings of cells in all bands."""
     bands = [(problem.pin.band(lug.connection), lug.edge_radius) for lug in problem.lugs]
     ends = [ring_ends(band, radius, cells.rings, cells.beside) for band, radius in bands]
     return sum(len(x) - 1 for x in ends)
 
 
 def sets_of(problem: JointProblem) -> list[Resolution]:
-    """Those that can be solved, at least two; the last for the reference."""
+    """Return the sets of cells that can be solved, at least two; the last is for the reference."""
     few = [x for x in CHART_RESOLUTIONS if rings_of(problem, x) * x.sectors <= MAX_CELLS]
     return few if len(few) > 1 else list(CHART_RESOLUTIONS[:2])
 
 
 def contact_rung(cells: Resolution, level: int) -> JointRung:
-    """A mesh of contact, named after its cells."""
+    """Return a mesh of contact, named after its cells."""
     return JointRung("contact", f"{cells.rings} × {cells.sectors} cells a lug", level, cells)
 
 
 def chosen_in_lugs(problem: JointProblem, peak: Maximum, joint: JointResult) -> JointRung:
-    """On which a run ends."""
+    """Return the mesh on which a run ends."""
     if joint.model == "foundation":
         return JointRung("foundation", "Timoshenko beam")
     rings = sum(len(band.line_load) for band in joint.bands)
@@ -57,7 +57,7 @@ def chosen_in_lugs(problem: JointProblem, peak: Maximum, joint: JointResult) -> 
 
 
 def climb_in_lugs(climb: Climb, chosen: JointRung, calculix: bool) -> None:
-    """All models, the cheapest first."""
+    """Solve all models, the cheapest first."""
     assert isinstance(climb.problem, JointProblem)
     climb.to(JointRung("foundation", "Timoshenko beam"))
     for cells in sets_of(climb.problem)[:-1]:
@@ -71,7 +71,9 @@ def climb_in_lugs(climb: Climb, chosen: JointRung, calculix: bool) -> None:
 
 
 def contact_reference(climb: Climb) -> tuple[JointRung, MeshHistory, float]:
-    """Contact on the finest cells and finer meshes; and the part of its error from the cells.
+    """Solve contact on the finest cells and finer meshes as the reference.
+
+    Returns the last mesh, the history, and the part of its error from the cells, relative.
 
     Raises: SolveError where it cannot be solved.
     """
@@ -79,12 +81,13 @@ def contact_reference(climb: Climb) -> tuple[JointRung, MeshHistory, float]:
     coarser, cells = sets_of(climb.problem)[-2:]
     results = []
     for level in REFERENCE_LEVELS:
-        found = climb.to(contact_rung(cells, level), keep=False)
-        if found.result is None:
+        measured = climb.to(contact_rung(cells, level), keep=False)
+        if measured.result is None:
             raise SolveError(
-                f"the reference, contact on mesh {level + 1}: {found.failed}", code="no-reference"
+                f"the reference, contact on mesh {level + 1}: {measured.failed}",
+                code="no-reference",
             )
-        results.append(found.result)
+        results.append(measured.result)
     below = [m.result for r, m in climb.done if r == contact_rung(coarser, REFERENCE_LEVELS[0])]
     error = math.inf
     if below and below[0]:  # of first order at least

@@ -1,4 +1,4 @@
-"""One rung of the ladder of models in a process of its own: its time, and the memory it takes."""
+"""Solving one mesh of a model in a process of its own, to measure its time and memory."""
 
 from __future__ import annotations
 
@@ -25,7 +25,11 @@ MIN_MEASURED_MEMORY = 0.1  # MB: less cannot be distinguished from the libraries
 
 @dataclass(frozen=True)
 class MeasureLimits:
-    """seconds: of a process in all. memory: of a process above its libraries, MB."""
+    """Limits on measurements.
+
+    seconds: of a process in all, s.
+    memory: of a process above its libraries, MB.
+    """
 
     seconds: float = 120.0
     memory: float = 4000.0
@@ -33,11 +37,14 @@ class MeasureLimits:
 
 @dataclass(frozen=True)
 class Measured:
-    """result: what the mesh says, None where it `failed`, for that reason. seconds: the median of
-    the runs, each from the mesh to the maximum over the motion, without the start of the
-    interpreter and imports. memory: the largest during the first run above the process with its
-    libraries loaded, MB; bare: that process, MB. over: it failed because it passed a limit, as
-    finer meshes would.
+    """A measured solution.
+
+    result: maximum on the mesh, None where it `failed`, for that reason.
+    seconds: the median of the runs, s, each from the mesh to the maximum over the motion, without
+    the start of the interpreter and imports.
+    memory: the largest during the first run above the process with its libraries loaded, MB.
+    bare: memory of that process, MB.
+    over: whether it failed because it passed a limit, as finer meshes would.
     """
 
     result: MeshMaximum | None
@@ -50,8 +57,10 @@ class Measured:
 
 @dataclass(frozen=True)
 class MeasureJob:
-    """A rung of its problem to be climbed, with mesh results `before` (fea.solve.single_mesh), so
-    many times. reference: whatever time it takes.
+    """A mesh of a model to be solved `runs` times.
+
+    before: results on coarser meshes (fea.solve.single_mesh).
+    reference: whether it may take any time.
     """
 
     problem: Problem | JointProblem
@@ -65,36 +74,41 @@ Measure = Callable[[MeasureJob], Measured]
 
 
 def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
-    """Climb a rung in its own process, a new Python, which is ended when it passes a limit."""
+    """Solve a mesh in its own process, a new Python, which is ended when it passes a limit."""
     seconds = math.inf if job.reference else limits.seconds
     start, passed = time.monotonic(), ""
 
-    def watch(pid: int, told: str) -> str:
+    def watch(pid: int, report: str) -> str:
         nonlocal passed
         if time.monotonic() - start > seconds:
             passed = f"exceeded the limit of {seconds:g} s"
-        elif told.isdecimal() and memory(pid, "VmRSS") > int(told) + limits.memory:
+        elif report.isdecimal() and memory(pid, "VmRSS") > int(report) + limits.memory:
             passed = f"exceeded the limit of {limits.memory:g} MB"
         return passed
 
-    (made,) = guarded([Job("mesh", partial(climb, job))], anew=True, watch=watch)
+    (outcome,) = guarded([Job("mesh", partial(climb, job))], anew=True, watch=watch)
     return (
-        Measured(None, failed=made.reason, over=bool(passed)) if isinstance(made, Failed) else made
+        Measured(None, failed=outcome.reason, over=bool(passed))
+        if isinstance(outcome, Failed)
+        else outcome
     )
 
 
 def memory(pid: int | str, what: str) -> float:
-    """Of a process, MB: "VmRSS", what it holds now, or "VmHWM", the most it ever held."""
+    """Return the memory of a process, MB: "VmRSS", the present one, or "VmHWM", the largest so
+    far.
+    """
     try:
-        found = re.search(rf"{what}:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())
+        match = re.search(rf"{what}:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())
     except OSError:  # it has ended
-        found = None
-    return float(found[1]) / 1024.0 if found else 0.0
+        match = None
+    return float(match[1]) / 1024.0 if match else 0.0
 
 
 def climb(job: MeasureJob, tell: Tell) -> Measured:
-    """Climb a rung here and now; for a process that does nothing else. tell: called with its memory
-    before, MB.
+    """Solve a mesh in this process, which must do nothing else.
+
+    tell: called with the memory of the process before, MB.
     """
     os.setsid()  # so that programs that it runs are ended with it
     with suppress(ImportError):  # none of their time and memory is the model's
@@ -108,13 +122,13 @@ def climb(job: MeasureJob, tell: Tell) -> Measured:
         Path("/proc/self/clear_refs").write_text("5")  # forgets what imports took for a moment
     for run in range(job.runs):
         start = time.perf_counter()
-        found = _result(job)
+        maximum = _result(job)
         spent.append(time.perf_counter() - start)
         if run == 0:
             import resource  # Linux has it
 
             others = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
-            result, peak = found, memory("self", "VmHWM") + others
+            result, peak = maximum, memory("self", "VmHWM") + others
     return Measured(result, statistics.median(spent), max(peak - bare, MIN_MEASURED_MEMORY), bare)
 
 

@@ -1,4 +1,4 @@
-"""The ladders of meshes of a chart: which are climbed, how far, and what they are measured by."""
+"""The mesh sequences of a chart: which meshes are solved, how far they go, and the references."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ ADAPTIVE_MODELS = "harmonic", LOCAL_MODEL, "contact"  # finer meshes where stres
 
 @dataclass
 class Climb:
-    """Rungs climbed so far, in their order. auto: the model that it chooses."""
+    """Meshes solved so far, in their order.
+
+    auto: the model that `auto` chooses.
+    """
 
     problem: Problem | JointProblem
     asked: Requirement
@@ -42,19 +45,21 @@ class Climb:
     done: list[tuple[ModelMesh | JointRung, Measured]] = field(default_factory=list)
 
     def to(self, rung: ModelMesh | JointRung, keep: bool = True) -> Measured:
-        """Climb a rung; `keep` it as a point of the chart."""
+        """Solve a mesh; `keep` it as a point of the chart."""
         self.tell(f"{rung.model} model")
         below = self.results(rung) if rung.model in ADAPTIVE_MODELS and rung.level > 0 else ()
         if not keep:  # refined everywhere: it is what the others are measured by
             below = tuple(replace(result, high=()) for result in below)
         runs = self.runs if keep and rung.model != "calculix" else 1
-        found = self.measure(MeasureJob(self.problem, rung, below[-1:], runs, reference=not keep))
+        measured = self.measure(
+            MeasureJob(self.problem, rung, below[-1:], runs, reference=not keep)
+        )
         if keep:
-            self.done.append((rung, found))
-        return found
+            self.done.append((rung, measured))
+        return measured
 
     def drop_repeated(self) -> None:
-        """Leave out the last but one where the last is the same mesh, which places that need small
+        """Leave out the last mesh but one where the last is the same, which places that need small
         elements keep from being coarser.
         """
         (_, one), (_, two) = self.done[-2:]
@@ -62,63 +67,69 @@ class Climb:
             del self.done[-2]
 
     def results(self, like: ModelMesh | JointRung) -> tuple[MeshMaximum, ...]:
-        """Of the same model and element, from a run's first mesh on."""
+        """Return the results of the same model and element, from a run's first mesh on."""
         return tuple(
             m.result for r, m in self.done
             if (r.model, r.element) == (like.model, like.element) and r.level >= 0 and m.result
         )  # fmt: skip
 
     def enough(self, model: str, results: tuple[MeshMaximum, ...]) -> bool:
-        """Whether a run of the model would end here."""
+        """Return whether a run of the model would end here."""
         return accurate_enough(self.asked, self.problem.material, self.seen(model, results))
 
     def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
-        """Successive meshes as a run sees them."""
+        """Return successive meshes as a history, as a run sees them."""
         meshes = sequence_of(self.problem.pin, model)
         name, case = self.problem.pin.name, self.problem.loads.case
         return MeshHistory(name, case, model, results, (0.0,) * len(results), meshes, first)
 
 
 def climb_harmonic(climb: Climb) -> None:
-    """The usual levels, and on to where `auto` ends."""
+    """Solve the usual levels, and further ones to where `auto` ends."""
     for level in HARMONIC_LEVELS:
-        found = climb.to(ModelMesh("harmonic", level=level))
+        measured = climb.to(ModelMesh("harmonic", level=level))
         climb.drop_repeated()
     while (
         climb.auto == "harmonic"
-        and found.result is not None
+        and measured.result is not None
         and level + 1 < SECTION_MESHES.max_meshes
-        and found.result.unknowns * MESH_RATIO**2 <= SECTION_MESHES.max_unknowns
+        and measured.result.unknowns * MESH_RATIO**2 <= SECTION_MESHES.max_unknowns
         and not climb.enough("harmonic", climb.results(ModelMesh("harmonic")))
     ):
         level += 1
-        found = climb.to(ModelMesh("harmonic", level=level))
+        measured = climb.to(ModelMesh("harmonic", level=level))
 
 
 def climb_local(climb: Climb) -> None:
-    """All meshes that a run may make."""
+    """Solve all meshes that a run may make."""
     for level in range(LOCAL_MESHES.max_meshes):
         climb.to(ModelMesh(LOCAL_MODEL, level=level))
 
 
 def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
-    """Finer and finer meshes, as many as requested or until they get large, or pass a limit."""
+    """Solve finer and finer meshes, as many as requested or until they get large, or pass a
+    limit.
+    """
     pin = climb.problem.pin
     step = 2 if pin.meshed else 1  # it can only be halved
     first = 0 if pin.meshed else FIRST_SOLID_LEVEL[element]
     most = MAX_CHARTED_UNKNOWNS if isinstance(pin, Pin) else MAX_UNKNOWNS_BELOW_REFERENCE
     for k in range(meshes or SOLID_MESHES):
-        found = climb.to(ModelMesh("solid", element, first + step * k))
-        if found.over:
+        measured = climb.to(ModelMesh("solid", element, first + step * k))
+        if measured.over:
             return
         growth = MESH_RATIO ** (3 * step)
         few = meshes or (2 if pin.meshed else MIN_SOLID_MESHES)
-        if found.result is not None and k + 1 >= few and found.result.unknowns * growth > most:
+        if (
+            measured.result is not None
+            and k + 1 >= few
+            and measured.result.unknowns * growth > most
+        ):
             return
 
 
 def harmonic_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
-    """Finer and finer than the finest that is charted, until an order larger."""
+    """Solve meshes finer than the finest that is charted, until one is an order larger."""
     level, charted = _finest(climb, "harmonic")
     results: list[MeshMaximum] = []
     while (
@@ -126,12 +137,12 @@ def harmonic_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
         or results[-1].unknowns < REFERENCE_UNKNOWNS_RATIO * charted[-1].unknowns
     ):
         level += 1
-        found = climb.to(ModelMesh("harmonic", level=level), keep=False)
-        if found.result is None:
+        measured = climb.to(ModelMesh("harmonic", level=level), keep=False)
+        if measured.result is None:
             raise SolveError(
-                f"the reference, harmonic mesh {level + 1}: {found.failed}", code="no-reference"
+                f"the reference, harmonic mesh {level + 1}: {measured.failed}", code="no-reference"
             )
-        results.append(found.result)
+        results.append(measured.result)
         if results[-1].unknowns > MAX_REFERENCE_UNKNOWNS:
             break
     first = level - len(results) + 1
@@ -139,22 +150,22 @@ def harmonic_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
 
 
 def local_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
-    """A mesh more than is charted, which has nearly twice the unknowns of the last one.
+    """Solve one mesh more than is charted, which has nearly twice the unknowns of the last one.
 
     Raises: SolveError where it cannot be solved.
     """
     level, charted = _finest(climb, LOCAL_MODEL)
     finer = ModelMesh(LOCAL_MODEL, level=level + 1)
-    found = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
-    if found.result is None:
-        raise SolveError(f"the reference: {found.failed}", code="no-reference")
+    measured = climb.measure(MeasureJob(climb.problem, finer, charted[-1:], 1, reference=True))
+    if measured.result is None:
+        raise SolveError(f"the reference: {measured.failed}", code="no-reference")
     return ModelMesh(LOCAL_MODEL, level=level + 1), climb.seen(
-        LOCAL_MODEL, (*charted, found.result)
+        LOCAL_MODEL, (*charted, measured.result)
     )
 
 
 def solid_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
-    """The solid model on finer meshes than are charted, as far as its unknowns allow."""
+    """Solve the solid model on finer meshes than are charted, as far as its unknowns allow."""
     level, charted = _finest(climb, "solid")
     results = list(charted)
     step = 2 if climb.problem.pin.meshed else 1
@@ -162,10 +173,10 @@ def solid_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
         results[-1].unknowns < REFERENCE_UNKNOWNS_RATIO * charted[-1].unknowns
         and results[-1].unknowns * MESH_RATIO ** (3 * step) <= MAX_REFERENCE_UNKNOWNS
     ):
-        found = climb.to(ModelMesh("solid", "curved", level + step), keep=False)
-        if found.result is None:
+        measured = climb.to(ModelMesh("solid", "curved", level + step), keep=False)
+        if measured.result is None:
             break
-        results.append(found.result)
+        results.append(measured.result)
         level += step
     if len(results) == len(charted):
         raise SolveError(
@@ -176,7 +187,7 @@ def solid_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
 
 
 def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
-    """The finest level of a model's best element, and all its mesh results.
+    """Return the finest level of a model's best element, and all its mesh results.
 
     Raises: SolveError when there is none.
     """
@@ -191,7 +202,9 @@ def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
 
 
 def chosen(climb: Climb) -> ModelMesh | JointRung | None:
-    """Where `auto` ends; None where it goes on to finer meshes than there are here."""
+    """Return the mesh where `auto` ends; None where it goes on to finer meshes than are solved
+    here.
+    """
     model = climb.auto
     if model == "beam":
         return ModelMesh("beam")

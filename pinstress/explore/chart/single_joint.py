@@ -1,5 +1,5 @@
-"""One mesh of one model of a pin in its lugs, from the mesh to the maximum, for whoever compares
-models (fea.solve.single_mesh for other pins).
+"""The maximum on one mesh of one model of a pin in its lugs, for comparisons of models
+(fea.solve.single_mesh for other pins).
 
 All models are compared by the same number, that of a row: the larger of surface and section
 (fea.core.places). The surface is read where lugs leave it free, but for the pin's own
@@ -42,8 +42,11 @@ DEFAULT_RESOLUTION = Resolution()
 
 @dataclass(frozen=True)
 class JointProblem:
-    """A pin in its lugs in one case. loads: of the links. governing: number of the instant with
-    the largest stress, the only one that CalculiX solves. distance: as in fea.solve.solve.
+    """A pin in its lugs in one case.
+
+    loads: forces of the links.
+    governing: number of the instant with the largest stress, the only one that CalculiX solves.
+    distance: excluded distance, as in fea.solve.solve.
     """
 
     pin: Pin
@@ -55,7 +58,7 @@ class JointProblem:
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:
-        """Where stress is not read."""
+        """Return the zones in which stress is not read."""
         whole = on_structure(self.pin, self.lugs)
         none = PinLoads(self.loads.case, (), np.zeros((1, 0, 3)))
         return singularities_of(whole, self.material, (), (none,), self.distance)
@@ -63,8 +66,11 @@ class JointProblem:
 
 @dataclass(frozen=True)
 class JointRung:
-    """A mesh of a model; level: as of fea.solve.single_mesh.ModelMesh. cells: of contact;
-    fineness: of CalculiX.
+    """A mesh of a model.
+
+    level: as in fea.solve.single_mesh.ModelMesh.
+    cells: cells of contact.
+    fineness: fineness of CalculiX's mesh.
     """
 
     model: Literal["contact", "foundation", "calculix"]
@@ -77,9 +83,11 @@ class JointRung:
 def joint_result_on(
     problem: JointProblem, rung: JointRung, before: tuple[MeshMaximum, ...] = ()
 ) -> MeshMaximum:
-    """The maximum on one mesh. before: as of fea.solve.single_mesh.
+    """Return the maximum on one mesh.
 
-    Raises: MeshError, SolveError; ValueError for what a model lacks; CalculixError.
+    before: results on coarser meshes, as in fea.solve.single_mesh.
+
+    Raises: MeshError, SolveError; ValueError where a model cannot solve the problem; CalculixError.
     """
     if rung.model == "calculix":
         return _calculix(problem, rung)
@@ -99,11 +107,11 @@ def _contact(
     problem: JointProblem, rung: JointRung, before: tuple[MeshMaximum, ...]
 ) -> MeshMaximum:
     model = ContactModel(problem.pin, problem.material, problem.lugs, rung.cells)
-    found, zones = model.solve(problem.loads), problem.singularities
-    posed = SectionProblem(found.pin, problem.material, (), (found.loads,), zones)
+    answer, zones = model.solve(problem.loads), problem.singularities
+    posed = SectionProblem(answer.pin, problem.material, (), (answer.loads,), zones)
     section = harmonic_solution(posed, rung.level, MESH_RATIO, before)
-    surface, felt = harmonic_result(section, zones, found.loads), found.loads.on_rings
-    at = SectionField(found.pin, problem.material, (), [felt]).place(felt)
+    surface, felt = harmonic_result(section, zones, answer.loads), answer.loads.on_rings
+    at = SectionField(answer.pin, problem.material, (), [felt]).place(felt)
     result = _larger(surface, at)
     return replace(result, unknowns=result.unknowns + model.contact.area.size)
 
@@ -118,11 +126,11 @@ def _foundation(problem: JointProblem) -> MeshMaximum:
 def _calculix(problem: JointProblem, rung: JointRung) -> MeshMaximum:
     seated = PinInLugs(problem.pin, problem.material, problem.lugs)
     loads = transverse(seated, problem.loads.at(np.array([problem.governing])))
-    found = joint_opinion(problem.pin, problem.material, problem.lugs, loads, rung.fineness)
-    x, stress = found.nodes, von_mises(found.stress)
-    read = outside(problem.singularities, np.hypot(x[:, 0], x[:, 1]), x[:, 2]) & free(found)
+    opinion = joint_opinion(problem.pin, problem.material, problem.lugs, loads, rung.fineness)
+    x, stress = opinion.nodes, von_mises(opinion.stress)
+    read = outside(problem.singularities, np.hypot(x[:, 0], x[:, 1]), x[:, 2]) & free(opinion)
     top = int(np.argmax(np.where(read, stress, 0.0)))
     location = (float(x[top, 0]), float(x[top, 1]), float(x[top, 2]))
-    result = MeshMaximum(found.unknowns, float(stress[top]), problem.governing, location)
-    at = section_of(found, problem.pin, problem.material)
+    result = MeshMaximum(opinion.unknowns, float(stress[top]), problem.governing, location)
+    at = section_of(opinion, problem.pin, problem.material)
     return replace(_larger(result, at), instant=problem.governing)

@@ -1,8 +1,8 @@
 """Probabilities of failure of a study's pins, found in four ways that check each other.
 
 Plain sampling decides where enough samples fail; FORM finds where failure is most likely; designs
-sampled about these points weight far fewer of them into small probabilities. Every probability is
-one of designs that were solved as a run solves them: nothing is fitted or interpolated.
+sampled about these points weight far fewer of them into small probabilities. All probabilities come
+from designs that were solved as a run solves them: nothing is fitted or interpolated.
 """
 
 from __future__ import annotations
@@ -59,7 +59,9 @@ def assess(
     pins: Sequence[str] | None = None,
     cases: Sequence[str] | None = None,
 ) -> Reliability:
-    """Assess the pins of a study in its cases. nominal: the results of the study as it is.
+    """Assess the pins of a study in its cases.
+
+    nominal: results of the study as it is.
 
     Raises: InputError for a study without random numbers or without strengths.
     """
@@ -78,10 +80,8 @@ def assess(
     risks = []
     for k, (pin, case) in enumerate(evaluator.table):
         drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
-        found = AssessedRow(
-            pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers
-        )
-        risks.append(risk_of(found, sampled, weighted, asked))
+        row = AssessedRow(pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers)
+        risks.append(risk_of(row, sampled, weighted, asked))
     if len(risks) > 1:
         everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
         worst = AssessedRow(
@@ -136,50 +136,52 @@ def _first_orders(
     sampled: Sample,
     cases: Sequence[str] | None,
 ) -> list[_Form]:
-    """Of all rows; only the pin of a row is solved."""
+    """Return FORM's results of all rows; for each row only its pin is solved."""
     table = designs.evaluator.table
-    found: dict[tuple[str, str], _Form] = {}
+    forms: dict[tuple[str, str], _Form] = {}
     for pin in dict.fromkeys(pin for pin, _ in table):
         alone = designs.of_pin(Evaluator(study, parameters, [pin], cases))
         for k, row in enumerate(alone.evaluator.table):
             place, asked = table.index(row), study.table.reliability
             starts = starts_of(sampled, place, asked.factor)
-            found[row] = first_order(alone, k, starts, asked)
+            forms[row] = first_order(alone, k, starts, asked)
             if sampled.answers.depends[place]:
-                about = found[row].centres + _beneath(alone, k, asked)
-                found[row] = replace(found[row], centres=about)
-    return [found[row] for row in table]
+                about = forms[row].centres + _beneath(alone, k, asked)
+                forms[row] = replace(forms[row], centres=about)
+    return [forms[row] for row in table]
 
 
 def first_order(
     designs: SolvedDesigns, row: int, starts: list[Array], asked: ReliabilityTable
 ) -> _Form:
-    """Design points of a row from the mean and from other starts in other directions."""
+    """Find design points of a row from the mean and from other starts in other directions."""
     size = designs.space.size
     close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
     limit = designs.limit(row, asked.factor)
     points = [design_point(limit, np.zeros(size), close)]
     _search(points, starts, limit, close)
     _search(points, _failing_beyond(limit, distinct(points), size), limit, close)
-    kept = distinct(points)
+    design_points = distinct(points)
 
     def unused(u: Array) -> Array:
         return -designs.at(u, "FORM").used[:, row]
 
     lowest = form_quantile(unused, asked.probability, size, close)
     value = -1.0 / lowest.value if lowest.value else np.inf
-    centres = [p.u for p in kept]
+    centres = [p.u for p in design_points]
     if not lowest.why and all(np.linalg.norm(lowest.u - c) > 1.0 for c in centres):
         centres.append(lowest.u)
-    if not kept:
+    if not design_points:
         return _Form(FirstOrder(np.nan, np.nan, value, 0, points[0].why), tuple(centres))
-    nearest = kept[0]
-    result = FirstOrder(nearest.index, nearest.probability, value, len(kept))
+    nearest = design_points[0]
+    result = FirstOrder(nearest.index, nearest.probability, value, len(design_points))
     return _Form(result, tuple(centres), nearest)
 
 
 def _beneath(designs: SolvedDesigns, row: int, asked: ReliabilityTable) -> tuple[Array, ...]:
-    """Where what lies beneath contact is most likely to be too much, to sample there, too."""
+    """Return the points where excessive stress beneath contact is most likely, for sampling there
+    too.
+    """
     close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
     limit = designs.limit(row, asked.factor, deep=True)
     point = design_point(limit, np.zeros(designs.space.size), close)
@@ -187,8 +189,9 @@ def _beneath(designs: SolvedDesigns, row: int, asked: ReliabilityTable) -> tuple
 
 
 def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
-    """Where to look for design points of a row: samples that fail, nearest to the mean first, in
-    different directions; else the worst.
+    """Return starts of the search for design points of a row.
+
+    They are samples that fail, nearest to the mean first, in different directions; else the worst.
     """
     u, used = sampled.draws.u, sampled.answers.used[:, row]
     if np.isnan(used).all():
@@ -197,41 +200,41 @@ def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
     if not len(failing):
         return [u[int(np.nanargmax(used))]]
     order = failing[np.argsort(np.linalg.norm(u[failing], axis=1), kind="stable")]
-    kept: list[Array] = []
+    starts: list[Array] = []
     for at in order:
         direction = u[at] / np.linalg.norm(u[at])
-        if all(direction @ k < MAX_DIRECTION_COSINE * float(np.linalg.norm(k)) for k in kept):
-            kept.append(u[at])
-        if len(kept) == MAX_SEARCH_STARTS:
+        if all(direction @ k < MAX_DIRECTION_COSINE * float(np.linalg.norm(k)) for k in starts):
+            starts.append(u[at])
+        if len(starts) == MAX_SEARCH_STARTS:
             break
-    return kept
+    return starts
 
 
 def weighted_sample(
     designs: SolvedDesigns, centres: list[Array], asked: ReliabilityTable
 ) -> Sample | None:
-    """Designs about the centres (d,), solved; none without centres or samples in the study."""
-    kept: list[Array] = []
+    """Solve designs about the centres (d,); return None without centres or samples in the study."""
+    separate: list[Array] = []
     for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
-        if all(np.linalg.norm(centre - other) > 0.5 for other in kept):
-            kept.append(centre)
-    if not kept or not asked.importance_samples:
+        if all(np.linalg.norm(centre - other) > 0.5 for other in separate):
+            separate.append(centre)
+    if not separate or not asked.importance_samples:
         return None
-    draws = importance_draws(kept[:MAX_CENTRES], asked.importance_samples, asked.seed)
+    draws = importance_draws(separate[:MAX_CENTRES], asked.importance_samples, asked.seed)
     return Sample(draws, designs.at(draws.u, "importance sampling"))
 
 
 def _indices(
     designs: SolvedDesigns, asked: ReliabilityTable
 ) -> list[list[tuple[Spread, Spread]]] | None:
-    """Of all rows and, last, of the system."""
+    """Return the Sobol indices of all rows and, last, of the system."""
     base = base_samples(asked.sobol_samples)
     if not base or designs.space.size < 2:
         return None
 
     def factors(u: Array) -> Array:
-        found = designs.at(u, "Sobol indices")
-        return np.concatenate([found.factors, found.system.factors], axis=1)
+        answers = designs.at(u, "Sobol indices")
+        return np.concatenate([answers.factors, answers.system.factors], axis=1)
 
     return indices(factors, designs.space.size, base, asked.seed, asked.confidence)
 
@@ -247,8 +250,8 @@ def _search(
 
 
 def _failing_beyond(limit: LimitState, known: list[DesignPoint], size: int) -> Iterable[Array]:
-    """Points (d,) that fail farther out than the nearest design point, along all axes and opposite
-    to it: further design points may be near them that no sample shows.
+    """Return points (d,) that fail farther out than the nearest design point, along all axes and
+    opposite to it: further design points may be near them that no sample shows.
     """
     if not known or known[0].index <= 0.0:
         return ()

@@ -30,9 +30,10 @@ Marginal = Callable[[Array], Array]  # values at standard normal deviates
 
 @dataclass(frozen=True)
 class NormalSpace:
-    """d random variables: each a function of its own standard normal deviate. Normal variables may
-    be correlated: a linear map of independent ones (the Nataf transformation, which is exact for
-    normal variables). All others are independent.
+    """A space of d random variables, each a function of its own standard normal deviate.
+
+    Normal variables may be correlated: a linear map of independent ones (the Nataf transformation,
+    which is exact for normal variables). All others are independent.
 
     lower: L (d, d) with L L^T the correlation of the deviates; None where all are independent.
     """
@@ -45,13 +46,15 @@ class NormalSpace:
         return len(self.marginals)
 
     def physical(self, u: Array) -> Array:
-        """Values (n, d) of the variables at independent standard normal u (n, d)."""
+        """Return values (n, d) of the variables at independent standard normal u (n, d)."""
         z = u if self.lower is None else u @ self.lower.T
         return np.stack([at(z[:, i]) for i, at in enumerate(self.marginals)], axis=1)
 
     def importance(self, direction: Array) -> Array:
-        """Squares (d,), of sum one, of the importance of each variable for a design point in this
-        unit direction; with correlation, of the variables' own deviates (Der Kiureghian's gamma).
+        """Return the importance of each variable for a design point in this unit direction.
+
+        They are squares (d,) of sum one; with correlation, of the variables' own deviates (Der
+        Kiureghian's gamma).
         """
         if self.lower is not None:
             direction = np.linalg.lstsq(self.lower.T, direction)[0].astype(np.float64)
@@ -62,9 +65,12 @@ class NormalSpace:
 
 @dataclass(frozen=True)
 class Answers:
-    """Of n designs, for each of r rows: used (n, r), one over the factor of safety, NaN where there
-    is no result; errors (n, r) of the stress, relative; deep (n, r): as used, or as much as what
-    lies beneath contact uses with its error, if that is more, on which a row then depends.
+    """Answers of n designs for each of r rows.
+
+    used: (n, r), one over the factor of safety, NaN where there is no result.
+    errors: (n, r) of the stress, relative.
+    deep: (n, r), as `used`, or the value for the stress beneath contact with its error, if that is
+    larger, on which a row then depends.
     """
 
     used: Array
@@ -73,13 +79,15 @@ class Answers:
 
     @property
     def factors(self) -> Array:
-        """The factors of safety (n, r), infinite without stress."""
+        """Return the factors of safety (n, r), infinite without stress."""
         with np.errstate(divide="ignore"):
             return np.asarray(1.0 / self.used)
 
     @property
     def system(self) -> Answers:
-        """Of the row that is used most, as (n, 1); unknown where any row is."""
+        """Return the answers of the row with the largest use, as (n, 1); unknown where any row
+        is.
+        """
         worst, deepest = (
             np.argmax(np.where(np.isnan(x), np.inf, x), axis=1)[:, None]
             for x in (self.used, self.deep)
@@ -89,13 +97,13 @@ class Answers:
 
     @property
     def depends(self) -> NDArray[np.bool_]:
-        """Of which rows (r,) what lies beneath contact ever is the most."""
+        """Return for each row (r,) whether the stress beneath contact ever governs."""
         return np.asarray((self.deep > self.used).any(axis=0))
 
 
 def for_values(study: Study) -> Study:
-    """The study with the goal "value": to decide the required factor says little of stress itself,
-    and probabilities need numbers.
+    """Return the study with the goal "value": deciding the required factor says little of stress
+    itself, and probabilities need numbers.
     """
     if study.table.analysis.goal == "value":
         return study
@@ -105,7 +113,10 @@ def for_values(study: Study) -> Study:
 
 
 def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
-    """The random numbers of a study. Raises: InputError, also for numbers without a law."""
+    """Return the random numbers of a study.
+
+    Raises: InputError, also for numbers without a law.
+    """
     parameters, vary = parameters_of(study, sampled=False), study.table.vary
     assert vary is not None
     require_laws(study)
@@ -115,9 +126,11 @@ def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
 
 
 class SolvedDesigns:
-    """The designs of a study at standard normal u, solved. jobs: number of parallel processes.
+    """Solve the designs of a study at standard normal u.
 
-    solved: how many designs by what for; reasons: why rows have no result, with how many.
+    jobs: number of parallel processes.
+    solved: number of designs by purpose.
+    reasons: why rows have no result, with their number.
     """
 
     def __init__(
@@ -128,13 +141,13 @@ class SolvedDesigns:
         self._jobs, self._progress = jobs, progress
 
     def of_pin(self, evaluator: Evaluator) -> SolvedDesigns:
-        """The same with the rows of one pin, counted together."""
-        mine = SolvedDesigns(evaluator, self.space, 1, self._progress)
-        mine.solved, mine.reasons = self.solved, self.reasons
-        return mine
+        """Return the same for the rows of one pin, counted together."""
+        designs = SolvedDesigns(evaluator, self.space, 1, self._progress)
+        designs.solved, designs.reasons = self.solved, self.reasons
+        return designs
 
     def at(self, u: Array, purpose: str) -> Answers:
-        """Of designs u (n, d)."""
+        """Solve designs u (n, d) and return their answers."""
         self.solved[purpose] += len(u)
         values = self.space.physical(u)
         jobs = self._jobs if len(u) > MAX_SERIAL_DESIGNS else 1
@@ -145,16 +158,19 @@ class SolvedDesigns:
             for k, part in enumerate(partial(_solved, self.evaluator, p) for p in parts)
         ]
         progress = self._progress if len(u) > MAX_SERIAL_DESIGNS else (lambda _, __: None)
-        found: list[list[list[DesignRow]]] = []
-        for part, made in zip(parts, in_parallel(work, jobs, progress), strict=True):
-            found.append(
-                [_lost(self.evaluator, made)] * len(part) if isinstance(made, ProcessDied) else made
+        results: list[list[list[DesignRow]]] = []
+        for part, result in zip(parts, in_parallel(work, jobs, progress), strict=True):
+            results.append(
+                [_lost(self.evaluator, result)] * len(part)
+                if isinstance(result, ProcessDied)
+                else result
             )
-        return self._answers([rows for part in found for rows in part])
+        return self._answers([rows for part in results for rows in part])
 
     def limit(self, row: int, factor: float, deep: bool = False) -> LimitState:
-        """Of a row: one less factor times what is used, negative where it fails; deep: where it
-        fails or depends on what lies beneath contact.
+        """Return the limit state of a row: one less factor times use, negative where it fails.
+
+        deep: whether it is negative also where the row depends on stress beneath contact.
         """
 
         def at(u: Array) -> Array:
@@ -174,7 +190,7 @@ class SolvedDesigns:
 
 
 def _solved(evaluator: Evaluator, values: Array, _: object) -> list[list[DesignRow]]:
-    return [evaluator.rows(each) for each in values]
+    return [evaluator.rows(design) for design in values]
 
 
 def _lost(evaluator: Evaluator, died: ProcessDied) -> list[DesignRow]:
@@ -193,7 +209,7 @@ def _used(row: DesignRow) -> float:
 
 
 def _beneath(row: DesignRow) -> float:
-    """What lies beneath contact, with its error, over the row's stress; 0 where nothing does."""
+    """Return the stress beneath contact, with its error, over the row's stress; 0 without any."""
     if row.beneath is None or not row.max_von_mises:
         return 0.0
     return (row.beneath + (row.beneath_error or 0.0)) / row.max_von_mises

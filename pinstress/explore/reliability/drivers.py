@@ -1,4 +1,4 @@
-"""What drives the risk: Sobol indices of the factors of safety."""
+"""Sobol indices of the factors of safety, which show what drives the risk."""
 
 from __future__ import annotations
 
@@ -18,16 +18,20 @@ SCRAMBLED_SETS = 8  # independently scrambled, from whose scatter the intervals 
 
 
 def base_samples(asked: int) -> int:
-    """Of each set, a power of two; zero for fewer than a set needs."""
-    each = asked // SCRAMBLED_SETS
-    return 2 ** (each.bit_length() - 1) if each >= 2 else 0
+    """Return the size of each set, a power of two; zero if there are fewer than a set needs."""
+    size = asked // SCRAMBLED_SETS
+    return 2 ** (size.bit_length() - 1) if size >= 2 else 0
 
 
 def indices(
     factors: Callable[[Array], Array], size: int, base: int, seed: int, confidence: float
 ) -> list[list[tuple[Spread, Spread]]] | None:
-    """First-order and total indices of each output and each of d = size independent standard normal
-    variables. factors: of designs (n, d), as (n, s); None where any is not finite.
+    """Return first-order and total indices of each output and each variable.
+
+    factors: outputs (n, s) of designs (n, d).
+    size: number d of independent standard normal variables.
+
+    Returns None where any output is not finite.
     """
     standard: Any = norm()
     first, total = [], []
@@ -36,23 +40,23 @@ def indices(
 
         def outputs(x: Array) -> Array:
             nonlocal lost
-            found = factors(np.ascontiguousarray(x.T)).T
-            lost = lost or not np.isfinite(found).all()
-            return np.where(np.isfinite(found), found, 0.0)
+            values = factors(np.ascontiguousarray(x.T)).T
+            lost = lost or not np.isfinite(values).all()
+            return np.where(np.isfinite(values), values, 0.0)
 
         rng = np.random.default_rng([seed, 2, k])
         with np.errstate(invalid="ignore", divide="ignore"):  # of an output that does not vary
-            made = sobol_indices(func=outputs, n=base, dists=[standard] * size, rng=rng)
+            estimate = sobol_indices(func=outputs, n=base, dists=[standard] * size, rng=rng)
         if lost:
             return None
-        first.append(np.atleast_2d(made.first_order))
-        total.append(np.atleast_2d(made.total_order))
-    both = [_bounded(np.stack(found), confidence) for found in (first, total)]
+        first.append(np.atleast_2d(estimate.first_order))
+        total.append(np.atleast_2d(estimate.total_order))
+    both = [_bounded(np.stack(values), confidence) for values in (first, total)]
     return [[(a, b) for a, b in zip(*rows, strict=True)] for rows in zip(*both, strict=True)]
 
 
 def _bounded(values: Array, confidence: float) -> list[list[Spread]]:
-    """Of values (sets, s, d)."""
+    """Return the mean and confidence interval of values (sets, s, d)."""
     mean = values.mean(axis=0)
     deviate = float(student.ppf(0.5 + 0.5 * confidence, SCRAMBLED_SETS - 1))
     half = deviate * values.std(axis=0, ddof=1) / np.sqrt(SCRAMBLED_SETS)

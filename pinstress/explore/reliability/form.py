@@ -34,9 +34,13 @@ QUANTILE_ANGLE = 0.01  # angle of a quantile's point, whose square is in the val
 
 @dataclass(frozen=True)
 class Closeness:
-    """How closely a design point is found. In standard deviations: step of differences; distance of
-    the point to the limit state; how near the points are over which gradients are averaged. angle:
-    of the point to the normal of the limit state. iterations, halvings: at most so many.
+    """Tolerances of the search for a design point, in standard deviations.
+
+    step: step of differences.
+    distance: largest distance of the point to the limit state.
+    near: distance of the points over which gradients are averaged.
+    angle: of the point to the normal of the limit state.
+    iterations, halvings: largest numbers of these.
     """
 
     step: float = 0.01
@@ -48,7 +52,7 @@ class Closeness:
 
     @property
     def noisy(self) -> bool:
-        """Whether gradients are averaged."""
+        """Return whether gradients are averaged."""
         return self.near > 0.0
 
 
@@ -59,8 +63,10 @@ NOISY_CLOSENESS = Closeness(0.5, 0.1, 0.05, 0.8, 12, 3)
 
 @dataclass(frozen=True)
 class DesignPoint:
-    """u (d,) and the reliability index, negative where the origin fails; with `why` it has not
-    converged and neither means anything. evaluations: of the limit state.
+    """The failing point nearest to the origin, u (d,), and the reliability index.
+
+    The index is negative where the origin fails; with `why` the search has not converged and
+    neither means anything. evaluations: number of evaluations of the limit state.
     """
 
     u: Array
@@ -74,14 +80,16 @@ class DesignPoint:
 
     @property
     def direction(self) -> Array:
-        """Unit vector (d,) from the origin."""
+        """Return the unit vector (d,) from the origin."""
         length = float(np.linalg.norm(self.u))
         return self.u / length if length else self.u
 
 
 @dataclass(frozen=True)
 class FormQuantile:
-    """The value of which the probability to be lower is as requested, by the first order, at u."""
+    """The value below which a result stays with the requested probability, by the first order, at
+    u.
+    """
 
     value: float
     u: Array
@@ -105,19 +113,19 @@ class _Counted:
     def value_and_gradient(self, u: Array) -> tuple[float, Array]:
         d, step = len(u), self.close.step
         steps = step * np.eye(d)
-        found = self.many(np.concatenate([u[None, :], u + steps, u - steps]))
-        gradient = (found[1 : d + 1] - found[d + 1 :]) / (2.0 * step)
+        values = self.many(np.concatenate([u[None, :], u + steps, u - steps]))
+        gradient = (values[1 : d + 1] - values[d + 1 :]) / (2.0 * step)
         if self.close.noisy and np.isfinite(gradient).all():
             self._seen.append((u, gradient))
             near = [g for at, g in self._seen if np.linalg.norm(at - u) <= self.close.near]
             gradient = np.mean(near, axis=0)
-        return float(found[0]), gradient
+        return float(values[0]), gradient
 
 
 def design_point(
     limit: LimitState, start: Array, close: Closeness = SMOOTH_CLOSENESS
 ) -> DesignPoint:
-    """The point nearest to the origin where `limit` is zero, from a start (d,).
+    """Find the point nearest to the origin where `limit` is zero, from a start (d,).
 
     A limit state with several such points needs several starts.
     """
@@ -147,7 +155,7 @@ def design_point(
 
 
 def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
-    """The nearest point from a start near it, with the curvature of the limit state."""
+    """Find the nearest point from a start near it, using the curvature of the limit state."""
 
     def on_limit(u: Array) -> float:
         value = g.at(u) / scale
@@ -164,16 +172,16 @@ def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
 
     limit: Any = {"type": "eq", "fun": on_limit, "jac": slope}
     few: Any = {"ftol": 1e-12, "maxiter": g.close.iterations}
-    found = minimize(
+    optimum = minimize(
         half_square, start.tolist(), jac=itself, constraints=limit, method="SLSQP", options=few
     )
-    return np.asarray(found.x)
+    return np.asarray(optimum.x)
 
 
 def form_quantile(
     limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH_CLOSENESS
 ) -> FormQuantile:
-    """The quantile of `limit` over d = size variables, by the first order."""
+    """Find the quantile of `limit` over d = size variables, by the first order."""
     g = _Counted(limit, close)
     radius = float(ndtri(probability))
     if abs(radius) > MAX_RELIABILITY_INDEX:
@@ -197,12 +205,14 @@ def form_quantile(
 
 
 def distinct(points: list[DesignPoint], cosine: float = 0.9) -> list[DesignPoint]:
-    """Those that converged, nearest first, without those in nearly the direction of a nearer."""
-    kept: list[DesignPoint] = []
+    """Return the converged points, nearest first, without those in nearly the direction of a nearer
+    one.
+    """
+    separate: list[DesignPoint] = []
     for point in sorted((p for p in points if not p.why), key=lambda p: abs(p.index)):
-        if all(point.direction @ other.direction < cosine for other in kept):
-            kept.append(point)
-    return kept
+        if all(point.direction @ other.direction < cosine for other in separate):
+            separate.append(point)
+    return separate
 
 
 def _stuck(value: float, slope: float, scale: float, u: Array) -> str:
@@ -221,13 +231,13 @@ def _aligned(u: Array, normal: Array, angle: float) -> bool:
 
 
 def _within(target: Array) -> Array:
-    """Not farther out than where the search ends."""
+    """Limit a target to the distance at which the search ends."""
     length = float(np.linalg.norm(target))
     return target if length <= MAX_RELIABILITY_INDEX else target * (MAX_RELIABILITY_INDEX / length)
 
 
 def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float) -> Array:
-    """A part of the step to the target that decreases |u|^2 / 2 + weight |g|."""
+    """Shorten the step to the target until it decreases |u|^2 / 2 + weight |g|."""
     before = 0.5 * float(u @ u) + weight * abs(value)
     part = 1.0
     for _ in range(g.close.halvings):
@@ -240,7 +250,9 @@ def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float
 
 
 def _on_sphere(g: _Counted, u: Array, target: Array, value: float, sign: float) -> Array:
-    """A turn from u towards the target, on their sphere, that lowers g (raises it for sign 1)."""
+    """Turn from u towards the target, on their sphere, so that g decreases (increases for sign
+    1).
+    """
     radius, part = float(np.linalg.norm(u)), 1.0
     for _ in range(g.close.halvings):
         trial = u + part * (target - u)

@@ -1,4 +1,4 @@
-"""A row's probabilities, quantiles and distribution from the samples and what FORM found."""
+"""Probabilities, quantiles and distribution of a row from the samples and FORM's results."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ MIN_SAMPLES_BELOW = 10  # weighted samples below a point of it
 
 @dataclass(frozen=True)
 class RiskColumn:
-    """A row of the study, or all (None)."""
+    """A selector of a row of the study, or of all (None)."""
 
     row: int | None
 
     def of(self, answers: Answers) -> tuple[Array, Array]:
-        """What is used and the errors, (n,)."""
-        found = answers.system if self.row is None else answers
-        return found.used[:, self.row or 0], found.errors[:, self.row or 0]
+        """Return use and relative errors, (n,)."""
+        selected = answers.system if self.row is None else answers
+        return selected.used[:, self.row or 0], selected.errors[:, self.row or 0]
 
     def deep(self, answers: Answers) -> Array:
-        """What is used, or used beneath contact, if that is more, (n,)."""
-        found = answers.system if self.row is None else answers
-        return found.deep[:, self.row or 0]
+        """Return use, or that beneath contact if it is larger, (n,)."""
+        selected = answers.system if self.row is None else answers
+        return selected.deep[:, self.row or 0]
 
     def depends(self, answers: Answers) -> bool:
-        """Whether what lies beneath contact is ever more."""
+        """Return whether the stress beneath contact ever governs."""
         return bool(answers.depends.any() if self.row is None else answers.depends[self.row])
 
 
@@ -51,18 +51,21 @@ class Sample:
     def probability(
         self, asked: ReliabilityTable, column: RiskColumn, part: float = 0.0
     ) -> Estimate:
-        """Of failure. part: of its error by which each stress is larger."""
+        """Return the probability of failure.
+
+        part: part of its error by which each stress is increased.
+        """
         used, errors = column.of(self.answers)
         margin = 1.0 - asked.factor * used * (1.0 + part * errors)
         return probability(self.draws, margin, 0.0, asked.confidence)
 
     def deep(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
-        """The probability of failure or of dependence on what lies beneath contact."""
+        """Return the probability of failure or of dependence on the stress beneath contact."""
         margin = 1.0 - asked.factor * column.deep(self.answers)
         return probability(self.draws, margin, 0.0, asked.confidence)
 
     def quantile(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
-        """The factor of safety that is not reached with the stated probability."""
+        """Return the factor of safety that is missed with the stated probability."""
         with np.errstate(divide="ignore"):
             factors = 1.0 / column.of(self.answers)[0]
         return quantile(self.draws, factors, asked.probability, asked.confidence)
@@ -70,7 +73,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class AssessedRow:
-    """A row of the study, or all of them, with its result as the study is and what FORM found."""
+    """A row of the study, or all of them, with its nominal result and FORM's result."""
 
     pin: str
     case: str
@@ -83,7 +86,7 @@ class AssessedRow:
 def risk_of(
     row: AssessedRow, sampled: Sample, weighted: Sample | None, asked: ReliabilityTable
 ) -> Risk:
-    """What plain and importance sampling say of a row."""
+    """Return the risk of a row by plain and importance sampling."""
     plain = sampled.probability(asked, row.column)
     by_weights = weighted and weighted.probability(asked, row.column)
     low = weighted and weighted.quantile(asked, row.column)
@@ -115,7 +118,7 @@ def risk_of(
 def _beneath(
     sampled: Sample, weighted: Sample | None, row: AssessedRow, asked: ReliabilityTable
 ) -> Spread | None:
-    """None where nothing beneath contact is ever more than the row."""
+    """Return the probability with the stress beneath contact; None where that never governs."""
     if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
         return None
     plain = _bounded(sampled.deep(asked, row.column))
@@ -133,7 +136,7 @@ def _by_errors(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErr
 
 
 def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
-    """With the relative range over the joint of the study as it is."""
+    """Return the probability with the relative range over the joint of the nominal study."""
     nominal = row.nominal
     span = nominal.joint.range if nominal and nominal.joint else None
     if span is None or nominal is None or not nominal.max_von_mises or row.column.row is None:
@@ -148,7 +151,9 @@ def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErro
 
 
 def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, float, int], ...]:
-    """Points of the distribution of the factor of safety, even in normal deviates."""
+    """Return points of the distribution of the factor of safety, evenly spaced in normal
+    deviates.
+    """
     used, _ = row.column.of(sample.answers)
     known = np.isfinite(used) & (used > 0.0)
     order = np.argsort(-used[known], kind="stable")
@@ -165,5 +170,5 @@ def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, flo
     return tuple((float(factors[k]), float(below[k]), way) for k in chosen)
 
 
-def _bounded(found: Estimate) -> Spread:
-    return Spread(found.value, found.low, found.high)
+def _bounded(estimate: Estimate) -> Spread:
+    return Spread(estimate.value, estimate.low, estimate.high)

@@ -29,7 +29,8 @@ PLAIN_SHARE = 0.2  # of an importance sample that is drawn plainly
 class Estimate:
     """A number with its confidence interval; an end that samples do not bound is infinite.
 
-    count: of failing samples; unknown: of samples without a result.
+    count: number of failing samples.
+    unknown: number of samples without a result.
     """
 
     value: float
@@ -42,8 +43,10 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Draws:
-    """Samples u (n, d) of independent standard normal variables, with the weights (n,) of each and
-    the number drawn about each centre, in this order; the first are plain.
+    """Samples u (n, d) of independent standard normal variables.
+
+    weights: (n,), one for each sample.
+    strata: number drawn about each centre, in this order; the first are plain.
     """
 
     u: Array
@@ -61,10 +64,10 @@ def plain_draws(samples: int, size: int, seed: int) -> Draws:
 
 
 def importance_draws(centres: Sequence[Array], samples: int, seed: int) -> Draws:
-    """About centres (d,), with equal shares, and about the origin."""
+    """Draw samples about centres (d,), with equal shares, and about the origin."""
     size, every = len(centres[0]), [np.zeros(len(centres[0])), *centres]
-    each = max(1, int(samples * (1.0 - PLAIN_SHARE)) // len(centres))
-    counts = (max(1, samples - each * len(centres)), *[each] * len(centres))
+    share = max(1, int(samples * (1.0 - PLAIN_SHARE)) // len(centres))
+    counts = (max(1, samples - share * len(centres)), *[share] * len(centres))
     normal = np.random.default_rng([seed, 1]).standard_normal((sum(counts), size))
     u = normal + np.repeat(every, counts, axis=0)
     total = sum(counts)
@@ -77,7 +80,7 @@ def importance_draws(centres: Sequence[Array], samples: int, seed: int) -> Draws
 
 
 def probability(draws: Draws, values: Array, limit: float, confidence: float) -> Estimate:
-    """Of values (n,), of which those that are not a number are unknown, to be below the limit."""
+    """Estimate the probability that values (n,) are below the limit; NaN counts as unknown."""
     unknown = np.isnan(values)
     failing = np.where(unknown, False, values < limit)
     n, lost, count = len(values), int(unknown.sum()), int(failing.sum())
@@ -85,14 +88,15 @@ def probability(draws: Draws, values: Array, limit: float, confidence: float) ->
     value, low, high = sure
     if lost:
         high = _estimate(draws, failing | unknown, confidence)[2]
-        kept = float(draws.weights[~unknown].sum())
-        value = float(draws.weights[failing].sum()) / kept if kept else np.nan
+        total = float(draws.weights[~unknown].sum())
+        value = float(draws.weights[failing].sum()) / total if total else np.nan
     return Estimate(value, low, high, n, count, lost)
 
 
 def quantile(draws: Draws, values: Array, probability: float, confidence: float) -> Estimate:
-    """Of values (n,), which are unknown where they are not a number; an end of the interval that
-    the samples do not bound is infinite.
+    """Estimate a quantile of values (n,); NaN counts as unknown.
+
+    An end of the interval that the samples do not bound is infinite.
     """
     unknown = np.isnan(values)
     value = _quantile(draws, values, probability, confidence, ~unknown)[0]
@@ -102,7 +106,7 @@ def quantile(draws: Draws, values: Array, probability: float, confidence: float)
 
 
 def _estimate(draws: Draws, failing: Flags, confidence: float) -> tuple[float, float, float]:
-    """Value and interval of the probability of what fails."""
+    """Return value and interval of the probability of failure."""
     if draws.plain:
         count, n = int(failing.sum()), len(failing)
         ends = binomtest(count, n).proportion_ci(confidence, method="exact")
@@ -116,7 +120,7 @@ def _estimate(draws: Draws, failing: Flags, confidence: float) -> tuple[float, f
 
 
 def _mean(draws: Draws, failing: Flags) -> tuple[float, float]:
-    """The weighted mean and its standard error, of stratified samples."""
+    """Return the weighted mean of stratified samples and its standard error."""
     weighted = np.where(failing, draws.weights, 0.0)
     parts = np.split(weighted, np.cumsum(draws.strata)[:-1])
     variance = sum(len(part) * float(part.var(ddof=min(1, len(part) - 1))) for part in parts)
@@ -124,11 +128,13 @@ def _mean(draws: Draws, failing: Flags) -> tuple[float, float]:
 
 
 def _quantile(
-    draws: Draws, values: Array, probability: float, confidence: float, kept: Flags | None = None
+    draws: Draws, values: Array, probability: float, confidence: float, known: Flags | None = None
 ) -> tuple[float, float, float]:
-    """By order statistics of plain samples (binomial), by Woodruff's interval of weighted ones."""
-    weights = draws.weights if kept is None else draws.weights[kept]
-    values = values if kept is None else values[kept]
+    """Return a quantile and its interval: by order statistics of plain samples (binomial), by
+    Woodruff's interval of weighted ones.
+    """
+    weights = draws.weights if known is None else draws.weights[known]
+    values = values if known is None else values[known]
     if not len(values):
         return np.nan, -np.inf, np.inf
     order = np.argsort(values, kind="stable")
@@ -142,9 +148,9 @@ def _quantile(
             float(ranked[first - 1]) if first else -np.inf,
             float(ranked[last]) if last < n else np.inf,
         )
-    below = np.cumsum(weights[order]) / (len(values) if kept is None else weights.sum())
+    below = np.cumsum(weights[order]) / (len(values) if known is None else weights.sum())
     value = _first(ranked, below, probability)
-    if kept is not None:
+    if known is not None:
         return value, -np.inf, np.inf
     spread = _mean(draws, values <= value)[1]
     part = float(np.exp(_deviate(confidence) * spread / probability))
@@ -153,7 +159,7 @@ def _quantile(
 
 
 def _first(ranked: Array, below: Array, probability: float) -> float:
-    """The lowest value that a part of at least `probability` does not exceed."""
+    """Return the lowest value that a part of at least `probability` does not exceed."""
     at = int(np.searchsorted(below, probability))
     return float(ranked[at]) if at < len(ranked) else np.inf
 

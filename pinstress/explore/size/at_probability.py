@@ -1,9 +1,9 @@
-"""The least weight with which a factor is missed at most with some probability.
+"""The least weight at which the probability of missing a factor stays within a limit.
 
-Two searches in turn: the least weight of the study as it is, each row with a larger factor; and, of
-what is found, the factor of each row that is missed with that probability, by the first order
-(pinstress.explore.reliability.form), whose ratio to the row's own factor is what the next search
-asks for.
+Two searches alternate: the least weight of the study as it is, each row with a larger factor; and,
+for the result, the factor of each row that is missed with that probability, by the first order
+(pinstress.explore.reliability.form), whose ratio to the row's own factor sets the factor of the
+next search.
 
 Source: Du & Chen, J. Mech. Des. 126 (2004) 225 (sequential optimisation and assessment).
 """
@@ -39,8 +39,10 @@ Row = tuple[str, str]  # pin and case
 
 
 def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> None:
-    """Raises: InputError for a study without laws, and for laws of dimensions that are to change
-    and do not move with them.
+    """Check the laws of a study.
+
+    Raises: InputError for a study without laws, and for laws of dimensions that are to change and
+    do not move with them.
     """
     parameters, _ = random_numbers(study)
     vary = study.table.vary
@@ -63,7 +65,7 @@ def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> N
 def factors_at(
     study: Study, pins: Iterable[str], probability: float, progress: Progress
 ) -> dict[Row, float]:
-    """By row, the factor that is missed with a probability; NaN where that is not found.
+    """Return for each row the factor that is missed with a probability; NaN where it is not found.
 
     Raises: InputError.
     """
@@ -79,8 +81,8 @@ def factors_at(
             def unused(u: Array, k: int = k, designs: SolvedDesigns = designs) -> Array:
                 return -designs.at(u, "FORM").used[:, k]
 
-            found = form_quantile(unused, probability, space.size, close)
-            out[row] = -1.0 / found.value if found.value and not found.why else np.nan
+            estimate = form_quantile(unused, probability, space.size, close)
+            out[row] = -1.0 / estimate.value if estimate.value and not estimate.why else np.nan
     return out
 
 
@@ -92,41 +94,41 @@ def lighten_at(
     jobs: int,
     progress: Progress,
 ) -> LightStudy:
-    """Every pin's least weight for a factor that is missed with a probability at most.
+    """Find every pin's least weight for a factor that is missed with at most a probability.
 
     Raises: InputError.
     """
     require_laws(study, aim, pins)
-    found = lighten(study, aim, pins, jobs, progress)
-    before = {each.pin: each.before for each in found.pins}
+    design = lighten(study, aim, pins, jobs, progress)
+    before = {pin.pin: pin.before for pin in design.pins}
     for _ in range(MAX_ROUNDS):
-        names = [each.pin for each in found.pins]
-        at = factors_at(found.study, names, probability, progress)
-        found = replace(found, at=at, settled=found.settled and _reached(found, at, aim))
-        if found.settled:
+        names = [pin.pin for pin in design.pins]
+        at = factors_at(design.study, names, probability, progress)
+        design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
+        if design.settled:
             break
         more = {
             (p.pin, p.case): p.safety_factor / at[p.pin, p.case]
-            for p in found.results.pins
+            for p in design.results.pins
             if p.safety_factor and np.isfinite(at.get((p.pin, p.case), np.nan))
         }
-        found = lighten(study, replace(aim, more=more), pins, jobs, progress)
+        design = lighten(study, replace(aim, more=more), pins, jobs, progress)
     else:
-        at = factors_at(found.study, [each.pin for each in found.pins], probability, progress)
-        found = replace(found, at=at, settled=found.settled and _reached(found, at, aim))
-    kept = tuple(replace(each, before=before[each.pin]) for each in found.pins)
-    return replace(found, pins=kept)
+        at = factors_at(design.study, [pin.pin for pin in design.pins], probability, progress)
+        design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
+    updated = tuple(replace(pin, before=before[pin.pin]) for pin in design.pins)
+    return replace(design, pins=updated)
 
 
-def _reached(found: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
-    """Whether every pin that was found has the factor, and little more."""
-    for each in found.pins:
-        mine = [p for p in found.results.pins if p.pin == each.pin and p.safety_factor]
+def _reached(design: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
+    """Return whether every pin that was found reaches the factor, with little excess."""
+    for pin in design.pins:
+        rows = [p for p in design.results.pins if p.pin == pin.pin and p.safety_factor]
         low = [
             (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0)
-            for p in mine
+            for p in rows
         ]
-        if each.factor is None or not low:
+        if pin.factor is None or not low:
             continue
         least = float(np.nanmin(low)) if np.isfinite(low).any() else np.inf
         if not aim.required <= least * (1.0 + 1e-9) <= aim.required * (1.0 + MAX_FACTOR_EXCESS):

@@ -1,4 +1,6 @@
-"""Derivatives of the stress of a pin in contact by the dimensions of its least weight."""
+"""Derivatives of the stress of a pin in contact with respect to the dimensions that its least
+weight may change.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ BAND_RATE_STEP = 3e-5  # of a dimension, by which its effect on a band is found
 
 
 class UndifferentiatedError(Exception):
-    """Stress has no derivatives by dimensions: of a pin with cuts, or of some in contact."""
+    """The stress has no derivatives by dimensions: that of a pin with cuts, or of some pins in
+    contact.
+    """
 
 
 def by_contact(
@@ -28,8 +32,11 @@ def by_contact(
     row: tuple[Task, Solution, Place],
     dimensions: tuple[Dimension, ...],
 ) -> Floats:
-    """Relative derivatives (n,) of the largest stress of a place, 1/m; eyes that are wider in the
-    study than before, because they became too narrow, grow with the pin. row: what was solved.
+    """Return relative derivatives (n,) of the largest stress of a place, 1/m.
+
+    before, study: the study as given, and as changed. Eyes that are wider in it, because they
+    became too narrow, grow with the pin.
+    row: the task, its solution and the place.
 
     Raises: UndifferentiatedError.
     """
@@ -40,19 +47,19 @@ def by_contact(
     eyes = {at: f"lug.{at}.outer_diameter" for at in grown}
     wanted = {*keys, *eyes.values()}
     lengths = [x.of_joint for x in joint_parameters(study, task) if x.of_joint.key in wanted]
-    found = differentiated_in_lugs(joined, task, lengths, alone=True, place=place)
-    if found is None:
+    derivatives = differentiated_in_lugs(joined, task, lengths, alone=True, place=place)
+    if derivatives is None:
         raise UndifferentiatedError
-    by = found.by_parameter
+    by = derivatives.by_parameter
     slopes = np.array([by.get(key, 0.0) for key in keys])
     for at, key in eyes.items():
         ratio = (now[at].outer_diameter or 0.0) / hole_in_eye(study, name, at)
         slopes += by.get(key, 0.0) * ratio * _band_rates(task, dimensions, at)
-    return slopes / found.maximum
+    return slopes / derivatives.maximum
 
 
 def _band_rates(task: Task, dimensions: tuple[Dimension, ...], connection: str) -> Floats:
-    """Of the diameter on which a link bears, by the dimensions."""
+    """Return derivatives (n,) of the diameter on which a link bears, by the dimensions."""
     assert isinstance(task.pin, Pin)  # others are not differentiated
     now, out = task.pin.band(connection).radius, []
     for d in dimensions:

@@ -1,5 +1,5 @@
-"""What counts of a row when a pin is sized: the largest stress of surface, section and beneath
-contact, each with its error. Only a row of which all three meet a factor is safe.
+"""The stresses of a row that count when a pin is sized: the largest of surface, section and beneath
+contact, each with its error. A row is safe only if all three meet a factor.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ from reports.data.results import PinResult
 
 
 def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
-    """Both, with the upper end of what is known of each, Pa; of a row without places, and of a
-    singular surface that governs, that of the row.
+    """Return the names of both places with the upper ends of their stresses, Pa.
+
+    A row without places, or with a governing singular surface, has the stress of the row.
     """
     places = peak.places
     if places is None or (peak.verdict == "singular" and places.governs == "surface"):
@@ -26,20 +27,20 @@ def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
 
 
 def beneath(peak: Maximum) -> float:
-    """What lies beneath contact with its error, Pa; 0 without any."""
+    """Return the stress beneath contact with its error, Pa; 0 without any."""
     contact = peak.places and peak.places.contact
     return contact.upper_end if contact else 0.0
 
 
 def low_factor(pin: PinResult) -> float | None:
-    """The factor that counts of a row: by the largest of these stresses; None without one."""
+    """Return the factor of a row by the largest of these stresses; None without one."""
     if pin.safety_factor is None or not pin.max_von_mises:
         return None
     return min(factor_ends(pin)[0], beneath_factor(pin))
 
 
 def beneath_factor(pin: PinResult) -> float:
-    """The factor by what lies beneath contact with its error; inf without any."""
+    """Return the factor by the stress beneath contact with its error; inf without any."""
     contact = pin.places and pin.places.contact
     if not contact or not contact.upper_end or pin.yield_strength is None:
         return float("inf")

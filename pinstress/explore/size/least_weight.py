@@ -1,4 +1,6 @@
-"""The least weight of all pins of a study that reach a factor of safety, loads and all."""
+"""The least weight of all pins of a study that reach a factor of safety, under loads that follow
+from the weights.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +28,10 @@ LEAST_WEIGHT_MODULES = ("fea.solve.solve", "assess.derivatives.places", "scipy.o
 
 @dataclass(frozen=True)
 class LightStudy:
-    """The new study, what was found of every pin, and the new study's run. passes: how often all
-    loads were found anew; settled: whether the run has the factors that the last one ended with.
+    """The new study, the result for every pin, and the new study's run.
+
+    passes: number of times that all loads were updated.
+    settled: whether the run has the factors of the last search.
     at: by pin and case, the factor at a probability, if requested.
     """
 
@@ -46,8 +50,10 @@ def lighten(
     jobs: int = 1,
     progress: Progress = lambda _, __: None,
 ) -> LightStudy:
-    """Every pin's least weight. Weights of pins change the loads of others, so all are searched
-    again from where they are, under the loads of the new study, until its run confirms them.
+    """Find every pin's least weight.
+
+    Weights of pins change the loads of others, so all are searched again from where they are, under
+    the loads of the new study, until its run confirms them.
 
     Raises: InputError.
     """
@@ -56,35 +62,37 @@ def lighten(
     starts: dict[str, Start] = {}
     first: dict[str, float | None] = {}
     for count in range(1, MAX_PASSES + 1):
-        found = _all(study, plan, names, aim, starts, jobs, progress)
-        first = {each.pin: each.before for each in found} | first
-        starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in found}
-        new = _written(study, aim, found)
+        lightest = _all(study, plan, names, aim, starts, jobs, progress)
+        first = {pin.pin: pin.before for pin in lightest} | first
+        starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in lightest}
+        new = _written(study, aim, lightest)
         progress("run of the new study", 0.9)
         results = run(new, pins=names, jobs=jobs)
-        settled = all(_agrees(each, results, aim) for each in found)
+        settled = all(_agrees(pin, results, aim) for pin in lightest)
         if settled or count == MAX_PASSES:
             break
         plan = replace(plan, loads=prepare(new, pins=pins).loads)
-    kept = tuple(replace(each, before=first[each.pin]) for each in found)
-    if worse := _worse(study, aim, kept, results, jobs):
-        kept = tuple(
-            as_it_is(study, aim, each, worse[each.pin]) if each.pin in worse else each
-            for each in kept
+    lightest_pins = tuple(replace(pin, before=first[pin.pin]) for pin in lightest)
+    if worse := _worse(study, aim, lightest_pins, results, jobs):
+        lightest_pins = tuple(
+            as_it_is(study, aim, pin, worse[pin.pin]) if pin.pin in worse else pin
+            for pin in lightest_pins
         )
-        new = _written(study, aim, list(kept))
+        new = _written(study, aim, list(lightest_pins))
         results = run(new, pins=names, jobs=jobs)
-    return LightStudy(new, kept, results, count, settled)
+    return LightStudy(new, lightest_pins, results, count, settled)
 
 
 def _worse(
-    study: Study, aim: WeightGoal, found: tuple[Lightest, ...], results: Results, jobs: int
+    study: Study, aim: WeightGoal, pins: tuple[Lightest, ...], results: Results, jobs: int
 ) -> dict[str, str]:
-    """By pin, why what was found is decided worse than the pin as it is: a row that is safe is
-    better than one that is not decided, this better than one that fails. Of pins as described: one
-    that just reaches a factor does not over a range of its joint.
+    """Explain by pin why its result is decided worse than the pin as it is.
+
+    A row that is safe is better than one that is not decided, and this better than one that fails.
+    Pins are compared as described: one that just reaches a factor does not over a range of its
+    joint.
     """
-    changed = {x.pin for x in found if not x.kept and (x.values or x.scale is not None)}
+    changed = {x.pin for x in pins if not x.kept and (x.values or x.scale is not None)}
     doubtful = {
         p.pin for p in results.pins if OUTCOME_ORDER[as_described(p)] < OUTCOME_ORDER[SAFE]
     } & changed
@@ -115,19 +123,19 @@ def _all(
     work = [
         Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in heavy
     ]
-    made = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
-    by_name = dict(zip(heavy, made, strict=True))
+    results = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
+    by_name = dict(zip(heavy, results, strict=True))
     return [
         Lightest(name, why=one.reason) if isinstance(one := by_name[name], ProcessDied) else one
         for name in names
     ]
 
 
-def _written(study: Study, aim: WeightGoal, found: list[Lightest]) -> Study:
-    found = [each for each in found if not each.kept]
-    scales = {each.pin: each.scale for each in found if each.scale is not None}
+def _written(study: Study, aim: WeightGoal, pins: list[Lightest]) -> Study:
+    pins = [pin for pin in pins if not pin.kept]
+    scales = {pin.pin: pin.scale for pin in pins if pin.scale is not None}
     scaled = resized_study(study, scales, aim.step, aim.required)
-    values = {each.pin: each.values for each in found if each.values is not None}
+    values = {pin.pin: pin.values for pin in pins if pin.values is not None}
     shapes = {}
     for name in values:
         shape = VariedShape(study, pin_of(study, name), aim.vary, aim.limits)
@@ -135,13 +143,13 @@ def _written(study: Study, aim: WeightGoal, found: list[Lightest]) -> Study:
     return written_study(scaled, shapes, values, aim.step, aim.required)
 
 
-def _agrees(each: Lightest, results: Results, aim: WeightGoal) -> bool:
-    """Whether the run has the factor that was found for a pin, with little excess."""
-    more = aim.of_pin(each.pin)
-    mine = [p for p in results.pins if p.pin == each.pin]
-    if any(p.verdict == "unconverged" and p.decided for p in mine):
-        return all(p.decided is not False for p in mine)  # it ended where that was decided
-    low = [f / more.get(p.case, 1.0) for p in mine if (f := low_factor(p)) is not None]
-    if each.factor is None or not low:
+def _agrees(pin: Lightest, results: Results, aim: WeightGoal) -> bool:
+    """Return whether the run has the factor that was found for a pin, with little excess."""
+    more = aim.of_pin(pin.pin)
+    rows = [p for p in results.pins if p.pin == pin.pin]
+    if any(p.verdict == "unconverged" and p.decided for p in rows):
+        return all(p.decided is not False for p in rows)  # it ended where that was decided
+    low = [f / more.get(p.case, 1.0) for p in rows if (f := low_factor(p)) is not None]
+    if pin.factor is None or not low:
         return True
-    return aim.required <= min(low) * (1.0 + 1e-9) <= each.factor * (1.0 + FACTOR_TOLERANCE)
+    return aim.required <= min(low) * (1.0 + 1e-9) <= pin.factor * (1.0 + FACTOR_TOLERANCE)

@@ -1,7 +1,7 @@
 """The least weight of one pin that reaches a factor of safety in all its cases, under given loads.
 
 First it is scaled as a whole, as `size` does; the search goes on from there, so that it is never
-heavier. What is found is rounded as it is written, and solved once more.
+heavier. The result is rounded as it is written, and solved once more.
 """
 
 from __future__ import annotations
@@ -79,9 +79,14 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class WeightGoal:
-    """What is wished: the factor, kinds of dimensions (KINDS) that may change, geometric limits,
-    the step (m) to which diameters are rounded up. more: by pin and case, times the factor that
-    the nominal design needs so that a less likely one reaches it.
+    """The goal of a search for the least weight.
+
+    required: the factor.
+    vary: kinds of dimensions (DIMENSION_KINDS) that may change.
+    limits: geometric limits.
+    step: step to which diameters are rounded up, m.
+    more: by pin and case, times the factor that the nominal design needs so that a less likely one
+    reaches it.
     """
 
     required: float
@@ -91,18 +96,25 @@ class WeightGoal:
     more: Mapping[tuple[str, str], float] | None = None
 
     def of_pin(self, pin: str) -> dict[str, float]:
-        """By case."""
+        """Return the multiples of the factor that a pin needs, by case."""
         return {case: x for (name, case), x in (self.more or {}).items() if name == pin}
 
 
 @dataclass(frozen=True)
 class Lightest:
-    """A pin: its dimensions by key, m, as they are written, or by which scale it is only scaled;
-    neither where nothing reaches the factor, and `why`. before, factor: lower end of its factor as
-    it was and with these. scaled: its volume, m^3, were it only scaled, whole: the dimensions then,
-    m; None where that is not known. optimality: of what the search found; binding: what binds, in
-    words, by its multiplier. solved: designs. way: why it is only scaled, or left as it is, or how
-    the search ended if it did not converge. decided: as of Start.
+    """The lightest form of a pin.
+
+    values: its dimensions by key, m, as they are written; None if it is only scaled.
+    scale: scale of a pin that is only scaled. Both are None where nothing reaches the factor, for
+    the reason `why`.
+    before, factor: lower end of its factor as it was and with these dimensions.
+    scaled: its volume, m^3, were it only scaled; None where that is not known.
+    whole: its dimensions, m, were it only scaled; None where they are not known.
+    optimality: how far the result of the search meets the conditions of an optimum.
+    binding: active constraints, in words, with their multipliers.
+    solved: number of designs.
+    way: why it is only scaled, or left as it is, or how the search ended if it did not converge.
+    decided: as in Start.
     """
 
     pin: str
@@ -121,15 +133,19 @@ class Lightest:
 
     @property
     def kept(self) -> bool:
-        """Whether it is left as it is."""
+        """Return whether the pin is left as it is."""
         return self.way.startswith(LEFT_AS_IT_IS)
 
 
 @dataclass(frozen=True)
 class Start:
-    """A pin's dimensions by key, m, or its scale, and dimensions of it that is only scaled, m, as
-    they were found under other loads. decided: cases in which no singularity may govern; by default
-    those in which none does in the pin as it is given.
+    """The start of a search for a pin, as found under other loads.
+
+    values: its dimensions by key, m.
+    scale: its scale, if it is only scaled.
+    whole: its dimensions, m, were it only scaled.
+    decided: cases in which no singularity may govern; by default those in which none does in the
+    pin as it is given.
     """
 
     values: dict[str, float] | None = None
@@ -146,7 +162,10 @@ def lightest_pin(
     start: Start | None = None,
     tell: Tell = lambda _: None,
 ) -> Lightest:
-    """Of a pin of the study as it was given; plan: with the loads of the study as it is now.
+    """Find the lightest form of a pin of the study as it was given.
+
+    plan: has the loads of the study as it is now.
+
     Failures are reported in the answer.
     """
     problem = problem_of(study, plan, pin, aim)
@@ -168,11 +187,11 @@ def lightest_pin(
         first = stress.at(values)
         search = _Search(problem, stress, aim)
         if start.values is not None:
-            found = _found(search, first, start.whole)
+            result = _found(search, first, start.whole)
         else:
             near, whole = _scaled(search, first, roughly=len(values) > 1)
-            found = _found(search, near, tuple(map(float, whole)))
-        return replace(found, before=before, decided=stress.watched)
+            result = _found(search, near, tuple(map(float, whole)))
+        return replace(result, before=before, decided=stress.watched)
     except UndifferentiatedError:
         return _only_scaled(stress, aim, start)
     except ImpossibleError as error:
@@ -185,32 +204,32 @@ def lightest_pin(
 
 
 def _singular(stress: PinStress) -> bool:
-    """Whether a singularity governs in the design that was solved first."""
+    """Return whether a singularity governs in the design that was solved first."""
     return any(peak.verdict == "singular" for peak in stress.solved[0].peaks)
 
 
-def as_it_is(study: Study, aim: WeightGoal, found: Lightest, why: str) -> Lightest:
-    """The pin as it is in the study in place of what was found, which is decided worse."""
-    shape = VariedShape(study, pin_of(study, found.pin), aim.vary, aim.limits)
+def as_it_is(study: Study, aim: WeightGoal, result: Lightest, why: str) -> Lightest:
+    """Return the pin as it is in the study in place of a result that is decided worse."""
+    shape = VariedShape(study, pin_of(study, result.pin), aim.vary, aim.limits)
     values = {d.key: d.value for d in shape.dimensions} or None
     scale = 1.0 if values is None else None
     return Lightest(
-        found.pin, values, scale, found.before, found.before, solved=found.solved,
+        result.pin, values, scale, result.before, result.before, solved=result.solved,
         way=LEFT_AS_IT_IS + why,
     )  # fmt: skip
 
 
 def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
-    """Without derivatives: all its dimensions times the same, as `size` does."""
+    """Scale all dimensions by one number, as `size` does, without derivatives."""
     problem, first = stress.problem, start.scale or 1.0
     factors: dict[float, float] = {}
     stress.watched = start.decided or frozenset()
 
     def factor_at(scale: float) -> float:
-        found = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
+        solution = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
         if not factors and start.decided is None:
-            stress.watched = decided(found.peaks)
-        factors[scale] = problem.required * float(np.exp(-found.worst))
+            stress.watched = decided(solution.peaks)
+        factors[scale] = problem.required * float(np.exp(-solution.worst))
         return factors[scale]
 
     try:
@@ -229,19 +248,19 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingProblem | str:
-    """What is posed of a pin, or why nothing can be."""
+    """Return the problem that is posed for a pin, or the reason why there is none."""
     table = study.table.pin[pin]
     if table.geometry is not None:
         return "its shape comes from a file, which has no dimensions to change"
     if study.table.material[table.material].yield_strength is None:
         return f"its material {table.material} has no yield_strength"
-    made = pin_of(study, pin)
-    shape = VariedShape(study, made, aim.vary, aim.limits)
-    if not shape.dimensions and isinstance(made, Pin):
+    shaft = pin_of(study, pin)
+    shape = VariedShape(study, shaft, aim.vary, aim.limits)
+    if not shape.dimensions and isinstance(shaft, Pin):
         has = [
             kind
             for kind in DIMENSION_KINDS
-            if any(kind_of(d.key) == kind for d in dimensions_of(study, made))
+            if any(kind_of(d.key) == kind for d in dimensions_of(study, shaft))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
     asked = replace(plan.asked, goal="value")
@@ -274,12 +293,14 @@ class _Search:
         return self.raised(self.stress.at(np.exp(x)))
 
     def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
-        """Over what is aimed at, a little below what is allowed."""
+        """Return the stresses of places with a margin added, so that the search aims a little
+        low.
+        """
         aim = CONTACT_STRESS_MARGIN if self.stress.in_contact else STRESS_MARGIN
         return tuple(replace(p, value=p.value + aim) for p in solved.every)
 
     def least_weight(self, start: Floats) -> Optimum:
-        """From dimensions' logarithms."""
+        """Find the least weight from logarithms of dimensions."""
         return least_weight(
             self,
             start,
@@ -287,21 +308,24 @@ class _Search:
         )
 
     def volume(self, solved: SolvedPin) -> float:
-        """m^3."""
+        """Return the volume, m^3."""
         return float(self.shape.volume(solved.values)[0])
 
     def written(self, values: Floats) -> Floats:
-        """As they are written."""
+        """Return dimensions as they are written."""
         metre = self.problem.study.system.factor("length")
         return rounded_values(self.shape, values, self.aim.step, metre)
 
     def keeps(self, values: Floats) -> bool:
-        """Whether geometric limits hold but for the digits that are written."""
+        """Return whether geometric limits hold but for the digits that are written."""
         return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -LIMIT_ROUNDING_TOLERANCE
 
 
 def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
-    """From a design near the factor; whole: dimensions of the pin that is only scaled, if known."""
+    """Search from a design near the factor.
+
+    whole: dimensions of the pin that is only scaled, m, if known.
+    """
     shape, aim = search.shape, search.aim
     optimum = _optimum(search, near)
     best = _written(search, optimum)
@@ -328,26 +352,30 @@ def _found(search: _Search, near: SolvedPin, whole: tuple[float, ...] | None) ->
 
 
 def _optimum(search: _Search, near: SolvedPin) -> Optimum:
-    """From a design near the factor. Of a pin in contact what rough cells say is corrected at the
-    optimum, and that is searched again from there, until the finer ones agree.
+    """Find the optimum from a design near the factor.
+
+    For a pin in contact the stresses on rough cells are corrected at the optimum, and the search is
+    repeated from there, until the finer ones agree.
     """
     if len(search.shape.dimensions) > 1 or not -ACTIVE_TOLERANCE <= near.worst <= 0.0:
-        found = search.least_weight(np.log(near.values))
+        optimum = search.least_weight(np.log(near.values))
     else:
         x, places = np.log(near.values), near.every
-        found = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
+        optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     if search.stress.in_contact:
         for _ in range(MAX_CORRECTIONS):
-            sure = search.stress.sure(search.written(np.exp(found.x)))
+            sure = search.stress.sure(search.written(np.exp(optimum.x)))
             if -CONTACT_STRESS_TOLERANCE <= sure.worst <= 0.0:
                 break
-            found = search.least_weight(found.x)
-    return found
+            optimum = search.least_weight(optimum.x)
+    return optimum
 
 
 def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin, Floats]:
-    """All dimensions times the same: the design nearest to the factor that was solved, and what
-    reaches it, `roughly` by the slope of stress there. As it is where only bores change.
+    """Multiply all dimensions by one number until the factor is reached.
+
+    Returns the solved design nearest to the factor, and the dimensions that reach it, `roughly` by
+    the slope of stress there. The pin stays as it is where only bores change.
 
     Raises: ImpossibleError.
     """
@@ -367,22 +395,22 @@ def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin
         if top.slope.sum() > 0.0:  # of bores alone, which weaken it
             return first, first.values
         leap, rate = np.log(MAX_SCALE_STEP), min(float(top.slope.sum()), -0.5)
-        there = here + float(np.clip((now.worst + STRESS_MARGIN) / -rate, -leap, leap))
+        target = here + float(np.clip((now.worst + STRESS_MARGIN) / -rate, -leap, leap))
         if roughly and abs(now.worst) <= SLOPE_RANGE:
-            return now, values * np.exp(there)
+            return now, values * np.exp(target)
         if best is not None:
             large = float(np.log(best.values[0] / values[0]))
-            if large - (there if small is None else small) < SCALE_BRACKET_TOLERANCE:
+            if large - (target if small is None else small) < SCALE_BRACKET_TOLERANCE:
                 break
-            if small is not None and not small < there < large:
-                there = 0.5 * (small + large)
-        if abs(there) > np.log(MAX_DIMENSION_RATIO):
+            if small is not None and not small < target < large:
+                target = 0.5 * (small + large)
+        if abs(target) > np.log(MAX_DIMENSION_RATIO):
             break
         try:
-            tried = values * np.exp(there)
+            tried = values * np.exp(target)
             now = search.stress.at(tried if roughly else search.written(tried), SLOPE_RANGE)
         except ImpossibleError as error:
-            why = f"; with {np.exp(there):.3g} times: {error}"
+            why = f"; with {np.exp(target):.3g} times: {error}"
             break
     if best is None:
         factor = search.aim.required * float(np.exp(-now.worst))
@@ -395,33 +423,33 @@ def _scaled(search: _Search, first: SolvedPin, roughly: bool) -> tuple[SolvedPin
 
 
 def _written(search: _Search, optimum: Optimum) -> SolvedPin:
-    """The lightest design that was found and reaches the factor, as it is written.
+    """Return the lightest design that was found and reaches the factor, as it is written.
 
     Raises: ImpossibleError.
     """
     stress, step = search.stress, search.aim.step
-    found = [x for x in [_repaired(search, np.exp(optimum.x))] if x is not None]
+    candidates = [x for x in [_repaired(search, np.exp(optimum.x))] if x is not None]
     lighter = [x for x in stress.solved if x.worst <= 0.0 and search.keeps(x.values)]
     if lighter and step is None:
         best = min(lighter, key=search.volume)
-        if not found or search.volume(best) < search.volume(found[0]):
-            found += [x for x in [_repaired(search, best.values)] if x is not None]
-    if not found:
+        if not candidates or search.volume(best) < search.volume(candidates[0]):
+            candidates += [x for x in [_repaired(search, best.values)] if x is not None]
+    if not candidates:
         raise ImpossibleError("the dimensions found, and slightly larger ones, miss the factor")
-    return min(found, key=search.volume)
+    return min(candidates, key=search.volume)
 
 
 def _repaired(search: _Search, values: Floats) -> SolvedPin | None:
-    """With the factor reached by dimensions as they are written, larger where need be; None where
-    it is not.
+    """Return a design whose written dimensions reach the factor, larger where need be; None where
+    there is none.
     """
     step, more = search.aim.step, 0.0
     for k in range(MAX_REPAIRS if step is None else MAX_ROUNDING_STEPS):
-        found = search.stress.sure(search.written(values * (1.0 + more)))
-        if found.worst <= 0.0:
-            return found
+        solution = search.stress.sure(search.written(values * (1.0 + more)))
+        if solution.worst <= 0.0:
+            return solution
         if step is None:  # by what stress exceeds, were it tension, which is enough
-            more += 0.6 * found.worst + 5e-4 * (k + 1)
+            more += 0.6 * solution.worst + 5e-4 * (k + 1)
         else:
             more += 0.5 * step / float(values.min())
     return None

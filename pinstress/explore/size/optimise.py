@@ -1,17 +1,17 @@
-"""The least weight under stresses that are dear to find, in the logarithms of dimensions.
+"""The least weight under stresses that are costly to compute, in the logarithms of dimensions.
 
 Stress against a dimension is nearly a power, so the logarithm of the stress at a place is nearly
 linear in the logarithms: each step takes the tangents of stress at every place, also those of
 earlier solutions that do not contradict the present one (sums of powers are convex, and then every
 tangent is a bound from below), and SciPy's SLSQP finds the least weight within a distance from
-here. Weight and geometric limits are exact in it. A step that does not lower the merit (weight,
-and what stresses exceed) is taken back, and the next one is shorter. At the end the optimality
-conditions are checked: the weight's gradient must be a sum of those of active constraints with
-multipliers that are not negative.
+here. Weight and geometric limits are exact in it. A step that does not lower the merit (weight plus
+a penalty on exceeded stresses) is taken back, and the next one is shorter. At the end the
+optimality conditions are checked: the weight's gradient must be a sum of those of active
+constraints with multipliers that are not negative.
 
-Source: Kelley, J. SIAM 8 (1960) 703 (cutting planes); Nocedal & Wright, Numerical Optimization,
-2nd ed., 12.3 (the conditions), 18.5 (an exact penalty in a trust region); non-negative multipliers
-by Lawson & Hanson's least squares.
+Source: Kelley, J. SIAM 8 (1960) 703 (cutting planes); Nocedal & Wright, Numerical Optimization, 2nd
+ed., 12.3 (the conditions), 18.5 (an exact penalty in a trust region); non-negative multipliers by
+Lawson & Hanson's least squares.
 """
 
 from __future__ import annotations
@@ -42,13 +42,16 @@ MAX_SOLUTIONS = 25  # solutions
 
 
 class ImpossibleError(Exception):
-    """There is no such design, or it cannot be solved; the message says why."""
+    """No such design exists, or it cannot be solved; the message says why."""
 
 
 @dataclass(frozen=True)
 class StressPlace:
-    """Where stress may govern: the logarithm of stress over what is allowed, and its derivatives
-    (n,), None where they were not worth finding. guess: what they may be, until they are known.
+    """A place where stress may govern.
+
+    value: logarithm of the stress over what is allowed.
+    slope: its derivatives (n,), None where they were not worth finding.
+    guess: estimate of the derivatives until they are known.
     """
 
     name: str
@@ -58,28 +61,35 @@ class StressPlace:
 
 
 class WeightProblem(Protocol):
-    """What is optimised: variables x (n,), logarithms."""
+    """A problem of least weight in variables x (n,), logarithms of dimensions."""
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Least and largest x."""
+        """Return least and largest x."""
 
     def weight(self, x: Array) -> tuple[float, Array]:
-        """The logarithm of the weight and its gradient."""
+        """Return the logarithm of the weight and its gradient."""
 
     def limits(self, x: Array) -> tuple[Array, Array]:
-        """Geometric limits (m,), negative where they are broken, and their gradients (m, n)."""
+        """Return geometric limits (m,), negative where they are violated, and their gradients (m,
+        n).
+        """
 
     def stresses(self, x: Array) -> tuple[StressPlace, ...]:
-        """At all places. Raises: ImpossibleError."""
+        """Return the stresses at all places.
+
+        Raises: ImpossibleError.
+        """
 
 
 @dataclass(frozen=True)
 class Optimality:
-    """residual: of the weight's gradient, what no sum of active constraints' gradients with
-    multipliers that are not negative explains, relative. multipliers: of places, by name, and of
-    limits and bounds ("limit 3", "least 1", "most 2", counted from 1): by which part the weight
-    falls for each part by which the limit is relaxed.
+    """The conditions of an optimum at a point.
+
+    residual: relative part of the weight's gradient that is no sum of active constraints' gradients
+    with non-negative multipliers.
+    multipliers: of places, by name, and of limits and bounds ("limit 3", "least 1", "most 2",
+    counted from 1): the relative fall in weight for each relative relaxation of the limit.
     """
 
     residual: float
@@ -88,8 +98,14 @@ class Optimality:
 
 @dataclass(frozen=True)
 class Optimum:
-    """The last point that was accepted: x, logarithm of weight, places there, whether the search
-    converged (`why` it did not), and how many designs were solved.
+    """The last point that was accepted.
+
+    x: the point (n,).
+    weight: logarithm of the weight.
+    places: stresses there.
+    optimality: how far the conditions of an optimum hold.
+    solved: number of designs that were solved.
+    why: why the search did not converge; empty if it did.
     """
 
     x: Array
@@ -101,29 +117,31 @@ class Optimum:
 
     @property
     def worst(self) -> float:
-        """The logarithm of the largest stress over what is allowed."""
+        """Return the logarithm of the largest stress over what is allowed."""
         return worst(self.places)
 
 
 def worst(places: tuple[StressPlace, ...]) -> float:
-    """The largest value."""
+    """Return the largest value of the places."""
     return max(place.value for place in places)
 
 
 @dataclass(frozen=True)
 class Tangents:
-    """Of places, by name, the latest first: the point, the value there and the slope."""
+    """Tangents of stresses, by name of place, the latest first: the point, the value there and the
+    slope.
+    """
 
     known: dict[str, tuple[tuple[Array, float, Array], ...]] = field(default_factory=dict)
 
     def then(self, x: Array, places: tuple[StressPlace, ...]) -> Tangents:
-        """With those of places that have one at a point."""
+        """Add the tangents of places that have a slope at a point."""
         new = {p.name: (x, p.value, p.slope) for p in places if p.slope is not None}
         more = {name: (one, *self.known.get(name, ()))[:MAX_TANGENTS] for name, one in new.items()}
         return Tangents(self.known | more)
 
     def completed(self, places: tuple[StressPlace, ...]) -> tuple[StressPlace, ...]:
-        """Places without a slope with their latest, if there is one."""
+        """Give places without a slope their latest one, if there is one."""
         return tuple(
             StressPlace(p.name, p.value, self.known[p.name][0][2])
             if p.slope is None and p.name in self.known
@@ -132,15 +150,15 @@ class Tangents:
         )
 
     def at(self, x: Array, places: tuple[StressPlace, ...]) -> tuple[Array, Array]:
-        """Values (J,) at a point where the places are known, and slopes (J, n)."""
+        """Return values (J,) at a point where the places are known, and slopes (J, n)."""
         every = [(p.value, p.guess if p.slope is None else p.slope) for p in self.completed(places)]
-        found = [(value, slope) for value, slope in every if slope is not None]
+        tangents = [(value, slope) for value, slope in every if slope is not None]
         for place in places:
             for at, value, slope in self.known.get(place.name, ()):
                 here = value + float(slope @ (x - at))
                 if here <= place.value + TANGENT_TOLERANCE and not np.array_equal(at, x):
-                    found.append((here, slope))
-        values, slopes = zip(*found, strict=True) if found else ((), ())
+                    tangents.append((here, slope))
+        values, slopes = zip(*tangents, strict=True) if tangents else ((), ())
         return np.array(values), np.array(slopes).reshape(-1, len(x))
 
 
@@ -150,7 +168,9 @@ def least_weight(
     close: float = MERIT_TOLERANCE,
     tell: Tell = lambda _: None,
 ) -> Optimum:
-    """The optimum from a start (n,). close: a step that promises less of the merit ends the search.
+    """Find the optimum from a start (n,).
+
+    close: a step that promises less reduction of the merit ends the search.
 
     Raises: ImpossibleError where the start cannot be solved.
     """
@@ -184,12 +204,12 @@ def least_weight(
             )
         else:
             radius = 0.4 * length
-    found = optimality(problem, x, tangents.completed(places))
-    return Optimum(x, problem.weight(x)[0], places, found, solved, why)
+    conditions = optimality(problem, x, tangents.completed(places))
+    return Optimum(x, problem.weight(x)[0], places, conditions, solved, why)
 
 
 def optimality(problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]) -> Optimality:
-    """How far the conditions of an optimum hold at a point whose places have derivatives."""
+    """Return how far the conditions of an optimum hold at a point whose places have derivatives."""
     gradient = problem.weight(x)[1]
     size = float(np.linalg.norm(gradient))
     active = _active(problem, x, places)
@@ -203,7 +223,7 @@ def optimality(problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
 def _active(
     problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
 ) -> list[tuple[str, Array]]:
-    """Active constraints and the gradients of what must not be positive."""
+    """Return active constraints and the gradients of functions that must not be positive."""
     out = [
         (p.name, p.slope) for p in places if p.value >= -ACTIVE_TOLERANCE and p.slope is not None
     ]
@@ -225,7 +245,10 @@ def _active(
 
 
 def _merit(problem: WeightProblem, x: Array, stress: float) -> float:
-    """Of the largest stress over what is allowed, its logarithm."""
+    """Return the merit of a point.
+
+    stress: logarithm of the largest stress over the allowed one.
+    """
     return (
         problem.weight(x)[0]
         + STRESS_PENALTY * max(0.0, stress)
@@ -234,7 +257,7 @@ def _merit(problem: WeightProblem, x: Array, stress: float) -> float:
 
 
 def _broken(problem: WeightProblem, x: Array) -> float:
-    """By how much geometric limits are broken at most."""
+    """Return the largest violation of geometric limits."""
     return max(0.0, -float(problem.limits(x)[0].min(initial=0.0)))
 
 
@@ -245,7 +268,9 @@ def _step(
     tangents: Tangents,
     radius: float,
 ) -> tuple[Array, float]:
-    """The step that is best by the linearised places, and what it promises of the merit."""
+    """Return the best step by the linearised places, and the reduction of the merit that it
+    promises.
+    """
     values, gradients = tangents.at(x, places)
     n, count = len(x), len(problem.limits(x)[0])
     lower, upper = problem.bounds
@@ -270,7 +295,7 @@ def _step(
 
     box = [*zip(np.maximum(lower, x - radius), np.minimum(upper, x + radius), strict=True)]
     some: Any = {"type": "ineq", "fun": limits, "jac": slopes}
-    found = minimize(
+    optimum = minimize(
         merit,
         np.append(x, [excess(x), _broken(problem, x)]),
         jac=True,
@@ -279,6 +304,6 @@ def _step(
         method="SLSQP",
         options={"ftol": 1e-9, "maxiter": 200},
     )
-    y = np.clip(found.x[:n], *np.array(box).T)
+    y = np.clip(optimum.x[:n], *np.array(box).T)
     promise = _merit(problem, x, worst(places)) - _merit(problem, y, excess(y))
     return (y - x, promise) if np.isfinite(promise) else (np.zeros(n), 0.0)

@@ -1,4 +1,4 @@
-"""Other values of a pin's dimensions in a study: in what it holds, and in its text."""
+"""Other values of a pin's dimensions in a study: in its content and in its text."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ Values = Mapping[str, Mapping[str, float]]  # m, by pin and by key of a dimensio
 
 
 def paths_of(pin: Pin, dimension: Dimension) -> tuple[Path, ...]:
-    """Where a dimension is in the pin's table; of both ends of a segment after "profile", k
-    and its key the index of the end follows.
+    """Return the places of a dimension in the pin's table.
+
+    For both ends of a segment after "profile" and k, the index of the end follows the key.
     """
     key = dimension.key
     if key.partition("[")[0] in ("meridian", "bore_meridian"):
@@ -59,7 +60,9 @@ def _in_profile(pin: Pin, other: Pin) -> Iterator[Path]:
 def study_with(
     study: Study, raw: dict[str, Any], pin: str, values: Sequence[tuple[tuple[Path, ...], float]]
 ) -> Study:
-    """The study with dimensions of a pin at some places, m. raw: its content, as raw_study has it.
+    """Return the study with dimensions of a pin at some places, m.
+
+    raw: its content, as from raw_study.
 
     Raises: InputError for a shape that cannot be.
     """
@@ -72,7 +75,7 @@ def study_with(
 
 
 def _as_written(table: Any, path: Path) -> Path:
-    """Without the index of an end where one number stands for both."""
+    """Drop the index of an end where one number stands for both."""
     here: Any = table
     for k, part in enumerate(path):
         here = value_of(here)
@@ -89,9 +92,11 @@ def written_study(
     step: float | None = None,
     required: float | None = None,
 ) -> Study:
-    """The study with other dimensions in its text, and what depends on them. shapes: pins by name
-    as they are, with the dimensions that change. step (m): to which diameters are rounded up;
-    without, all are rounded to four digits, diameters up, bores and fillets down.
+    """Return the study with other dimensions in its text, and all that depends on them.
+
+    shapes: pins by name as they are, with the dimensions that change.
+    step: step to which diameters are rounded up, m; without it, all are rounded to four digits,
+    diameters up, bores and fillets down.
 
     Raises: InputError for a shape that cannot be.
     """
@@ -109,8 +114,10 @@ def written_study(
 def _write(
     table: Any, path: Path, value: float, key: str, system: UnitSystem, step: float | None
 ) -> None:
-    """At the path of a number. Places of a dimension in different units stay equal: all are what it
-    is rounded to in the study's unit. The radius of a corner is rounded to half a step.
+    """Write a value at the path of a number.
+
+    Places of a dimension in different units stay equal: all get the value rounded in the study's
+    unit. The radius of a corner is rounded to half a step.
     """
     here: Any = table
     for part in path[:-1]:

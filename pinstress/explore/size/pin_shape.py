@@ -33,7 +33,9 @@ FILLET_CENTROID_FACTOR = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)
 
 @dataclass(frozen=True)
 class Proportions:
-    """What a shape must keep, where it has it now: wall: thickness of walls over the diameter;
+    """Proportions that a shape must keep, where it has them now.
+
+    wall: thickness of walls over the diameter.
     shoulder: the larger over the smaller diameter of a step.
     """
 
@@ -43,8 +45,9 @@ class Proportions:
 
 @dataclass(frozen=True)
 class Limit:
-    """A sum of dimensions that must not be negative, over its length scale; what it is, in words.
-    instead: another one that will do, if any.
+    """A sum of dimensions that must not be negative, over its length scale, with a description.
+
+    instead: another limit that suffices, if any.
     """
 
     text: str
@@ -53,7 +56,7 @@ class Limit:
     instead: Limit | None = None
 
     def at(self, more: Floats) -> tuple[float, Floats]:
-        """Its value where dimensions are larger by (n,) m, and its gradient."""
+        """Return its value where dimensions are larger by (n,) m, and its gradient."""
         value = self.constant + float(self.slope @ more)
         if self.instead is not None:
             other, slope = self.instead.at(more)
@@ -82,13 +85,13 @@ def _across(pin: Pin) -> Iterator[tuple[tuple[float, float], tuple[float, float]
 
 
 def _fillet(pin: Pin, corner: int) -> float:
-    """Radius (m) of a step's fillet; 0 at other corners."""
+    """Return the radius of a step's fillet, m; 0 at other corners."""
     left, right = pin.segments[corner], pin.segments[corner + 1]
     return pin.fillet_at(corner) if turn_at(left, right) == "step" else 0.0
 
 
 class VariedShape:
-    """A pin of the study with other values (n,) of its dimensions, m: those of `kinds` that it has.
+    """A pin of the study with other values (n,) of its dimensions of the given `kinds`, m.
 
     Neighbours of equal diameter or bore stay equal; limits are those of the pin as it is.
     """
@@ -117,9 +120,9 @@ class VariedShape:
 
     @cached_property
     def _rates(self) -> tuple[Floats, Floats, Floats]:
-        """Of ends (S, 2, n) twice and fillets (S - 1, n), by dimensions."""
-        found = [self._rate(d) for d in self.dimensions]
-        return tuple(np.stack([rate[k] for rate in found], axis=-1) for k in range(3))  # type: ignore
+        """Return derivatives of ends (S, 2, n) twice and fillets (S - 1, n), by dimensions."""
+        rates = [self._rate(d) for d in self.dimensions]
+        return tuple(np.stack([rate[k] for rate in rates], axis=-1) for k in range(3))  # type: ignore
 
     def _rate(self, dimension: Dimension) -> tuple[Floats, Floats, Floats]:
         less = dimension.changed(dimension.value * (1.0 - SHAPE_STEP))
@@ -139,17 +142,20 @@ class VariedShape:
 
     @cached_property
     def _rest(self) -> float:
-        """Volume that is not of segments and fillets, as it is, m^3."""
+        """Return the present volume apart from segments and fillets, m^3."""
         return self.pin.volume - self._plain(self.values)[0]
 
     def part_of_diameter(self, segment: int) -> Floats:
-        """By which part a segment's mean diameter grows for each part of the dimensions, (n,)."""
+        """Return the relative growth of a segment's mean diameter for relative growth of the
+        dimensions, (n,).
+        """
         rate = self._rates[0][segment].sum(axis=0) * self.values
         return np.asarray(rate / self._now.outer[segment].sum())
 
     def volume(self, values: Floats) -> tuple[float, Floats]:
-        """m^3, and its gradient (n,) m^2: exact but for rounded edges and fillets at cones, whose
-        part stays as it is.
+        """Return the volume, m^3, and its gradient (n,), m^2.
+
+        They are exact but for rounded edges and fillets at cones, whose part stays as it is.
         """
         value, slope = self._plain(values)
         return value + self._rest, slope
@@ -174,24 +180,28 @@ class VariedShape:
         return total, slope
 
     def _thinner(self, corner: int) -> tuple[int, int]:
-        """The end of a segment at a corner whose diameter is smaller now."""
+        """Return the end of a segment with the smaller present diameter at a corner."""
         left, right = self._now.outer[corner, 1], self._now.outer[corner + 1, 0]
         return (corner, 1) if left <= right else (corner + 1, 0)
 
     @cached_property
     def geometric(self) -> tuple[Limit, ...]:
-        """All limits but those of single dimensions."""
-        found = [*self._steps(), *self._walls(), *self._along()]
-        return tuple(x for x in found if np.abs(x.slope).max(initial=0.0) > 1e-9)
+        """Return all limits but those of single dimensions."""
+        limits = [*self._steps(), *self._walls(), *self._along()]
+        return tuple(x for x in limits if np.abs(x.slope).max(initial=0.0) > 1e-9)
 
     def at_limits(self, values: Floats) -> tuple[Floats, Floats]:
-        """Of all limits (m,), relative, negative where they are broken; gradients (m, n), 1/m."""
-        found = [limit.at(values - self.values) for limit in self.geometric]
-        slopes = np.array([slope for _, slope in found]).reshape(-1, len(values))
-        return np.array([value for value, _ in found]), slopes
+        """Return all limits (m,), relative, negative where they are violated; gradients (m, n),
+        1/m.
+        """
+        limits = [limit.at(values - self.values) for limit in self.geometric]
+        slopes = np.array([slope for _, slope in limits]).reshape(-1, len(values))
+        return np.array([value for value, _ in limits]), slopes
 
     def _limit(self, text: str, *parts: tuple[float, float, Floats]) -> Limit:
-        """Of factors, present values and rates, over the largest of the parts."""
+        """Return the limit of a sum of factors, present values and rates, over the largest of the
+        parts.
+        """
         size = max(abs(factor * value) for factor, value, _ in parts)
         value = sum(factor * value for factor, value, _ in parts) / size
         slope = sum(factor * rate for factor, _, rate in parts) / size
@@ -226,7 +236,9 @@ class VariedShape:
                 yield replace(as_wide, instead=still)
 
     def _walls(self) -> Iterator[Limit]:
-        """Of every segment's ends, and of every bore with the diameter on the other side."""
+        """Yield limits of every segment's ends, and of every bore with the diameter on the other
+        side.
+        """
         now, (outer, inner, _) = self._now, self._rates
         pairs = [((k, e), (k, e)) for k in range(len(now.outer)) for e in (0, 1)]
         for k in range(len(now.outer) - 1):
@@ -245,24 +257,24 @@ class VariedShape:
             )  # fmt: skip
 
     def _along(self) -> Iterator[Limit]:
-        """Of what fillets take of a segment's length."""
+        """Yield limits of the length of a segment that fillets take."""
         now, rates = self._now, self._rates[2]
         for k, segment in enumerate(self.pin.segments):
             here = [c for c in (k - 1, k) if 0 <= c < len(now.fillets)]
-            mine = [c for c in here if now.fillets[c] and self._thinner(c)[0] == k]
-            if not mine:
+            corners = [c for c in here if now.fillets[c] and self._thinner(c)[0] == k]
+            if not corners:
                 continue
-            taken = float(now.fillets[mine].sum())
+            taken = float(now.fillets[corners].sum())
             most = max(MAX_BAND_SHARE, taken / segment.length)
             still = np.zeros(len(self.values))
             yield self._limit(
                 f"fillets at most {most:.4g} of segment {k + 1}",
-                (most, segment.length, still), (-1.0, taken, rates[mine].sum(axis=0)),
+                (most, segment.length, still), (-1.0, taken, rates[corners].sum(axis=0)),
             )  # fmt: skip
 
 
 def kind_of(key: str) -> str:
-    """Of which kind a dimension is; empty for lengths and other radii."""
+    """Return the kind of a dimension; empty for lengths and other radii."""
     last = key.rpartition(".")[2]
     if key.startswith("meridian["):
         return "diameters" if key.endswith("][2]") else ""

@@ -1,15 +1,15 @@
 """The stresses of a pin with other dimensions, in all cases, and their derivatives where they may
-govern: solved as a run solves them, so that what they say is what a run says.
+govern; solved as a run solves them, so that a run confirms them.
 
-Of a body of revolution the largest stress is found in both halves of each segment, and that of its
-sections; of a pin in contact that of the surface, of sections, and beneath contact, all of which
-must meet the factor. In a row that is singular stress is read half the excluded distance away,
-where the upper end of the reported range is. All stresses of a surface are raised by the ratio of
-what counts of it to the largest of them.
+For a body of revolution the largest stress is found in both halves of each segment, and that of its
+sections; for a pin in contact that of the surface, of sections, and beneath contact, all of which
+must meet the factor. In a row that is singular, stress is read at half the excluded distance, where
+the upper end of the reported range is. All stresses of a surface are raised by the ratio of the one
+that counts to the largest of them.
 
 A pin in contact is searched on rough cells, which take a fifth or less of the time of the finest;
-by how much usual cells differ is found where it matters (`sure`), and added to all that is found on
-the rough ones. Cases far below the largest are left out until the pin is quite another.
+the difference of usual cells is found where it matters (`sure`), and added to all stresses on the
+rough ones. Cases far below the largest are left out until the pin has changed much.
 """
 
 from __future__ import annotations
@@ -65,8 +65,13 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class SizingProblem:
-    """A pin of a study under loads that do not change: its shape, what is asked, by case the loads
-    and the part of the required factor that is needed there, mostly 1.
+    """A pin of a study under loads that do not change.
+
+    shape: its shape.
+    asked: requirements on the solution.
+    loads: by case.
+    required: the factor.
+    more: by case, the multiple of the required factor that is needed there, mostly 1.
     """
 
     study: Study
@@ -80,7 +85,9 @@ class SizingProblem:
 
 @dataclass(frozen=True)
 class SolvedPin:
-    """Peaks and places at values (n,) of the dimensions, m; places by the logarithms of these.
+    """A solved pin with values (n,) of the dimensions, m.
+
+    places: stresses by the logarithms of the dimensions.
     singular: by case, those of unbounded stress that must not govern.
     """
 
@@ -91,24 +98,25 @@ class SolvedPin:
 
     @property
     def every(self) -> tuple[StressPlace, ...]:
-        """Those that limit the search."""
+        """Return the places that limit the search."""
         return (*self.places, *(place for _, place in self.singular))
 
     @property
     def worst(self) -> float:
-        """The largest of these."""
+        """Return the largest value of these."""
         return worst(self.every)
 
     @property
     def largest(self) -> float:
-        """The logarithm of the largest stress, as it counts, over what is allowed."""
+        """Return the logarithm of the largest stress, as it counts, over what is allowed."""
         return worst(self.places)
 
 
 @dataclass(frozen=True)
 class _Found:
-    """The largest stress of a part, Pa as it counts, and what its derivatives need; besides: of its
-    logarithm by those of the dimensions, what comes to them.
+    """The largest stress of a part, Pa as it counts, and the function that returns its derivatives.
+
+    besides: terms that are added to the derivatives of its logarithm by those of the dimensions.
     """
 
     name: str
@@ -120,8 +128,10 @@ class _Found:
 
 
 class PinStress:
-    """Solves a pin with other dimensions. in_contact: whether lugs hold it, once solved. watched:
-    cases in which no singularity may govern, none to begin with.
+    """A solver of a pin with other dimensions.
+
+    in_contact: whether lugs hold it, once solved.
+    watched: cases in which no singularity may govern, none to begin with.
     """
 
     def __init__(self, problem: SizingProblem, tell: Tell) -> None:
@@ -141,7 +151,10 @@ class PinStress:
         self.count = 0  # of designs
 
     def study_at(self, values: Floats) -> Study:
-        """With what depends on the dimensions. Raises: InputError."""
+        """Return the study with other dimensions and all that depends on them.
+
+        Raises: InputError.
+        """
         old, name = self.problem.study, self.problem.name
         every = list(zip(self._paths, map(float, values), strict=True))
         new = study_with(old, self._raw, name, every)
@@ -151,12 +164,16 @@ class PinStress:
 
     @property
     def solved(self) -> list[SolvedPin]:
-        """What `at` says of all that was solved."""
+        """Return all designs that were solved, as `at` returns them."""
         return [self._as_finer(x) for x in self._found]
 
     def at(self, values: Floats, far: float = np.inf) -> SolvedPin:
-        """Derivatives at all places that may govern; of the worst place only, where its stress is
-        `far` from what is allowed (its logarithm). Raises: ImpossibleError, UndifferentiatedError.
+        """Solve a design with derivatives at all places that may govern.
+
+        far: where the logarithm of the worst stress over what is allowed is larger, only the worst
+        place has derivatives.
+
+        Raises: ImpossibleError, UndifferentiatedError.
         """
         if (known := _among(self._found, values)) is None:
             known = self._solved(self._possible(values), values, far, "rough")
@@ -164,13 +181,17 @@ class PinStress:
         return self._as_finer(known)
 
     def sure(self, values: Floats) -> SolvedPin:
-        """As a run has it; what is rough elsewhere is corrected by that. Raises as `at`."""
+        """Solve a design as a run does, and correct the rough stresses of other designs by the
+        difference.
+
+        Raises: as `at`.
+        """
         rough = self.at(values)
         if not self.in_contact:
             return rough
         if (known := _among(self._sure, values)) is None:
-            found = self._solved(self._possible(values), None, 0.0, "usual")
-            known = replace(found, values=values)
+            solution = self._solved(self._possible(values), None, 0.0, "usual")
+            known = replace(solution, values=values)
             self._sure.append(known)
         before = {p.name: p.value for p in rough.places}
         for place in known.places:
@@ -180,19 +201,27 @@ class PinStress:
         return self._watched(known)
 
     def of(self, study: Study) -> SolvedPin:
-        """Of the pin in a study, without derivatives. Raises: ImpossibleError."""
+        """Solve the pin in a study, without derivatives.
+
+        Raises: ImpossibleError.
+        """
         return self._watched(self._solved(study, None, 0.0, "usual"))
 
-    def _watched(self, found: SolvedPin) -> SolvedPin:
-        return replace(found, singular=tuple(x for x in found.singular if x[0] in self.watched))
+    def _watched(self, solution: SolvedPin) -> SolvedPin:
+        return replace(
+            solution, singular=tuple(x for x in solution.singular if x[0] in self.watched)
+        )
 
-    def _as_finer(self, found: SolvedPin) -> SolvedPin:
+    def _as_finer(self, solution: SolvedPin) -> SolvedPin:
         add = self._finer
-        places = (replace(p, value=p.value + add.get(p.name, 0.0)) for p in found.places)
-        return self._watched(replace(found, places=tuple(places)))
+        places = (replace(p, value=p.value + add.get(p.name, 0.0)) for p in solution.places)
+        return self._watched(replace(solution, places=tuple(places)))
 
     def _possible(self, values: Floats) -> Study:
-        """Raises: ImpossibleError."""
+        """Return the study with other dimensions.
+
+        Raises: ImpossibleError for a shape that cannot be.
+        """
         try:
             return self.study_at(values)
         except InputError as error:
@@ -204,7 +233,7 @@ class PinStress:
         self.count += 1
         self._tell(f"pin {self.problem.name}, design {self.count}")
         peaks: list[Maximum] = []
-        found: list[tuple[_Found, float]] = []
+        stresses: list[tuple[_Found, float]] = []
         singular: list[CasePlace] = []
         under: list[CasePlace] = []
         asked = replace(self.problem.asked, cells=cells)
@@ -213,7 +242,7 @@ class PinStress:
                 for peak, parts in self._of_task(study, task, asked, values is not None):
                     peaks.append(peak)
                     allowed = self._allowed(task, peak)
-                    found += [(part, allowed) for part in parts]
+                    stresses += [(part, allowed) for part in parts]
                     singular += self._singular.of(task.pin, peak, allowed, values)
                     below = self._singular.beneath(task.pin, peak, allowed, values)
                     under += [(peak.case, place) for place in below]
@@ -221,13 +250,13 @@ class PinStress:
             raise ImpossibleError(str(error) or "out of memory") from None
         if not peaks:
             raise ImpossibleError("no case loads it")
-        logs = [float(np.log(part.stress / allowed)) for part, allowed in found]
+        logs = [float(np.log(part.stress / allowed)) for part, allowed in stresses]
         top = max([*logs, *(place.value for _, place in under)])
-        of_case = [(part.case, log) for (part, _), log in zip(found, logs, strict=True)]
+        of_case = [(part.case, log) for (part, _), log in zip(stresses, logs, strict=True)]
         of_case += [(case, place.value) for case, place in under]
         self._cases = tuple(dict.fromkeys(case for case, log in of_case if log > top - CASE_WINDOW))
         places = [place for _, place in under]
-        for (part, _), value in zip(found, logs, strict=True):
+        for (part, _), value in zip(stresses, logs, strict=True):
             window = GRADIENT_WINDOW if part.name in self._known else UNKNOWN_PLACE_WINDOW
             slope = None
             if values is not None and value >= top - (window if abs(top) < far else 0.0):
@@ -238,7 +267,7 @@ class PinStress:
         return SolvedPin(at, tuple(peaks), tuple(places), tuple(singular))
 
     def _tasks(self, study: Study, values: Floats | None) -> list[Task]:
-        """The pin under the cases that may govern."""
+        """Return the pin under the cases that may govern."""
         pins, loads = [pin_of(study, self.problem.name)], self.problem.loads
         if values is None:
             chosen = self._cases
@@ -262,7 +291,7 @@ class PinStress:
             raise ImpossibleError(str(error)) from None
 
     def _allowed(self, task: Task, peak: Maximum) -> float:
-        """Stress, Pa."""
+        """Return the allowed stress, Pa."""
         strength = task.material.yield_strength
         assert strength is not None  # a pin without strength is refused before
         return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
@@ -270,14 +299,14 @@ class PinStress:
     def _of_task(
         self, study: Study, task: Task, asked: Requirement, differentiated: bool
     ) -> Iterator[tuple[Maximum, list[_Found]]]:
-        """Peaks and what is found of each."""
+        """Yield the peaks, each with the stresses of its parts."""
         if differentiated and not isinstance(task.pin, Pin):
             raise UndifferentiatedError
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
-        for each in solutions(study, task, asked, lambda _: None):
-            self.in_contact |= each.rings is not None
-            peak = each.peak
+        for solution in solutions(study, task, asked, lambda _: None):
+            self.in_contact |= solution.rings is not None
+            peak = solution.peak
             _require_solved(peak)
             if not peak.max_von_mises:
                 continue
@@ -286,7 +315,7 @@ class PinStress:
                 yield peak, [
                     _Found(
                         f"{peak.case}, {place}", peak.case, stress,
-                        partial(by_contact, before, study, (task, each, place), dimensions),
+                        partial(by_contact, before, study, (task, solution, place), dimensions),
                     )
                     for place, stress in surface_and_section(peak)
                     if stress
@@ -294,7 +323,7 @@ class PinStress:
             elif not differentiated:
                 yield peak, [_Found(peak.case, peak.case, peak.upper_end, _none)]
             else:
-                yield peak, self._parts(task, each, dimensions, section)
+                yield peak, self._parts(task, solution, dimensions, section)
 
     def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
         by = {d.key: d for d in dimensions_of(study, task.pin)}
@@ -310,17 +339,17 @@ class PinStress:
         dimensions: tuple[Dimension, ...],
         parts: PartsOfSection,
     ) -> list[_Found]:
-        """Of a row that no lugs hold."""
+        """Return the stresses of the parts of a row that no lugs hold."""
         peak, answer, pin = solution.peak, solution.answer, task.pin
         assert isinstance(pin, Pin)  # others are not differentiated
         if not isinstance(answer, HarmonicField):
 
             def whole() -> Floats:
-                made = differentiated(self.problem.asked, task, solution, dimensions)
-                if made is None:
+                derivatives = differentiated(self.problem.asked, task, solution, dimensions)
+                if derivatives is None:
                     raise SolveError("no derivatives", "no-derivatives")
-                slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
-                return slope / made.maximum
+                slope = np.array([derivatives.by_dimension.get(d.key, 0.0) for d in dimensions])
+                return slope / derivatives.maximum
 
             return [_Found(peak.case, peak.case, peak.upper_end, whole)]
         zones = answer.singularities
@@ -342,9 +371,9 @@ class PinStress:
             times, now = solution.loads.times, peak.places.section.time
             instant = 0 if times is None or now is None else int(np.abs(times - now).argmin())
             at = replace(solved, loads=solution.loads.at(np.array([instant])), history=None)
-            made = section_derivatives(at, dimensions)
-            slope = np.array([made.by_dimension.get(d.key, 0.0) for d in dimensions])
-            return slope / made.maximum
+            derivatives = section_derivatives(at, dimensions)
+            slope = np.array([derivatives.by_dimension.get(d.key, 0.0) for d in dimensions])
+            return slope / derivatives.maximum
 
         besides = self._by_clamps(peak, ends.get("section", 0.0)) if len(clamps) > 1 else 0.0
         section = [
@@ -366,8 +395,11 @@ class PinStress:
         ]
 
     def _by_clamps(self, peak: Maximum, stress: float) -> Floats | float:
-        """Of the logarithm of a section's stress with the error of a beam between two clamps, which
-        goes with the largest diameter until it is TWICE: its derivatives by that.
+        """Return derivatives that the clamped-span error of a section's stress adds to those of its
+        logarithm.
+
+        The error of a beam between two clamps goes with the largest diameter until it reaches its
+        limit.
         """
         place = peak.places.section if peak.places else None
         error = stress / place.max_von_mises - 1.0 if place and place.max_von_mises else 0.0
@@ -379,24 +411,29 @@ class PinStress:
 
 
 def _none() -> Floats:
-    """Derivatives that are not asked for."""
+    """Return no derivatives, where they are not asked for."""
     return np.zeros(0)
 
 
-def _among(found: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:
-    """What is solved with these values."""
-    same = (x for x in found if np.allclose(x.values, values, rtol=DIMENSION_TOLERANCE, atol=0.0))
+def _among(designs: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:
+    """Return the design that was solved with these values; None without one."""
+    same = (x for x in designs if np.allclose(x.values, values, rtol=DIMENSION_TOLERANCE, atol=0.0))
     return next(same, None)
 
 
 def _size(task: Task, loads: PinLoads) -> float:
-    """The largest force of a case, N, moments as couples of forces over the pin's length."""
+    """Return the largest force of a case, N, with moments as couples of forces over the pin's
+    length.
+    """
     arm = task.pin.length
     return float(max(np.abs(loads.forces).max(), np.abs(loads.moments).max(initial=0.0) / arm))
 
 
 def _require_solved(peak: Maximum) -> None:
-    """Raises: ImpossibleError."""
+    """Check that a peak was solved.
+
+    Raises: ImpossibleError.
+    """
     if peak.verdict == "rigid":
         raise ImpossibleError(f"it is unconstrained in case {peak.case}: {peak.note}")
     if peak.verdict == "failed":

@@ -1,4 +1,4 @@
-"""Other diameters in a study's text: everything else in it stays as it was written."""
+"""Other diameters in a study's text, while everything else in it stays as it was written."""
 
 from __future__ import annotations
 
@@ -37,9 +37,10 @@ def resized_study(
     step: float | None = None,
     required: float | None = None,
 ) -> Study:
-    """The study with pins as `resized` makes them, and with what depends on them: stated weights
-    of floating pins change by what their shapes' weights do, and eyes that became narrower than
-    MIN_EYE_RATIO of their bores grow.
+    """Return the study with pins as `resized` makes them, and with all that depends on them.
+
+    Stated weights of floating pins change as their shapes' weights do, and eyes that became
+    narrower than MIN_EYE_RATIO of their bores grow.
 
     Raises: InputError for a shape that cannot be.
     """
@@ -49,7 +50,8 @@ def resized_study(
 
 
 def with_what_follows(study: Study, text: str, pins: Iterable[str]) -> Study:
-    """A study of another text in which pins have other shapes, with what depends on these.
+    """Return a study of another text in which pins have other shapes, with all that depends on
+    these.
 
     Raises: InputError for a shape that cannot be.
     """
@@ -71,12 +73,13 @@ def resized(
     step: float | None = None,
     required: float | None = None,
 ) -> str:
-    """A study's text with pins (by name) scaled across their axis: diameters, bores, fillets,
-    the distances of flats and offsets of passages; lengths, holes and slots stay.
+    """Return a study's text with pins (by name) scaled across their axis.
 
-    Diameters are rounded up, to a step (m) or to four digits, bores and fillets down; scale 1
-    without a step changes nothing. Provenance that no longer holds is replaced. required: the
-    study's new required factor of safety, if any.
+    Diameters, bores, fillets, the distances of flats and offsets of passages change; lengths, holes
+    and slots stay. Diameters are rounded up, to a step (m) or to four digits, bores and fillets
+    down; scale 1 without a step changes nothing. Provenance that no longer holds is replaced.
+
+    required: the study's new required factor of safety, if any.
     """
     study = tomlkit.parse(text)
     for name, scale in scales.items():
@@ -113,7 +116,7 @@ def require(document: Any, required: float | None) -> None:
 
 
 def moved(text: str, old: Path, new: Path) -> str:
-    """A study's text for another folder, from which it names the same files."""
+    """Return a study's text for another folder, from which it names the same files."""
     if old.resolve() == new.resolve():
         return text
     document = tomlkit.parse(text)
@@ -128,7 +131,7 @@ def moved(text: str, old: Path, new: Path) -> str:
 
 
 def _files(document: Any) -> Iterator[tuple[Any, str]]:
-    """The tables that name a file, each with the key that does."""
+    """Return the tables that name a file, each with the key that does."""
     yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
     published = document.get("published", {})
     yield from ((published, key) for key in PUBLISHED_TABLE_KEYS if key in published)
@@ -137,7 +140,7 @@ def _files(document: Any) -> Iterator[tuple[Any, str]]:
 
 
 def _with_a_table(node: Any) -> Iterator[Any]:
-    """Of cases, drives, laws of forces and springs those that name a table."""
+    """Return the cases, drives, laws of forces and springs that name a table."""
     if isinstance(node, list):
         for entry in node:
             yield from _with_a_table(entry)
@@ -149,7 +152,7 @@ def _with_a_table(node: Any) -> Iterator[Any]:
 
 
 def _plain(node: Any) -> list[Any]:
-    """The entries of an array, also one that comes with its provenance."""
+    """Return the entries of an array, also one that comes with its provenance."""
     return list(value_of(node))
 
 
@@ -158,7 +161,7 @@ def value_of(node: Any) -> Any:
 
 
 def _reweigh(document: Any, old: Study, new: Study, name: str) -> None:
-    """Change the stated weight of a floating pin by what that of its shape has changed."""
+    """Change the stated weight of a floating pin by the change of its shape's weight."""
     mechanism, density = new.table.mechanism, _density(new, name)
     joint = None if mechanism is None else mechanism.joint.get(name)
     if not density or joint is None or joint.fixed_in or joint.weight is None:
@@ -177,8 +180,8 @@ def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
 
 
 def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
-    """Outer diameters, m, that eyes about a pin need, of those that are given and have become too
-    narrow, by connection.
+    """Return the outer diameters, m, that eyes about a pin need, by connection, for those that are
+    given and have become too narrow.
     """
     out = {}
     for at, lug in new.table.pin[name].lug.items():
@@ -192,14 +195,16 @@ def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
 
 
 def hole_in_eye(study: Study, name: str, connection: str) -> float:
-    """Diameter of the hole in an eye about a pin, bushing and all, m."""
+    """Return the diameter of the hole in an eye about a pin, including its bushing, m."""
     bushing = study.table.pin[name].lug[connection].bushing
     ring = 2.0 * bushing.thickness if bushing else 0.0
     return 2.0 * pin(study, name).band(connection).radius + ring
 
 
 def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:
-    """Where a key's numbers are, each with its key or index: one, or one for each end."""
+    """Return the places of a key's numbers, each with its key or index: one, or one for each
+    end.
+    """
     both = value_of(table[key])
     return [(both, i) for i in range(len(both))] if isinstance(both, list) else [(table, key)]
 
@@ -220,13 +225,13 @@ def _write(table: Any, key: str, si: float, dimension: str, system: UnitSystem) 
 
 
 def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
-    """The unit in which a value is written, as text, and in SI."""
+    """Return the unit in which a value is written, as text, and its SI value."""
     text = LEADING_NUMBER_PATTERN.sub("", old, count=1) if isinstance(old, str) else ""
     return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
 
 
 def replace_number(table: Any, key: Any, number: float, unit: str) -> None:
-    """Another number, in the same unit; where there is a source, the source is this."""
+    """Write another number, in the same unit; its source, if it has one, becomes this program."""
     old = value_of(table[key])
     new = f"{number:.12g}{unit}" if isinstance(old, str) else number
     if (isinstance(table, dict) and "provenance" in table) or isinstance(table[key], dict):

@@ -1,9 +1,9 @@
-"""Places of a search for the least weight whose derivatives are not found: corners and edges where
-stress is unbounded, and what lies beneath contact.
+"""Places of a search for the least weight whose derivatives are estimated: corners and edges where
+stress is unbounded, and points beneath contact.
 
 Where a singular place does not govern in a pin as it is given, its row is decided; were a segment
 of it to shrink until it does, it would not be. So stress in it, but next to its very edge, is kept
-below what is allowed, too. What lies beneath contact must meet the factor like surface and section.
+below what is allowed, too. Stress beneath contact must meet the factor like surface and section.
 Derivatives are those of bending to begin with, and learned from one design to the next.
 
 Source: Broyden, Math. Comp. 19 (1965) 577.
@@ -30,7 +30,7 @@ CasePlace = tuple[str, StressPlace]
 
 
 class SingularPlaces:
-    """Of a pin whose dimensions vary."""
+    """The singular places and places beneath contact of a pin whose dimensions vary."""
 
     def __init__(self, shape: VariedShape) -> None:
         self._shape = shape
@@ -39,8 +39,11 @@ class SingularPlaces:
     def of(
         self, pin: PinLike, peak: Maximum, allowed: float, values: Floats | None
     ) -> Iterator[CasePlace]:
-        """Of a row at values (n,) of the dimensions, m, under an allowed stress, Pa; above it where
-        one governs. Without values only those that govern, without derivatives.
+        """Yield the singular places of a row under an allowed stress, Pa; above it where one
+        governs.
+
+        values: of the dimensions (n,), m; without them only places that govern, without
+        derivatives.
         """
         names: set[str] = set()
         for zone in peak.singular_at:
@@ -58,7 +61,7 @@ class SingularPlaces:
     def beneath(
         self, pin: PinLike, peak: Maximum, allowed: float, values: Floats | None
     ) -> Iterator[StressPlace]:
-        """Of contact in a row, likewise."""
+        """Yield the place beneath contact in a row, likewise."""
         if stress := beneath(peak):
             assert peak.places is not None
             assert peak.places.contact is not None
@@ -75,8 +78,8 @@ class SingularPlaces:
         if name not in self._known:
             slope = DIAMETER_EXPONENT * self._shape.part_of_diameter(segment)
         else:
-            there, before, slope = self._known[name]
-            step = x - there
+            point, before, slope = self._known[name]
+            step = x - point
             if float(np.abs(step).max()) > DESIGN_TOLERANCE:
                 slope = slope + (value - before - slope @ step) / (step @ step) * step
         self._known[name] = x, value, slope
@@ -84,5 +87,5 @@ class SingularPlaces:
 
 
 def decided(peaks: tuple[Maximum, ...]) -> frozenset[str]:
-    """The cases in which no singularity governs."""
+    """Return the cases in which no singularity governs."""
     return frozenset(p.case for p in peaks if p.verdict != "singular")

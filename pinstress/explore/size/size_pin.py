@@ -1,8 +1,8 @@
 """The smallest diameters of every pin that reach a factor of safety.
 
-A pin keeps its lengths, which the links set, and its proportions across the axis. Every trial is
-a study of its own, with the loads that follow from its weights, and solved as any other, so what
-is found is what a run of it gives.
+A pin keeps its lengths, which the links set, and its proportions across the axis. Every trial is a
+study of its own, with the loads that follow from its weights, and solved as any other, so that a
+run of it gives the same result.
 """
 
 from __future__ import annotations
@@ -30,8 +30,11 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class SizingResult:
-    """A pin: by which scale it reaches the factor (None where it does not, and `why`), its factor
-    in the first trial and then, in the case that governs, with that case's verdict.
+    """The size of a pin.
+
+    scale: scale at which it reaches the factor, None where it does not, for the reason `why`.
+    before, factor: its factor in the first trial, and then, in the case that governs.
+    verdict: verdict of that case.
     """
 
     pin: str
@@ -44,7 +47,7 @@ class SizingResult:
 
 @dataclass(frozen=True)
 class SizingGoal:
-    """The factor to reach, and to which step (m) diameters are rounded up, if any."""
+    """The factor to reach, and the step to which diameters are rounded up, m, if any."""
 
     required: float
     step: float | None = None
@@ -57,8 +60,9 @@ def size_pin(
     others: Mapping[str, float],
     tell: Tell = lambda _: None,
 ) -> SizingResult:
-    """Size one pin for all cases of a plan. others: by which scales pins are sized so far, this one
-    too, from which its search begins.
+    """Size one pin for all cases of a plan.
+
+    others: scales of the pins so far, also of this one, from which its search begins.
 
     Failures are reported in the answer.
     """
@@ -66,7 +70,7 @@ def size_pin(
     problem = _problem(study, pin)
     if problem:
         return SizingResult(pin, None, None, None, None, problem)
-    found: dict[float, Maximum] = {}
+    peaks: dict[float, Maximum] = {}
     factors: dict[float, float] = {}
 
     def factor_at(scale: float, rounding: float | None = None) -> float:
@@ -74,34 +78,36 @@ def size_pin(
             return factors[scale]
         tell(f"pin {pin}, {scale:.3f} times its diameters")
         trial = resized_study(study, {**others, pin: scale}, rounding)
-        found[scale] = governing(plan, trial, pin, tell)
-        factors[scale] = _factor(study, found[scale])
+        peaks[scale] = governing(plan, trial, pin, tell)
+        factors[scale] = _factor(study, peaks[scale])
         return factors[scale]
 
     before: float | None = None
     start = others.get(pin, 1.0)
     try:
         factor_at(start)
-        before = _nominal(study, found[start])
+        before = _nominal(study, peaks[start])
         best = smallest(factor_at, wish.required, start)
         scale, factor = best.scale, best.factor
         if wish.step is not None:
             least = min(study.table.pin[pin].diameters)
             scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
     except NoSizeError as error:
-        return SizingResult(pin, None, before, None, None, str(error) + _where(found))
+        return SizingResult(pin, None, before, None, None, str(error) + _where(peaks))
     except (InputError, ArithmeticError, ArgumentError) as error:
         tried = ", ".join(f"{factor:.4g} at {s:.3g}" for s, factor in factors.items()) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
         return SizingResult(pin, None, before, None, None, why)
-    return SizingResult(pin, scale, before, factor, found[scale].verdict)
+    return SizingResult(pin, scale, before, factor, peaks[scale].verdict)
 
 
-def _where(found: Mapping[float, Maximum]) -> str:
-    """What the factor is by, where that is not the row's own number, for a pin that was solved."""
-    if not found:
+def _where(peaks: Mapping[float, Maximum]) -> str:
+    """Name the place of the factor where that is not the row's own number, for a pin that was
+    solved.
+    """
+    if not peaks:
         return ""
-    last = list(found.values())[-1]
+    last = list(peaks.values())[-1]
     if beneath(last) < design_stress(last):
         return ""
     return f"; it is by what lies beneath the contact with its lugs in case {last.case}"
@@ -114,7 +120,9 @@ def _stepped(
     diameter: float,
     required: float,
 ) -> tuple[float, float]:
-    """A scale at which the factor is reached with diameters rounded up to a step."""
+    """Return a scale at which the factor is reached with diameters rounded up to a step, and the
+    factor.
+    """
     for _ in range(MAX_SIZING_STEPS):
         factor = factor_at(scale, step)
         if factor >= required:
@@ -124,7 +132,8 @@ def _stepped(
 
 
 def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Maximum:
-    """The peak with the lowest factor, as it counts, of a pin of `study` in the cases of the plan.
+    """Return the peak with the lowest factor, as it counts, of a pin of `study` in the plan's
+    cases.
 
     Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
     """
@@ -145,16 +154,17 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
 
 
 def design_stress(peak: Maximum) -> float:
-    """The stress, Pa, that has to decide: of the maximum with its error, or what lies beneath
-    contact with its own, the larger; of a singular maximum, which decides nothing, that outside the
-    excluded zones.
+    """Return the stress that decides, Pa: the larger of the maximum and that beneath contact, each
+    with its error.
+
+    A singular maximum decides nothing; it is replaced by that outside the excluded zones.
     """
-    own = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
-    return max(own or 0.0, beneath(peak))
+    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
+    return max(stress or 0.0, beneath(peak))
 
 
 def _factor(study: Study, peak: Maximum) -> float:
-    """Of that stress."""
+    """Return the factor of that stress."""
     return _nominal(study, peak) * (peak.max_von_mises or 0.0) / design_stress(peak)
 
 

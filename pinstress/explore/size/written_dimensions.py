@@ -1,4 +1,6 @@
-"""Dimensions that a search for the least weight found, as they are written, and what binds them."""
+"""Rounding of the dimensions that a search for the least weight found, and their active
+constraints.
+"""
 
 from __future__ import annotations
 
@@ -14,32 +16,35 @@ LIMIT_ROUNDING_TOLERANCE = 2e-3  # of a geometric limit, by which four digits ma
 
 
 def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
-    """As they are written: four digits, diameters up, bores and fillets down; diameters up to a
-    step (m), and by further steps where a geometric limit is broken by that.
+    """Round dimensions as they are written: to four digits, diameters up, bores and fillets down.
+
+    step: step to which diameters are rounded up, m, and by further steps where a geometric limit is
+    violated by that.
+    metre: a metre in the study's unit.
     """
     up = {"diameters": 1, "bores": -1, "fillets": -1}
     out, steps = [], np.zeros(len(values))
     for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
         kind = kind_of(dimension.key)
-        own = None
+        increment = None
         if step is not None and kind == "diameters":
-            own = (step / 2.0 if dimension.key.startswith("meridian") else step) / metre
-            steps[k] = own * metre
-        out.append(rounded(float(value) / metre, own, up[kind]) * metre)
-    found = np.array(out)
+            increment = (step / 2.0 if dimension.key.startswith("meridian") else step) / metre
+            steps[k] = increment * metre
+        out.append(rounded(float(value) / metre, increment, up[kind]) * metre)
+    result = np.array(out)
     for _ in range(MAX_ROUNDING_STEPS if step is not None else 0):
-        limits, slopes = shape.at_limits(found)
+        limits, slopes = shape.at_limits(result)
         if not len(limits) or limits.min() >= -LIMIT_ROUNDING_TOLERANCE:
             break
         grow = (slopes[int(limits.argmin())] > 0.0) & (steps > 0.0)
         if not grow.any():
             break
-        found = found + np.where(grow, steps, 0.0)
-    return found
+        result = result + np.where(grow, steps, 0.0)
+    return result
 
 
 def binding(shape: VariedShape, optimum: Optimum) -> list[tuple[str, float]]:
-    """What binds, the largest multiplier first."""
+    """Return the active constraints in words, the largest multiplier first."""
     keys, limits = shape.keys, shape.geometric
     out = []
     for name, multiplier in optimum.optimality.multipliers.items():

@@ -1,8 +1,7 @@
-"""Designs in batches of a second of work and more, for processes here or on other computers.
+"""Batches of designs, each a second of work or more, for processes here or on other computers.
 
-A batch is solved as a whole; which designs are in one, and where and when it is solved, changes
-none of their numbers. Designs that share a shape are in the same batch as far as possible, so that
-their pins are meshed once.
+A batch is solved as a whole; its designs, place and time change none of their numbers. Designs that
+share a shape are in the same batch as far as possible, so that their pins are meshed once.
 """
 
 from __future__ import annotations
@@ -36,9 +35,12 @@ Rows = list[list[DesignRow]]
 
 @dataclass(frozen=True)
 class DesignProblem:
-    """All that a process needs to solve designs of a study, as text: small, and the same for all
-    versions of the libraries between. files: hash of the contents that were sent of the files that
-    the study names; empty where they are read as they lie here.
+    """A description, as text, of all that a process needs to solve designs of a study.
+
+    It is small, and the same for all versions of the libraries between.
+
+    files: hash of the contents that were sent of the files that the study names; empty where they
+    are read as they lie here.
     """
 
     path: Path
@@ -57,7 +59,7 @@ class DesignProblem:
         pins: Sequence[str] | None = None,
         cases: Sequence[str] | None = None,
     ) -> DesignProblem:
-        """The problem of a study, whose files are named by absolute paths."""
+        """Return the problem of a study, whose files are named by absolute paths."""
         some, those = (None if x is None else tuple(x) for x in (pins, cases))
         path = study.path.absolute()
         return cls(path, study.text, study.located, tuple(numbers), some, those)
@@ -65,13 +67,13 @@ class DesignProblem:
 
 @dataclass(frozen=True)
 class Batch:
-    """Some designs: their numbers from 0, and values (B, p) in SI."""
+    """A batch of designs: their numbers from 0, and values (B, p) in SI."""
 
     designs: tuple[int, ...]
     values: tuple[tuple[float, ...], ...]
 
     def halves(self) -> tuple[Batch, Batch]:
-        """The first and the second half of more than one."""
+        """Split a batch of more than one design into halves."""
         k = len(self.designs) // 2
         return (
             Batch(self.designs[:k], self.values[:k]),
@@ -81,7 +83,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class SolvedBatch:
-    """The rows of a batch's designs, and the seconds that it took."""
+    """The rows of a batch's designs, and the seconds that they took."""
 
     batch: Batch
     rows: Rows
@@ -101,37 +103,41 @@ def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
 
 @lru_cache(1)
 def evaluator_of(problem: DesignProblem) -> Evaluator:
-    """One in a process, which remembers what it solved."""
+    """Return the evaluator of this process, which remembers what it solved."""
     with noted_files() as files:
         study = parse_study(problem.path, problem.text, problem.located)
-        found = Evaluator(study, problem.numbers, problem.pins, problem.cases)
-    found.files = tuple(sorted(files))
-    return found
+        evaluator = Evaluator(study, problem.numbers, problem.pins, problem.cases)
+    evaluator.files = tuple(sorted(files))
+    return evaluator
 
 
 def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
-    """The designs (N, p) so that those with the same shapes follow each other."""
+    """Order the designs (N, p) so that those with the same shapes follow each other."""
     shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
     keys = [np.arange(len(values)), *reversed(shape)]
     return [int(i) for i in np.lexsort(keys)]
 
 
 def shapes(number: Number) -> bool:
-    """Whether pins are meshed or solved anew for another value of a number: not for strengths."""
+    """Return whether pins are meshed or solved anew for another value of a number; strengths need
+    neither.
+    """
     table, last = number.path[0], number.path[-1]
     return table == "pin" or (table == "material" and last not in STRENGTH_KEYS)
 
 
 def aim_of(at_once: int) -> float:
-    """Seconds of work in a batch where so many are solved at a time: batches are handed out one
-    after the other, to each process before it has solved its last one.
+    """Return the target duration of a batch, s, where so many are solved at a time.
+
+    Batches are handed out one after the other, to each process before it has solved its last one.
     """
     return max(TARGET_BATCH_SECONDS, BATCH_OVERHEAD_SECONDS * at_once)
 
 
 class Batches:
-    """Batches of the designs that are left, as large as they should be by what earlier ones took.
-    at_once: how many are solved at a time.
+    """Batches of the designs that are left, sized by the duration of earlier ones.
+
+    at_once: number of batches solved at a time.
     """
 
     def __init__(self, numbers: Sequence[Number], values: Floats, done: set[int], at_once: int):
@@ -147,22 +153,24 @@ class Batches:
 
     @property
     def left(self) -> int:
-        """How many designs are in no batch yet."""
+        """Return the number of designs that are in no batch yet."""
         return len(self._left)
 
     def learn(self, done: SolvedBatch) -> None:
-        """Take note of what a batch took."""
+        """Record the duration of a batch."""
         self._seconds += done.seconds
         self._count += len(done.batch.designs)
 
     @property
     def each(self) -> float | None:
-        """Seconds a design, as far as is known."""
+        """Return the seconds per design; None while unknown."""
         return self._seconds / self._count if self._count else None
 
     def next(self) -> Batch:
-        """The next batch: single designs until it is known what one takes, and at the end so few
-        that all processes end at about the same time.
+        """Return the next batch.
+
+        Batches are single designs until their duration is known, and at the end so small that all
+        processes end at about the same time.
         """
         size = 1
         if self.each is not None:

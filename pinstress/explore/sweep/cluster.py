@@ -1,4 +1,6 @@
-"""A scheduler of dask and its workers: whether they answer, are able, and have our versions."""
+"""A Dask scheduler and its workers: whether they answer, are able to work, and have our
+versions.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +29,10 @@ VERSIONS_EXPRESSION = "[found := {}, exec(text, found), found['versions'](packag
 
 
 class Cluster:
-    """A connected scheduler. packages: of which workers must have our versions, as of pinstress and
-    Python. tell: called with what is odd.
+    """A connected scheduler.
+
+    packages: packages of which workers must have our versions, as of pinstress and Python.
+    tell: called with warnings.
     """
 
     patience = SCHEDULER_TIMEOUT
@@ -51,27 +55,27 @@ class Cluster:
             time.sleep(0.0 if self.workers else WORKER_POLL_INTERVAL)
 
     def look(self, now: bool = False) -> None:
-        """Look at the scheduler and its workers, at most every CHECK_INTERVAL s.
+        """Check the scheduler and its workers, at most every CHECK_INTERVAL s.
 
         Raises: InputError where it does not answer, no worker has worked for WORKER_TIMEOUT s, or
         one has other versions.
         """
         if not now and time.monotonic() - self._looked < CHECK_INTERVAL:
             return
-        found = self._identities()
+        workers = self._identities()
         self._looked = time.monotonic()
-        self._ask([address for address in found if address not in self._same])
-        self._same &= set(found)  # another one may come at the same address
-        self._tell_of_paused({a for a, worker in found.items() if worker["status"] == "paused"})
-        if any(_works(found[address]) for address in self._same):
+        self._ask([address for address in workers if address not in self._same])
+        self._same &= set(workers)  # another one may come at the same address
+        self._tell_of_paused({a for a, worker in workers.items() if worker["status"] == "paused"})
+        if any(_works(workers[address]) for address in self._same):
             self._able = time.monotonic()
         elif time.monotonic() - self._able > WORKER_TIMEOUT:
-            raise self._unable(len(found))
-        able = [address for address in self._same if found[address]["status"] == "running"]
+            raise self._unable(len(workers))
+        able = [address for address in self._same if workers[address]["status"] == "running"]
         self.workers = len(able) or self.workers
 
     def rows(self, future: Future[Any]) -> Any:
-        """What came of a batch that is done; None where that went with its worker."""
+        """Return the result of a batch that is done; None where it was lost with its worker."""
         try:
             return future.result(timeout=SCHEDULER_TIMEOUT)
         except TimeoutError:
@@ -82,23 +86,28 @@ class Cluster:
                 raise lost_connection(self.address) from None
         return None
 
-    def require_same(self, found: Mapping[str, Mapping[str, str] | BaseException]) -> None:
-        """Raises: InputError where workers have other versions. found: by worker."""
-        lines = [f"{who}: {other}" for who, has in found.items() if (other := self._other(has))]
+    def require_same(self, answers: Mapping[str, Mapping[str, str] | BaseException]) -> None:
+        """Check the versions of workers.
+
+        answers: versions by worker, or the error of asking it.
+
+        Raises: InputError where workers have other versions.
+        """
+        lines = [f"{who}: {other}" for who, has in answers.items() if (other := self._other(has))]
         if lines:
             raise other_versions(lines)
 
-    def _other(self, found: Mapping[str, str] | BaseException) -> str:
-        if isinstance(found, BaseException):
-            return short(found)
+    def _other(self, versions: Mapping[str, str] | BaseException) -> str:
+        if isinstance(versions, BaseException):
+            return short(versions)
         return ", ".join(
-            f"{name} {found.get(name, asking.MISSING_VERSION)} (here {mine})"
-            for name, mine in self._expected.items()
-            if found.get(name) != mine
+            f"{name} {versions.get(name, asking.MISSING_VERSION)} (here {version})"
+            for name, version in self._expected.items()
+            if versions.get(name) != version
         )
 
     def _identities(self) -> dict[str, Any]:
-        """What the scheduler says of each of its workers."""
+        """Return the scheduler's information on each of its workers."""
         try:
             asked: Any = self.client.scheduler
             said: dict[str, Any] = self.client.sync(
@@ -134,9 +143,11 @@ class Cluster:
         if not new:
             return
         answers = dict(zip(new, self.client.sync(all_), strict=True))
-        found = {a: x for a, x in answers.items() if x is not None and not isinstance(x, OSError)}
-        self.require_same(found)
-        self._same |= set(found)
+        versions = {
+            a: x for a, x in answers.items() if x is not None and not isinstance(x, OSError)
+        }
+        self.require_same(versions)
+        self._same |= set(versions)
 
     def _tell_of_paused(self, paused: set[str]) -> None:
         for address in sorted(paused):
@@ -152,7 +163,10 @@ class Cluster:
             self._tell(message)
 
     def _unable(self, count: int) -> InputError:
-        """That no worker works. count: of the workers that the scheduler knows."""
+        """Return the error that no worker works.
+
+        count: number of workers that the scheduler knows.
+        """
         what, code = f"has no worker that answers, for {WORKER_TIMEOUT:g} s", "no-worker"
         if not count:
             what = f"has had no worker for {WORKER_TIMEOUT:g} s; start one with: dask worker "
@@ -174,8 +188,9 @@ def _works(worker: Mapping[str, Any]) -> bool:
 def connected(
     address: str, packages: Sequence[str], tell: Callable[[str], None]
 ) -> Iterator[Cluster]:
-    """The user's cluster, whose workers have been asked. Raises: InputError where nothing answers,
-    or no worker is there, or one has other versions.
+    """Connect to the user's cluster, and check its workers.
+
+    Raises: InputError where nothing answers, or there is no worker, or one has other versions.
     """
     with _silent():
         try:
@@ -204,14 +219,17 @@ class _Closed(Client):
 
 
 def lost_connection(address: str) -> InputError:
-    """That the scheduler has ended, or cannot be reached."""
+    """Return the error that the scheduler has ended, or cannot be reached."""
     return InputError(
         f"--scheduler: the connection to the scheduler at {address} is lost", code="no-scheduler"
     )
 
 
 def other_versions(lines: Sequence[str]) -> InputError:
-    """That workers have other versions. lines: of each what is other."""
+    """Return the error that workers have other versions.
+
+    lines: differences, by worker.
+    """
     beyond = len(lines) - MAX_LISTED_WORKERS
     more = [f"and {beyond} more"] if beyond > 0 else []
     return InputError(
@@ -228,25 +246,27 @@ def other_versions(lines: Sequence[str]) -> InputError:
 
 
 def short(error: BaseException) -> str:
-    """The first line of an error."""
+    """Return the first line of an error."""
     return (str(error).strip() or type(error).__name__).splitlines()[0][:200]
 
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Without what dask logs of connections that end, and warns of: versions, which are compared
-    here, and the size of files that are sent.
+    """Silence Dask's messages inside the block.
+
+    It logs connections that end, and warns of versions, which are compared here, and of the size of
+    files that are sent.
     """
     parts = "worker", "nanny", "scheduler", "core", "comm", "client"
     names = ("distributed", *(f"distributed.{part}" for part in parts), "tornado", "asyncio")
-    found = [logging.getLogger(name) for name in names]
-    before = [each.level for each in found]
-    for each in found:
-        each.setLevel(logging.CRITICAL + 1)
+    loggers = [logging.getLogger(name) for name in names]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL + 1)
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=f"(?s).*({IGNORED_WARNINGS})")
             yield
     finally:
-        for each, level in zip(found, before, strict=True):
-            each.setLevel(level)
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)

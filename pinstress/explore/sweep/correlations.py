@@ -1,4 +1,4 @@
-"""Parameters with normal laws that vary together: their matrix of correlation, checked."""
+"""Correlations of parameters with normal laws, checked."""
 
 from __future__ import annotations
 
@@ -17,10 +17,13 @@ EIGENVALUE_ROUND_OFF = 1e-12  # an eigenvalue of round-off
 def correlations_of(
     study: Study, parameters: Sequence[Parameter], sampled: bool = True
 ) -> Floats | None:
-    """The matrix (p, p) of the parameters' normal variables; None where all are independent.
-    sampled: whether [vary] says which designs to make of them.
+    """Return the correlation matrix (p, p) of the parameters' normal variables; None where all are
+    independent.
 
-    Raises: InputError for pairs that cannot be correlated, and for numbers that no variables have.
+    sampled: whether [vary] states which designs to sample.
+
+    Raises: InputError for pairs that cannot be correlated, and for a matrix that is not positive
+    semidefinite.
     """
     vary = study.table.vary
     if vary is None or not vary.correlations:
@@ -67,7 +70,7 @@ def correlations_of(
 
 
 def root_of(matrix: Floats) -> Floats:
-    """A matrix L (p, p) with L L^T = `matrix`, lower triangular unless that is singular."""
+    """Return a matrix L (p, p) with L L^T = `matrix`, lower triangular unless that is singular."""
     try:
         return np.asarray(np.linalg.cholesky(matrix), np.float64)
     except np.linalg.LinAlgError:

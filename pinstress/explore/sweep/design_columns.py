@@ -23,7 +23,9 @@ COLUMN_TITLES = {  # in the order of the page
 
 @dataclass(frozen=True)
 class DesignColumn:
-    """Values (designs or rows,): NaN for none; of texts their place in `names`."""
+    """A column of values (designs or rows,): NaN for none; texts are given by their index in
+    `names`.
+    """
 
     key: str
     title: str
@@ -34,16 +36,17 @@ class DesignColumn:
 
     @property
     def known(self) -> Floats:
-        """The finite values."""
+        """Return the finite values."""
         return self.values[np.isfinite(self.values)]
 
 
 @dataclass(frozen=True)
 class Designs:
-    """The designs of a sweep, with rows sorted by them.
+    """The designs of a sweep, with rows sorted by design.
 
-    numbers (D,): of the designs, ascending; first (D + 1,): where the rows of each begin; required:
-    the safety factor, None for none.
+    numbers: of the designs (D,), ascending.
+    first: (D + 1,), start of the rows of each design.
+    required: the safety factor, None for none.
     """
 
     study: str
@@ -56,7 +59,7 @@ class Designs:
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Which rows have no maximum, and a reason for it."""
+        """Return a mask of the rows that have no maximum but a reason for it."""
         lacking = np.isfinite(self.texts["reason"].values)
         for column in self.results:
             if column.key == "max_von_mises":
@@ -65,22 +68,25 @@ class Designs:
 
     @property
     def failed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Which designs (D,) have such a row."""
+        """Return a mask (D,) of the designs that have such a row."""
         rows = self.failed_rows
         return np.logical_or.reduceat(rows, self.first[:-1]) if len(rows) else rows
 
 
 def designs_of(table: pa.Table) -> Designs:
-    """The columns of a table as `pinstress sweep` writes it. Raises: ValueError."""
+    """Return the columns of a table as `pinstress sweep` writes it.
+
+    Raises: ValueError for another table.
+    """
     text = (table.schema.metadata or {}).get(METADATA_KEY)
     if text is None or "design" not in table.column_names:
         raise ValueError("the table is not that of a sweep: no column design or no metadata")
-    told = json.loads(text)
+    metadata = json.loads(text)
     number = table.column("design").to_numpy()
     order = np.argsort(number, kind="stable")
     numbers, first = np.unique(number[order], return_index=True)
     ends = np.append(first, len(order)).astype(np.int64)
-    laws: dict[str, dict[str, Any]] = told.get("parameters", {})
+    laws: dict[str, dict[str, Any]] = metadata.get("parameters", {})
     keys = [key for key in laws if key in table.column_names]
     every = {
         name: _column(table, name, order, laws.get(name, {}))
@@ -88,8 +94,8 @@ def designs_of(table: pa.Table) -> Designs:
         if name != "design"
     }
     return Designs(
-        study=str(told.get("title") or told.get("study", "")),
-        required=told.get("required_safety_factor"),
+        study=str(metadata.get("title") or metadata.get("study", "")),
+        required=metadata.get("required_safety_factor"),
         numbers=numbers.astype(np.int64),
         first=ends,
         parameters=tuple(_per_design(every[key], ends) for key in keys),
@@ -99,7 +105,7 @@ def designs_of(table: pa.Table) -> Designs:
 
 
 def _results(names: list[str], parameters: list[str]) -> list[str]:
-    """Those that the page knows, in its order, then all others."""
+    """Return the names of results that the page knows, in its order, then all others."""
     known = [name for name in COLUMN_TITLES if name in names]
     return known + [n for n in names if n not in {*parameters, *known, *ROW_COLUMNS}]
 
@@ -129,7 +135,7 @@ def _numeric(kind: Any) -> bool:
 
 
 def _texts(data: Any) -> Any:
-    """As texts, the empty ones as none."""
+    """Return values as texts, the empty ones as none."""
     import pyarrow as pa
     from pyarrow import compute
 
@@ -144,7 +150,10 @@ def _law(law: object) -> str:
 
 
 def _per_design(column: DesignColumn, ends: Any) -> DesignColumn:
-    """Of every design its one value. Raises: ValueError if it has two."""
+    """Return one value for every design.
+
+    Raises: ValueError if a design has two.
+    """
     values, starts = column.values, ends[:-1]
     one = values[starts]
     again = np.repeat(one, np.diff(ends))

@@ -1,7 +1,7 @@
-"""What a study with other numbers gives: a row for each of its pins in each of its cases.
+"""The results of a study with other numbers: a row for each of its pins in each of its cases.
 
-A design is solved as a run solves a study, so its rows are what `pinstress run` of the changed
-study finds. What does not change from one design to the next is not solved again: loads that depend
+A design is solved as a run solves a study, so `pinstress run` of the changed study finds the same
+rows. Parts that do not change from one design to the next are not solved again: loads that depend
 on no changed number, pins whose shape, material and loads are those of an earlier design, and the
 unit loads of a pin that only loads or strength change.
 """
@@ -50,12 +50,16 @@ V = TypeVar("V")
 
 @dataclass(frozen=True)
 class DesignRow:
-    """One pin in one case of a design, in SI. max_von_mises, error_estimate: Pa, None where there
-    is no maximum (verdict `failed` or `rigid`). governing_time: s, None without a motion. mass: kg,
-    None without a density. reason, code: why the verdict is not `converged`, for people and for
-    programs. outcome, depends_on: as of a run (pinstress.explore.sweep.outcomes). governs:
-    "surface" or "section", empty where the model has no places; the largest stress of these and
-    beneath contact, this with its error, Pa, None where there is none.
+    """One pin in one case of a design, in SI.
+
+    max_von_mises, error_estimate: Pa, None where there is no maximum (verdict `failed` or `rigid`).
+    governing_time: s, None without a motion.
+    mass: kg, None without a density.
+    reason, code: why the verdict is not `converged`, for people and for programs.
+    outcome, depends_on: as in a run (pinstress.explore.sweep.outcomes).
+    governs: "surface" or "section", empty where the model has no places.
+    surface, section, beneath, beneath_error: largest stresses and the last one's error, Pa; None
+    where there is none.
     """
 
     pin: str
@@ -78,13 +82,13 @@ class DesignRow:
 
 
 class Memo(Generic[K, V]):
-    """The values of the keys that were asked for last, `most` of them."""
+    """A memory of the values of the latest keys, at most `most` of them."""
 
     def __init__(self, most: int) -> None:
         self._most, self._known = most, OrderedDict[K, V]()
 
     def get(self, key: K) -> V | None:
-        """The value of a key, if it is remembered."""
+        """Return the value of a key, if it is remembered."""
         if key in self._known:
             self._known.move_to_end(key)
         return self._known.get(key)
@@ -98,10 +102,14 @@ class Memo(Generic[K, V]):
 
 
 class Evaluator:
-    """A study whose numbers change. pins, cases: names; all by default. parameters: in the order of
-    the values of `rows`. table: the (pin, case) of a design's rows, in their order. meshes: what
-    was solved of pins that are not in contact. files: those that the study names, as far as
-    whoever made it (pinstress.explore.sweep.batches) noted them.
+    """A study whose numbers change.
+
+    pins, cases: names; all by default.
+    parameters: in the order of the values of `rows`.
+    table: the (pin, case) of a design's rows, in their order.
+    meshes: solutions of pins that are not in contact.
+    files: those that the study names, as far as the creator noted them
+    (pinstress.explore.sweep.batches).
 
     Raises: InputError where the study as it is cannot be run.
     """
@@ -120,10 +128,10 @@ class Evaluator:
         self.files: tuple[Path, ...] = ()
         self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
         self._cases = tuple(plan.loads)
-        found = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
-        self._pins = tuple(dict.fromkeys(pin for pin, _ in found))
+        rows = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
+        self._pins = tuple(dict.fromkeys(pin for pin, _ in rows))
         self.table = tuple(
-            (pin, case) for pin in self._pins for case in self._cases if (pin, case) in found
+            (pin, case) for pin in self._pins for case in self._cases if (pin, case) in rows
         )
         self._loads = Memo[tuple[object, ...], CaseLoads | InputError](
             MAX_REMEMBERED_LOADS * len(self._cases)
@@ -136,7 +144,10 @@ class Evaluator:
         }
 
     def rows(self, values: Sequence[float] | Floats) -> list[DesignRow]:
-        """The rows of a design, one for each of `table`. values: of the parameters (p,), SI."""
+        """Return the rows of a design, one for each of `table`.
+
+        values: of the parameters (p,), SI.
+        """
         numbers = [float(value) for value in values]
         try:
             study = self.changed(numbers)
@@ -145,12 +156,15 @@ class Evaluator:
             return [_failed(self.study, pin, case, error) for pin, case in self.table]
         rows: dict[tuple[str, str], DesignRow] = {}
         for pin in self._pins:
-            mine = [case for name, case in self.table if name == pin]
-            rows |= {(pin, case): row for case, row in self._of_pin(study, pin, mine, loads)}
+            cases = [case for name, case in self.table if name == pin]
+            rows |= {(pin, case): row for case, row in self._of_pin(study, pin, cases, loads)}
         return [rows[key] for key in self.table]
 
     def changed(self, values: Sequence[float]) -> Study:
-        """The study with other values (SI) of its numbers. Raises: InputError."""
+        """Return the study with other values (SI) of its numbers.
+
+        Raises: InputError.
+        """
         raw = self._raw
         for number, value in zip(self.numbers, values, strict=True):
             for path in number.paths:
@@ -158,13 +172,15 @@ class Evaluator:
         return with_raw(self.study, raw)
 
     def _moves(self, number: Number, case: str) -> bool:
-        """Whether the loads of a case depend on a number: on those of the mechanism, of the case
-        and of cases that it names, and on what gives mass to floating pins.
+        """Return whether the loads of a case depend on a number.
+
+        They depend on numbers of the mechanism, of the case and of cases that it names, and on
+        those that give mass to floating pins.
         """
         table, *inner = number.path
         if table == "case":
-            own = self._raw["case"].get(case)  # None of a case of a table with many
-            return own is None or inner[0] == case or _names(own, str(inner[0]))
+            table_of_case = self._raw["case"].get(case)  # None of a case of a table with many
+            return table_of_case is None or inner[0] == case or _names(table_of_case, str(inner[0]))
         if table not in TABLES_WITHOUT_LOADS:
             return True
         study, mechanism = self.study.table, self.study.table.mechanism
@@ -180,7 +196,7 @@ class Evaluator:
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
     def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
-        found: dict[str, CaseLoads | InputError] = {}
+        loads: dict[str, CaseLoads | InputError] = {}
         mechanism: Linkage | None = None
         for name in self._cases:
             key = name, *(values[k] for k in self._of_loads[name])
@@ -194,8 +210,8 @@ class Evaluator:
                 except InputError as error:
                     known = error
                 self._loads.put(key, known)
-            found[name] = known
-        return found
+            loads[name] = known
+        return loads
 
     def _of_pin(
         self,
@@ -210,12 +226,12 @@ class Evaluator:
         if not right:
             return
         try:
-            made = tasks(study, [pin_of(study, name)], right)
+            todo = tasks(study, [pin_of(study, name)], right)
         except (InputError, ArithmeticError, MemoryError) as error:
             yield from ((c, _failed(study, name, c, error)) for c in right)
             return
         asked = requirement_of(study, memory=self._memory)
-        for task in made:
+        for task in todo:
             yield from self._solved(study, task, asked, right)
 
     def _solved(
@@ -257,29 +273,31 @@ class Evaluator:
         key = _question(study, task, asked, [loads[x.case].range for x in task.loads])
         known = self._answers.get(key)
         if known is None:
-            found = solutions(study, task, asked, lambda _: None, self.meshes)
-            known = self._answers.put(key, tuple(bare_answer(task, s, loads) for s in found))
+            solved = solutions(study, task, asked, lambda _: None, self.meshes)
+            known = self._answers.put(key, tuple(bare_answer(task, s, loads) for s in solved))
         return known
 
 
 def _names(content: object, case: str) -> bool:
-    """Whether a table has the name of a case as a text."""
+    """Return whether a table contains the name of a case as a text."""
     if isinstance(content, Mapping):
-        return any(_names(each, case) for each in content.values())
+        return any(_names(entry, case) for entry in content.values())
     if isinstance(content, list | tuple):
-        return any(_names(each, case) for each in content)
+        return any(_names(entry, case) for entry in content)
     return content == case
 
 
 def elastic(material: Material) -> Material:
-    """A material without its strengths, on which no stress depends."""
+    """Return a material without its strengths, on which no stress depends."""
     return Material(
         material.name, material.youngs_modulus, material.poisson_ratio, material.density
     )
 
 
 def _elastic_lug(lug: Lug) -> Lug:
-    """A lug without strengths, by which only its own share is judged (bare_answer drops that)."""
+    """Return a lug without strengths, by which only its own share is judged (bare_answer drops
+    that).
+    """
     bushing = lug.bushing and replace(lug.bushing, material=elastic(lug.bushing.material))
     return replace(lug, material=elastic(lug.material), bushing=bushing)
 
@@ -287,7 +305,9 @@ def _elastic_lug(lug: Lug) -> Lug:
 def _question(
     study: Study, task: Task, asked: Requirement, ranges: Sequence[ImpulseLoads | None]
 ) -> str:
-    """Hash of all on which a pin's answers depend in a study whose mechanism does not change.
+    """Return a hash of all on which a pin's answers depend in a study whose mechanism does not
+    change.
+
     ranges: of impulses by case, as other ones may have the same forces.
     """
     decides = asked.goal == "decide"
@@ -311,7 +331,7 @@ def _code(peak: Maximum) -> str:
 
 
 def _failed(study: Study, pin: str, case: str, error: BaseException) -> DesignRow:
-    """A row without a maximum; its reason names no file, whose place changes nothing."""
+    """Return a row without a maximum; its reason names no file, whose place changes nothing."""
     lines = error.lines if isinstance(error, InputError) else (str(error) or "out of memory",)
     place = re.compile(rf"{re.escape(str(study.path))}(:\d+)?: ")
     reason = "; ".join(place.sub("", line) for line in lines)

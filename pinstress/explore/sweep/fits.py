@@ -36,12 +36,15 @@ TOLERANCE_EXAMPLES = 'write for instance "+0.1 mm -0.05 mm", "±0.1 mm" or "h7"'
 
 
 def limits_of(text: str, number: Number, system: UnitSystem) -> tuple[float, float]:
-    """Least and largest value (SI) of a number with a tolerance. Raises: ArgumentError."""
+    """Return the least and the largest value (SI) of a number with a tolerance.
+
+    Raises: ArgumentError.
+    """
     text = text.strip()
-    found = TOLERANCE_CLASS_PATTERN.fullmatch(text)
+    match = TOLERANCE_CLASS_PATTERN.fullmatch(text)
     try:
         low, high = (
-            _class(found[1], int(found[2]), number) if found else _deviations(text, number, system)
+            _class(match[1], int(match[2]), number) if match else _deviations(text, number, system)
         )
     except ArgumentError as error:
         raise ArgumentError(f"tolerance: {error}", error.code) from None

@@ -1,4 +1,4 @@
-"""How a number varies: laws of probability by their quantiles, in SI.
+"""Probability laws of numbers, given by their quantiles, in SI.
 
 A law that is cut off at limits has the probability between them, scaled to one.
 
@@ -20,21 +20,26 @@ Show = Callable[[float], str]
 
 @dataclass(frozen=True)
 class Uniform:
-    """Every value from `low` to `high` is equally likely."""
+    """A law by which every value from `low` to `high` is equally likely."""
 
     low: float
     high: float
 
     def quantile(self, u: Floats) -> Floats:
-        """The value below which a law stays with probabilities u (N,)."""
+        """Return the values below which a number stays with probabilities u (N,)."""
         return np.asarray(self.low + np.asarray(u) * (self.high - self.low), np.float64)
 
     def of_normal(self, z: Floats) -> Floats:
-        """The values that are as likely to be exceeded as z (N,) by a standard normal variable."""
+        """Return the values that are as likely to be exceeded as z (N,) by a standard normal
+        variable.
+        """
         return self.quantile(_ndtr(z))
 
     def text(self, show: Show) -> str:
-        """The law in words. show: makes a text of a value."""
+        """Describe the law in words.
+
+        show: makes a text of a value.
+        """
         return f"uniform from {show(self.low)} to {show(self.high)}"
 
 
@@ -49,18 +54,18 @@ class Normal:
 
     @property
     def cut_off(self) -> bool:
-        """Whether it has limits."""
+        """Return whether it has limits."""
         return math.isfinite(self.low) or math.isfinite(self.high)
 
     @property
     def within(self) -> float:
-        """The probability between the limits."""
+        """Return the probability between the limits."""
         ends = (np.array([self.low, self.high]) - self.mean) / self.deviation
         low, high = _ndtr(ends if ends[0] <= 0.0 else -ends[::-1])
         return float(high - low)
 
     def quantile(self, u: Floats) -> Floats:
-        """As that of Uniform."""
+        """Return the values as Uniform does."""
         from scipy.special import ndtri
 
         u = np.asarray(u, np.float64)
@@ -74,21 +79,21 @@ class Normal:
         return np.asarray(np.clip(self.mean + self.deviation * z, self.low, self.high), np.float64)
 
     def of_normal(self, z: Floats) -> Floats:
-        """As that of Uniform."""
+        """Return the values as Uniform does."""
         if self.cut_off:
             return self.quantile(_ndtr(z))
         return np.asarray(self.mean + self.deviation * np.asarray(z), np.float64)
 
     def text(self, show: Show) -> str:
-        """As that of Uniform."""
+        """Describe the law as Uniform does."""
         text = f"normal, mean {show(self.mean)}, deviation {show(self.deviation)}"
         return text + _limits(self.low, self.high, show)
 
 
 @dataclass(frozen=True)
 class LogNormal:
-    """A law whose logarithm is normal, cut off at `low` and `high`; `mean` and `deviation` are of
-    the number itself, without that.
+    """A law whose logarithm is normal, cut off at `low` and `high`; `mean` and `deviation` are
+    those of the number itself, without limits.
     """
 
     mean: float
@@ -98,7 +103,7 @@ class LogNormal:
 
     @property
     def logarithm(self) -> Normal:
-        """The law of its logarithm."""
+        """Return the law of its logarithm."""
         variance = math.log1p((self.deviation / self.mean) ** 2)
         centre = math.log(self.mean) - 0.5 * variance
         low = math.log(self.low) if self.low > 0.0 else -math.inf
@@ -106,19 +111,19 @@ class LogNormal:
 
     @property
     def within(self) -> float:
-        """The probability between the limits."""
+        """Return the probability between the limits."""
         return self.logarithm.within
 
     def quantile(self, u: Floats) -> Floats:
-        """As that of Uniform."""
+        """Return the values as Uniform does."""
         return np.asarray(np.clip(np.exp(self.logarithm.quantile(u)), self.low, self.high))
 
     def of_normal(self, z: Floats) -> Floats:
-        """As that of Uniform."""
+        """Return the values as Uniform does."""
         return np.asarray(np.clip(np.exp(self.logarithm.of_normal(z)), self.low, self.high))
 
     def text(self, show: Show) -> str:
-        """As that of Uniform."""
+        """Describe the law as Uniform does."""
         text = f"lognormal, mean {show(self.mean)}, deviation {show(self.deviation)}"
         low = self.low if self.low > 0.0 else -math.inf
         return text + _limits(low, self.high, show)
@@ -126,14 +131,14 @@ class LogNormal:
 
 @dataclass(frozen=True)
 class Triangular:
-    """A density that rises straight from `low` to `mode` and falls to `high`."""
+    """A law whose density rises linearly from `low` to `mode` and falls to `high`."""
 
     low: float
     mode: float
     high: float
 
     def quantile(self, u: Floats) -> Floats:
-        """As that of Uniform."""
+        """Return the values as Uniform does."""
         u = np.asarray(u, np.float64)
         width, left = self.high - self.low, self.mode - self.low
         rising = self.low + np.sqrt(u * width * left)
@@ -141,11 +146,11 @@ class Triangular:
         return np.asarray(np.where(u * width < left, rising, falling), np.float64)
 
     def of_normal(self, z: Floats) -> Floats:
-        """As that of Uniform."""
+        """Return the values as Uniform does."""
         return self.quantile(_ndtr(z))
 
     def text(self, show: Show) -> str:
-        """As that of Uniform."""
+        """Describe the law as Uniform does."""
         return f"triangular from {show(self.low)} over {show(self.mode)} to {show(self.high)}"
 
 
@@ -155,12 +160,12 @@ DEVIATIONS_TO_LIMIT = 3.0  # standard deviations from the middle of a tolerance 
 
 
 def of_tolerance(low: float, high: float) -> Normal:
-    """The law of a dimension that is made and inspected to lie between two limits."""
+    """Return the law of a dimension that is made and inspected to lie between two limits."""
     return Normal(0.5 * (low + high), 0.5 * (high - low) / DEVIATIONS_TO_LIMIT, low, high)
 
 
 def cut_off(law: Normal | LogNormal, low: float, high: float) -> Normal | LogNormal:
-    """The same law between limits."""
+    """Return the same law between limits."""
     return replace(law, low=low, high=high)
 
 

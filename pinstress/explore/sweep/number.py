@@ -1,6 +1,6 @@
-"""A number of a study by its key: where it stands, its dimension, and other values in its place.
+"""Numbers of a study by their keys: place, dimension, and other values.
 
-Any number of a study has a key, as messages spell it; what reads it says of which dimension it is.
+Any number of a study has a key, as messages spell it; the schema gives its dimension.
 """
 
 from __future__ import annotations
@@ -36,10 +36,16 @@ Path = tuple[str | int, ...]
 
 @dataclass(frozen=True)
 class Number:
-    """A number of the study: its key, its path in what `raw_study` returns, its dimension (empty
-    of a number without one) and its value in SI. unit: of a design's values in tables, `factor` its
-    SI value; written: whether the study must give it as a text with that unit. others: paths of
-    numbers that are always the same: those of a key with a range, as "profile[1-3].diameter".
+    """A number of the study.
+
+    key: its key.
+    path: its path in the content that `raw_study` returns.
+    dimension: empty for a number without one.
+    nominal: its value in SI.
+    unit: unit of a design's values in tables, `factor` its SI value.
+    written: whether the study must give it as a text with that unit.
+    others: paths of numbers that are always the same: those of a key with a range, as
+    "profile[1-3].diameter".
     """
 
     key: str
@@ -53,32 +59,32 @@ class Number:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """All places of the number."""
+        """Return all places of the number."""
         return self.path, *self.others
 
     def in_study(self, value: float) -> float | str:
-        """A value in its unit (not SI) as the study may write it."""
+        """Return a value in its unit (not SI) as the study may write it."""
         return f"{value!r} {self.unit}" if self.written else value
 
 
 def number_at(study: Study, key: str) -> Number:
-    """The number with a key, or the one that several keys have in common.
+    """Return the number with a key, or the one that several keys have in common.
 
     Raises: InputError for a key that names no number, or different ones.
     """
-    found = INDEX_RANGE_PATTERN.search(key)
-    if found is None:
+    match = INDEX_RANGE_PATTERN.search(key)
+    if match is None:
         return _single(study, key)
-    first, last = (int(end) for end in found.groups())
+    first, last = (int(end) for end in match.groups())
     if not 0 < first < last:
         raise _no_number(study, key, f"[{first}-{last}] is no range; the smaller element first")
-    keys = [key[: found.start()] + f"[{i}]" + key[found.end() :] for i in range(first, last + 1)]
-    each = [number_at(study, one) for one in keys]
-    for one, number in zip(keys, each, strict=True):
-        if (number.nominal, number.dimension) != (each[0].nominal, each[0].dimension):
+    keys = [key[: match.start()] + f"[{i}]" + key[match.end() :] for i in range(first, last + 1)]
+    numbers = [number_at(study, one) for one in keys]
+    for one, number in zip(keys, numbers, strict=True):
+        if (number.nominal, number.dimension) != (numbers[0].nominal, numbers[0].dimension):
             raise _no_number(study, key, f"{keys[0]} and {one} differ; only equal ones vary as one")
-    paths = tuple(dict.fromkeys(path for number in each for path in number.paths))
-    return replace(each[0], key=key, path=paths[0], others=paths[1:])
+    paths = tuple(dict.fromkeys(path for number in numbers for path in number.paths))
+    return replace(numbers[0], key=key, path=paths[0], others=paths[1:])
 
 
 def _single(study: Study, key: str) -> Number:
@@ -96,23 +102,23 @@ def _single(study: Study, key: str) -> Number:
 
 
 def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
-    """A copy of a study's raw content with another value at a path; the rest is shared."""
-    made = copy.copy(raw)
-    here: Any = made
+    """Return a copy of a study's raw content with another value at a path; the rest is shared."""
+    content = copy.copy(raw)
+    here: Any = content
     for part in path[:-1]:
         here[part] = copy.copy(here[part])
         here = here[part]
     here[path[-1]] = value
-    return made
+    return content
 
 
 def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:
     dimension = _dimension(study, raw, path)
     if not dimension and isinstance(value, str):
-        found = split(value)
-        if found is None or not found[1]:
+        parts = split(value)
+        if parts is None or not parts[1]:
             raise _no_number(study, key, f"is the text {as_text(value)}, not a number")
-        dimension = _dimension_of_unit(found[1])
+        dimension = _dimension_of_unit(parts[1])
         if not dimension:
             raise _no_number(study, key, f"is {as_text(value)}, whose unit has no known dimension")
     if not dimension:
@@ -131,7 +137,7 @@ def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any)
 
 
 def unit_of(system: UnitSystem, dimension: str) -> str:
-    """The name of a system's unit of a dimension, in length, force, time and stress."""
+    """Return the name of a system's unit of a dimension, in length, force, time and stress."""
     if dimension == "stress":
         return system.stress
     exponents, _ = DIMENSION_EXPONENTS[dimension]
@@ -151,13 +157,13 @@ def _dimension(study: Study, raw: dict[str, Any], path: Path) -> str:
 
 
 def _whole(study: Study, raw: dict[str, Any], path: Path) -> bool:
-    """Whether nothing but a whole number may be there."""
-    found = _validate(study, with_value(raw, path, 0.5))
-    return any(kind in ("int_type", "int_from_float") for kind in found)
+    """Return whether only a whole number may be in this place."""
+    errors = _validate(study, with_value(raw, path, 0.5))
+    return any(kind in ("int_type", "int_from_float") for kind in errors)
 
 
 def _validate(study: Study, raw: dict[str, Any]) -> list[str]:
-    """The kinds of errors."""
+    """Return the kinds of errors."""
     from pydantic import ValidationError
 
     from pinstress.study.schema.tables import StudyTable
@@ -165,7 +171,7 @@ def _validate(study: Study, raw: dict[str, Any]) -> list[str]:
     try:
         StudyTable.model_validate(raw, context={"system": study.system})
     except ValidationError as error:
-        return [each["type"] for each in error.errors()]
+        return [detail["type"] for detail in error.errors()]
     return []
 
 
@@ -174,28 +180,30 @@ def _dimension_of_unit(unit: str) -> str:
 
 
 def _path(study: Study, raw: Any, key: str) -> Path:
-    """In the raw content. A list of one element may be meant without its index, and a table where
-    there may be a list with [1].
+    """Return the path of a key in the raw content.
+
+    A list of one element may be meant without its index, and a table where there may be a list with
+    [1].
     """
-    found: list[str | int] = []
+    path: list[str | int] = []
     here = raw
     for part in key_parts(study, key):
         if isinstance(part, str) and isinstance(here, list) and len(here) == 1:
-            found.append(0)
+            path.append(0)
             here = here[0]
         if part == 0 and isinstance(here, Mapping):
             continue
-        there = here[part] if _has(here, part) else None
-        if there is None or (not found and part == "vary"):
+        value = here[part] if _has(here, part) else None
+        if value is None or (not path and part == "vary"):
             if part == -1:
                 raise _no_number(study, key, "has the index 0; elements are counted from 1")
             said = f"[{part + 1}]" if isinstance(part, int) else as_text(part)
             meant = nearest(part, here) if isinstance(here, Mapping) else None
             hint = f"did you mean {meant!r}?" if meant else "write it in the study"
             raise _no_number(study, key, f"the study has no {said} there; {hint}")
-        found.append(part)
-        here = there
-    return tuple(found)
+        path.append(part)
+        here = value
+    return tuple(path)
 
 
 def _has(here: Any, part: str | int) -> bool:

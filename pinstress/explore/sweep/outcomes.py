@@ -1,7 +1,7 @@
-"""Whether a pin of a design meets its factor, judged as a run judges it.
+"""Outcomes of the pins of a design against their factor, judged as a run judges them.
 
-One thing is left to a run: the range over the joint of a pin with prescribed loads, a beam in
-assumed lugs that takes longer than the pin itself. Such a pin is at most "safe as described".
+Only a run considers the range over the joint of a pin with prescribed loads, a beam in assumed lugs
+that takes longer than the pin itself. Such a pin is at most "safe as described".
 """
 
 from __future__ import annotations
@@ -27,46 +27,48 @@ AS_DESCRIBED = "as described"
 
 @dataclass(frozen=True)
 class DesignAnswer:
-    """What is kept of a solved pin in a case: no meshes, zones, edges or cells."""
+    """The remembered answer of a solved pin in a case: no meshes, zones, edges or cells."""
 
     peak: Maximum
     joint: JointResult | None
     landing: LandingRange | None
 
 
-def bare_answer(task: Task, found: Solution, loads: Mapping[str, CaseLoads]) -> DesignAnswer:
-    """Of one solution of a task."""
-    peak, joint = found.peak, found.joint
+def bare_answer(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> DesignAnswer:
+    """Return the remembered answer for one solution of a task."""
+    peak, joint = solution.peak, solution.joint
     joint = joint and replace(joint, along=None, bending_moments=())
     places = peak.places
     if places is not None and places.contact is not None:
         places = replace(places, contact=replace(places.contact, edges=(), bands=()))
     peak = replace(peak, history=(), singular_at=(), places=places)
-    return DesignAnswer(peak, joint, landing_range(loads, task, found))
+    return DesignAnswer(peak, joint, landing_range(loads, task, solution))
 
 
 def outcome_of(
     answer: DesignAnswer, task: Task, required: float | None, system: UnitSystem
 ) -> tuple[str, str]:
-    """The outcome, and in words, in the units of a study, what it depends on."""
+    """Return the outcome, and in words, in the units of a study, what it depends on."""
     strength, around = task.material.yield_strength, task.surroundings
     peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
     decided = None if permitted is None else meets_limit(peak, permitted)
-    found = in_words(decided, required)
+    outcome = in_words(decided, required)
     if not decided or strength is None or permitted is None or not peak.max_von_mises:
-        return found, ""
+        return outcome, ""
     judged = Judged(peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, True)
     contact = peak.places.contact if peak.places else None
     if on := dependences(judged, contact, answer.joint, answer.landing):
         units = Units(system.length, system.force, system.stress, system.time)
-        own = [in_units(d, system.factor) for d in on]
-        return DEPENDS, depends_words(own, units)
+        dependences_in_units = [in_units(d, system.factor) for d in on]
+        return DEPENDS, depends_words(dependences_in_units, units)
     joint_open = around is not None and around.pin is not None
-    return (f"{found} {AS_DESCRIBED}" if joint_open else found), ""
+    return (f"{outcome} {AS_DESCRIBED}" if joint_open else outcome), ""
 
 
 def stress_at(peak: Maximum) -> tuple[float | None, float | None, float | None, float | None]:
-    """The largest stress of surface and section and beneath contact, this with its error, Pa."""
+    """Return the largest stress of surface and section and beneath contact, this with its error,
+    Pa.
+    """
     places = peak.places
     section, contact = (places.section, places.contact) if places else (None, None)
     return (

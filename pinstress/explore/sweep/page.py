@@ -24,12 +24,15 @@ MAX_REASONS = 20
 
 
 def write_designs_page(table: pa.Table, path: Path) -> None:
-    """Write the page of a table of designs as `pinstress sweep` makes it. Raises: ValueError."""
+    """Write the page of a table of designs as `pinstress sweep` makes it.
+
+    Raises: ValueError.
+    """
     path.write_text(render_designs(designs_of(table)), encoding="utf-8", newline="\n")
 
 
 def render_designs(designs: Designs) -> str:
-    """The page as text."""
+    """Return the page as text."""
     template = environment().get_template("designs/page.html.j2")
     return template.render(
         study=designs.study,
@@ -43,7 +46,7 @@ def render_designs(designs: Designs) -> str:
 
 
 def summary(designs: Designs) -> str:
-    """How many designs there are, how many have results, what is required of them."""
+    """Return the numbers of designs and of those with results, and the requirement, in words."""
     count, failed = len(designs.numbers), int(designs.failed.sum())
     parts = [f"{count:,} {'design' if count == 1 else 'designs'}"]
     parts += [f"{count - failed:,} with results and {failed:,} without"] if failed else []
@@ -55,7 +58,7 @@ def summary(designs: Designs) -> str:
 
 
 def page_data(designs: Designs) -> dict[str, Any]:
-    """What the scripts read; templates/designs/model.js unpacks it."""
+    """Return the data for the scripts; templates/designs/model.js unpacks them."""
     return {
         "study": designs.study,
         "required": designs.required,
@@ -71,7 +74,7 @@ def page_data(designs: Designs) -> dict[str, Any]:
 
 
 def _packed(column: DesignColumn) -> dict[str, Any]:
-    """A column's values as they are; of texts the places in `names` from 1, 0 for none."""
+    """Return a column's values as they are; texts by their index in `names` from 1, 0 for none."""
     head = {"key": column.key, "title": column.title, "unit": column.unit}
     if column.names is None:
         return {**head, "values": packed(column.values, "<f8")}
@@ -80,7 +83,7 @@ def _packed(column: DesignColumn) -> dict[str, Any]:
 
 
 def column_grid(designs: Designs) -> Grid:
-    """What varies and what results, from where to where."""
+    """Return a table of what varies and what results, with the ranges."""
     columns = [(c, "parameter") for c in designs.parameters]
     columns += [(c, "result") for c in designs.results]
     body = [[c.title, kind, c.unit or DASH, *_ends(c), c.law or DASH] for c, kind in columns]
@@ -98,7 +101,9 @@ def _ends(column: DesignColumn) -> list[str]:
 
 
 def reason_grid(designs: Designs) -> Grid:
-    """Why designs have no results, the most frequent first: by code, with a reason as example."""
+    """Return a table of the reasons why designs have no results, the most frequent first: by code,
+    with an example.
+    """
     reason, code = designs.texts["reason"], designs.texts["code"]
     counts: Counter[str] = Counter()
     example: dict[str, str] = {}

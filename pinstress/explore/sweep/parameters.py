@@ -31,8 +31,10 @@ MIN_PROBABILITY_WITHIN_LIMITS = 1e-6  # of the probability: a law must not be cu
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that varies by a law (SI). steps: how many values a grid has of it. source: the law
-    as the study gives it, where that says more than the law itself.
+    """A number that varies by a law (SI).
+
+    steps: number of its values in a grid.
+    source: the law as the study gives it, where that says more than the law itself.
     """
 
     number: Number
@@ -42,30 +44,32 @@ class Parameter:
 
     @property
     def key(self) -> str:
-        """The number's."""
+        """Return the number's key."""
         return self.number.key
 
     @property
     def dimension(self) -> str:
-        """The number's; empty of a number without one."""
+        """Return the number's dimension; empty for a number without one."""
         return self.number.dimension
 
     @property
     def nominal(self) -> float:
-        """The number in the study, SI."""
+        """Return the number in the study, SI."""
         return self.number.nominal
 
     def quantile(self, u: Floats) -> Floats:
-        """Values (N,) in SI below which the number stays with probabilities u (N,)."""
+        """Return values (N,) in SI below which the number stays with probabilities u (N,)."""
         return self.law.quantile(u)
 
     def of_normal(self, z: Floats) -> Floats:
-        """Values (N,) in SI as likely to be exceeded as z (N,) by a standard normal variable."""
+        """Return values (N,) in SI as likely to be exceeded as z (N,) by a standard normal
+        variable.
+        """
         return self.law.of_normal(z)
 
     @property
     def law_text(self) -> str:
-        """The law in words, in the number's unit."""
+        """Describe the law in words, in the number's unit."""
 
         def show(value: float) -> str:
             return f"{value / self.number.factor:.6g} {self.number.unit}".rstrip()
@@ -75,8 +79,11 @@ class Parameter:
 
 
 def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
-    """The parameters of [vary] in their order. sampled: whether it must also say which designs to
-    make of them. Raises: InputError with all that is wrong, also for a study without [vary].
+    """Return the parameters of [vary] in their order.
+
+    sampled: whether [vary] must also state which designs to sample.
+
+    Raises: InputError with all that is wrong, also for a study without [vary].
     """
     vary = study.table.vary
     if vary is None:
@@ -86,20 +93,23 @@ def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
             code="no-vary",
         )
     wrong = Errors(study.path)
-    found = [
+    attempts = [
         wrong.attempt(partial(_parameter, study, key, table))
         for key, table in vary.parameters.items()
     ]
-    made = tuple(p for p in found if p is not None)
-    wrong.attempt(partial(_require_different, study, made))
+    parameters = tuple(p for p in attempts if p is not None)
+    wrong.attempt(partial(_require_different, study, parameters))
     wrong.tell()
     if sampled and vary.sample == "grid":
-        _require_grid(study, made)
-    return made
+        _require_grid(study, parameters)
+    return parameters
 
 
 def require_laws(study: Study) -> None:
-    """Raises: InputError for numbers that vary without a law, for which there is no probability."""
+    """Check that all numbers that vary have a law.
+
+    Raises: InputError for numbers without a law, for which there is no probability.
+    """
     for key, table in study.table.vary.parameters.items() if study.table.vary else ():
         if table.from_ is not None:
             raise study.error(
@@ -110,9 +120,9 @@ def require_laws(study: Study) -> None:
             )
 
 
-def _require_different(study: Study, made: Iterable[Parameter]) -> None:
+def _require_different(study: Study, parameters: Iterable[Parameter]) -> None:
     known: dict[Path, str] = {}
-    for parameter, path in ((p, path) for p in made for path in p.number.paths):
+    for parameter, path in ((p, path) for p in parameters for path in p.number.paths):
         other = known.setdefault(path, parameter.key)
         if other != parameter.key:
             raise study.error(
@@ -122,12 +132,15 @@ def _require_different(study: Study, made: Iterable[Parameter]) -> None:
             )
 
 
-def _require_grid(study: Study, made: Iterable[Parameter]) -> None:
-    """Raises: InputError for a grid without steps or with too many."""
+def _require_grid(study: Study, parameters: Iterable[Parameter]) -> None:
+    """Check a grid.
+
+    Raises: InputError for a grid without steps or with too many.
+    """
     from pinstress.study.schema.vary import MAX_DESIGNS
 
     count = 1
-    for parameter in made:
+    for parameter in parameters:
         if parameter.steps is None:
             raise study.error(
                 f"vary.parameters.{parameter.key}: a grid needs steps, the number of values; or "

@@ -1,5 +1,5 @@
-"""The designs that are solved so far, each batch in a file of its own, so that a sweep that is
-interrupted, in whatever way, loses no more than the batches in work.
+"""Storage of solved designs, each batch in a file of its own, so that a sweep that is interrupted,
+in whatever way, loses no more than the batches in work.
 """
 
 from __future__ import annotations
@@ -29,8 +29,12 @@ CONTINUABLE_SAMPLES = "sobol", "random"  # samples of which more begin with the 
 
 @dataclass(frozen=True)
 class Identity:
-    """What is swept: a hash of all on which numbers depend; of all but the number of designs; that
-    number; and the kind of sample.
+    """The identity of a sweep.
+
+    sweep: a hash of all on which numbers depend.
+    but_count: a hash of all but the number of designs.
+    count: that number.
+    sample: the kind of sample.
     """
 
     sweep: str
@@ -40,53 +44,59 @@ class Identity:
 
 
 class BatchFolder:
-    """Files in a folder `parts` of an output folder, of one sweep. sweep: its identity."""
+    """Files of one sweep in a folder `parts` of an output folder.
+
+    sweep: its identity.
+    """
 
     def __init__(self, directory: Path, identity: Identity) -> None:
         self.folder, self.identity = directory / PARTS_FOLDER, identity
         self.sweep = identity.sweep
 
     def begin(self) -> None:
-        """Make the folder, with nothing in it but what is swept."""
+        """Make the folder, with only the identity of the sweep in it."""
         self.folder.mkdir(parents=True, exist_ok=True)
-        mine = self.identity
-        stated = {"sweep": mine.sweep, "but_count": mine.but_count, "count": mine.count}
+        identity = self.identity
+        stated = {"sweep": identity.sweep, "but_count": identity.but_count, "count": identity.count}
         text = json.dumps({"schema": SWEEP_SCHEMA, **stated}, indent=1) + "\n"
         write_inside(self.folder, IDENTITY_FILE, text.encode())
 
     def there(self) -> bool:
-        """Whether a sweep was begun here."""
+        """Return whether a sweep was begun here."""
         return stated(self.folder) is not None
 
     @property
     def finished(self) -> bool:
-        """Whether the folder has this sweep's whole table."""
+        """Return whether the folder has this sweep's whole table."""
         return not self.there() and stated(self.folder.parent) == self.sweep
 
     def require_same(self) -> None:
-        """Raises: InputError where the parts are of another sweep."""
-        found, mine, before = self._stated, self.identity, self.count_before
-        if not found:
+        """Check that the parts are those of this sweep.
+
+        Raises: InputError where they are of another sweep.
+        """
+        known, ours, before = self._stated, self.identity, self.count_before
+        if not known:
             raise InputError(
                 f"--resume: {self.folder.parent} has no sweep to go on with; leave out --resume",
                 code="nothing-to-resume",
             )
-        if before is not None and mine.sample not in CONTINUABLE_SAMPLES:
+        if before is not None and ours.sample not in CONTINUABLE_SAMPLES:
             raise InputError(
                 f"--resume: the sweep in {self.folder.parent} has count = {before}, the study "
-                f"{mine.count}: a {mine.sample} sample of another count has other designs, so that "
+                f"{ours.count}: a {ours.sample} sample of another count has other designs, so that "
                 f"only {' and '.join(CONTINUABLE_SAMPLES)} ones can be continued; choose another "
                 f"folder",
                 code="other-count",
             )
-        if before is not None and before > mine.count:
+        if before is not None and before > ours.count:
             raise InputError(
                 f"--resume: the sweep in {self.folder.parent} has count = {before}, more than the "
-                f"study's {mine.count}: it can only be continued, to more designs; choose another "
+                f"study's {ours.count}: it can only be continued, to more designs; choose another "
                 "folder",
                 code="fewer-designs",
             )
-        if found.get("sweep") != self.sweep and before is None:
+        if known.get("sweep") != self.sweep and before is None:
             raise InputError(
                 f"--resume: the sweep in {self.folder.parent} is of another study, other [vary], "
                 "pins or cases, other tables, or of another version of pinstress; go on with "
@@ -96,19 +106,24 @@ class BatchFolder:
 
     @property
     def _stated(self) -> dict[str, Any]:
-        """Of the sweep that is here."""
+        """Return the stated identity of the sweep that is here."""
         return _read(self.folder) or _read(self.folder.parent)
 
     @property
     def count_before(self) -> int | None:
-        """Of a sweep that is here and differs in nothing but the number of its designs: this."""
-        found, mine = self._stated, self.identity
-        other = found.get("sweep") != mine.sweep and found.get("but_count") == mine.but_count
-        return int(found["count"]) if other else None
+        """Return the number of designs of a sweep that is here and differs only in that number;
+        else None.
+        """
+        known, identity = self._stated, self.identity
+        other = (
+            known.get("sweep") != identity.sweep and known.get("but_count") == identity.but_count
+        )
+        return int(known["count"]) if other else None
 
     def continue_with(self, schema: pa.Schema) -> None:
-        """Take over the designs of a sweep with fewer: its batches, or its whole table. Killed
-        meanwhile it is taken over again.
+        """Take over the designs of a sweep with fewer: its batches, or its whole table.
+
+        A sweep that is killed inside is taken over again.
         """
         from pyarrow import parquet
 
@@ -130,28 +145,30 @@ class BatchFolder:
         write_table(table, self.folder / f"{number:08d}{PART_SUFFIX}")
 
     def read(self, schema: pa.Schema) -> list[pa.Table]:
-        """All batches; a file that is damaged, or of other columns, is removed and solved anew."""
+        """Return all batches; a file that is damaged, or of other columns, is removed and solved
+        anew.
+        """
         from pyarrow import ArrowException, parquet
 
-        found = []
+        tables = []
         for path in sorted(self.folder.glob(f"*{PART_SUFFIX}")):
             try:
                 table = parquet.read_table(path)
             except (ArrowException, OSError):
                 table = None
             if table is not None and table.schema.equals(schema, check_metadata=True):
-                found.append(table)
+                tables.append(table)
             else:
                 path.unlink(missing_ok=True)
-        return found
+        return tables
 
     @property
     def count(self) -> int:
-        """How many batches there are."""
+        """Return the number of batches."""
         return len(list(self.folder.glob(f"*{PART_SUFFIX}")))
 
     def finish(self) -> None:
-        """When the whole table is written; what was swept stays beside that."""
+        """Remove the parts when the whole table is written; the identity stays beside that."""
         (self.folder / IDENTITY_FILE).replace(self.folder.parent / IDENTITY_FILE)
         self.remove()
 
@@ -163,7 +180,7 @@ class BatchFolder:
 
 
 def is_ours(name: str) -> bool:
-    """Whether an entry of an output folder is of its parts."""
+    """Return whether an entry of an output folder is one of its parts."""
     if name == f"{PARTS_FOLDER}/":
         return True
     folder, _, file = name.partition("/")
@@ -175,7 +192,11 @@ def is_ours(name: str) -> bool:
 
 
 def identity(study: Study, *chosen: object) -> Identity:
-    """Of a study; the hashes are of all on which a sweep's numbers depend. chosen: pins, cases."""
+    """Return the identity of the sweep of a study; the hashes include all on which its numbers
+    depend.
+
+    chosen: pins, cases.
+    """
     import tomlkit
 
     from pinstress.analysis.cache import program
@@ -192,16 +213,16 @@ def identity(study: Study, *chosen: object) -> Identity:
 
 
 def stated(folder: Path) -> str | None:
-    """The identity of the sweep whose parts a folder has."""
-    found: str | None = _read(folder).get("sweep")
-    return found
+    """Return the identity of the sweep whose parts a folder has."""
+    sweep: str | None = _read(folder).get("sweep")
+    return sweep
 
 
 def _read(folder: Path) -> dict[str, Any]:
-    """What a folder states of its sweep; empty if nothing."""
+    """Return a folder's statement of its sweep; empty if there is none."""
     try:
-        found: Any = json.loads((folder / IDENTITY_FILE).read_text(encoding="utf-8"))
-        ours = found["schema"] == SWEEP_SCHEMA and isinstance(found["sweep"], str)
-        return dict(found) if ours else {}
+        content: Any = json.loads((folder / IDENTITY_FILE).read_text(encoding="utf-8"))
+        ours = content["schema"] == SWEEP_SCHEMA and isinstance(content["sweep"], str)
+        return dict(content) if ours else {}
     except (OSError, ValueError, KeyError, TypeError):
         return {}

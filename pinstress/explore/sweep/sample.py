@@ -19,7 +19,10 @@ MIN_PROBABILITY = 2.0**-53
 def designs_of(
     vary: VaryTable, parameters: Sequence[Parameter], correlations: Floats | None = None
 ) -> Floats:
-    """Values (N, p) in SI, a row for each design. correlations: (p, p) of the normal variables."""
+    """Return values (N, p) in SI, a row for each design.
+
+    correlations: (p, p) of the normal variables.
+    """
     if vary.sample == "grid":
         axes = np.meshgrid(*map(_on_grid, parameters), indexing="ij")
         return np.stack([axis.ravel() for axis in axes], axis=1)
@@ -28,16 +31,17 @@ def designs_of(
         return np.stack([p.quantile(u[:, k]) for k, p in enumerate(parameters)], axis=1)
     from scipy.special import ndtri
 
-    own = np.any(correlations != np.eye(len(parameters)), axis=0)
+    correlated = np.any(correlations != np.eye(len(parameters)), axis=0)
     z = ndtri(u) @ root_of(correlations).T
     columns = [
-        p.of_normal(z[:, k]) if own[k] else p.quantile(u[:, k]) for k, p in enumerate(parameters)
+        p.of_normal(z[:, k]) if correlated[k] else p.quantile(u[:, k])
+        for k, p in enumerate(parameters)
     ]
     return np.stack(columns, axis=1)
 
 
 def _on_grid(parameter: Parameter) -> Floats:
-    """Values of a parameter: of a law the middles of equally likely parts."""
+    """Return values of a parameter on a grid; a law has the middles of equally likely parts."""
     steps = parameter.steps or 1
     if isinstance(parameter.law, Uniform):
         if steps == 1:
@@ -47,7 +51,7 @@ def _on_grid(parameter: Parameter) -> Floats:
 
 
 def _points(vary: VaryTable, count: int) -> Floats:
-    """Points (N, p) of the unit cube."""
+    """Return points (N, p) of the unit cube."""
     from scipy.stats import qmc
 
     if vary.sample == "random":
@@ -57,5 +61,5 @@ def _points(vary: VaryTable, count: int) -> Floats:
         warnings.catch_warnings()
     ):  # of a count that is no power of 2, which docs/sweep.md explains
         warnings.simplefilter("ignore", UserWarning)
-        found = engine(count, rng=np.random.default_rng(vary.seed)).random(vary.count)
-    return np.asarray(found, np.float64)
+        points = engine(count, rng=np.random.default_rng(vary.seed)).random(vary.count)
+    return np.asarray(points, np.float64)

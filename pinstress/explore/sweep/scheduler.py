@@ -1,7 +1,7 @@
-"""Batches solved on the user's own cluster: a scheduler of dask and its workers.
+"""Batches solved on the user's own cluster: a Dask scheduler and its workers.
 
-Before a worker's rows are kept, it has said that it has the same versions as this process, and the
-files that the study names are sent to it: what lies at the same paths there is not read.
+Before a worker's rows are kept, it has reported the same versions as this process, and the files
+that the study names are sent to it: files at the same paths there are not read.
 """
 
 from __future__ import annotations
@@ -45,7 +45,9 @@ Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
 
 @dataclass(frozen=True)
 class WorkerAnswer:
-    """Of a worker: its address and versions; what was solved, None if it first needs the files."""
+    """The answer of a worker: its address and versions; the rows, None if it first needs the
+    files.
+    """
 
     worker: str
     versions: dict[str, str]
@@ -62,11 +64,14 @@ def solve_on(
     work_of: Callable[[int], BatchQueue],
     tell: Callable[[str], None],
 ) -> None:
-    """Solve batches on the cluster whose scheduler has an address. files: those that the study
-    names. work_of: what is to be solved by so many workers. tell: called with what is odd.
+    """Solve batches on the cluster whose scheduler has an address.
+
+    files: those that the study names.
+    work_of: returns the work for a number of workers.
+    tell: called with warnings.
 
     Raises: InputError where there is no scheduler, no worker, or one with other versions, also
-    later; what was kept by then is kept.
+    later; batches kept by then stay.
     """
     contents = _read(files)
     problem = replace(problem, files=_hash(contents))
@@ -88,7 +93,7 @@ def solve_on(
                 return
             time.sleep(BATCH_POLL_INTERVAL)
             cluster.look()
-            for future in [each for each in running if each.status not in WAITING_STATES]:
+            for future in [one for one in running if one.status not in WAITING_STATES]:
                 outcome = _outcome(cluster, future)
                 if outcome is None:
                     continue  # its worker has gone with it: it is solved again
@@ -103,7 +108,7 @@ def solve_on(
 
 
 def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch) -> WorkerAnswer:
-    """In a worker: solve a batch, with the contents of the study's files, if they are given or were
+    """Solve a batch in a worker, with the contents of the study's files, if they are given or were
     before.
     """
     if contents is not None:
@@ -138,13 +143,13 @@ def _hash(contents: Contents) -> str:
 
 
 def _outcome(cluster: Cluster, future: Future[WorkerAnswer]) -> WorkerAnswer | KilledWorker | None:
-    """Of a batch that is done; None where its rows went with the worker that had them.
+    """Return the answer for a batch that is done; None where its rows were lost with their worker.
 
     Raises: InputError where the connection is lost, or a worker cannot do it.
     """
     if future.status == "finished":
-        found: WorkerAnswer | None = cluster.rows(future)
-        return found
+        answer: WorkerAnswer | None = cluster.rows(future)
+        return answer
     if future.status != "error":  # cancelled: the scheduler has ended
         raise lost_connection(cluster.address)
     error: Any = future.exception(timeout=cluster.patience)

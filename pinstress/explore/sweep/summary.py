@@ -1,4 +1,4 @@
-"""What a sweep says, on the terminal."""
+"""The summary of a sweep on the terminal."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ def summary(table: pa.Table, console: Console) -> None:
     required = stated.get("required_safety_factor")
     short: list[str] = []
     for pin in dict.fromkeys(row["pin"] for row in rows):
-        mine = [row for row in rows if row["pin"] == pin]
-        grid.add_row(pin, *_range(mine))
+        of_pin = [row for row in rows if row["pin"] == pin]
+        grid.add_row(pin, *_range(of_pin))
         if required is not None:
-            below = {r["design"] for r in mine if (r["safety_factor"] or required) < required}
-            solved = len({r["design"] for r in mine if r["verdict"] not in UNSOLVED_VERDICTS})
+            below = {r["design"] for r in of_pin if (r["safety_factor"] or required) < required}
+            solved = len({r["design"] for r in of_pin if r["verdict"] not in UNSOLVED_VERDICTS})
             of = f" of {solved:,} solved" if solved < len(designs) else ""
             short.append(f"{pin} {len(below):,}{of}")
     console.print(grid)
@@ -68,23 +68,23 @@ def summary(table: pa.Table, console: Console) -> None:
 
 
 def _reasons(rows: list[dict[str, Any]]) -> list[str]:
-    """The commonest reasons of failure, by code, each with an example."""
+    """Return the commonest reasons of failure, by code, each with an example."""
     failed = [row for row in rows if row["verdict"] == "failed"]
-    found = Counter(row["code"] for row in failed)
+    counts = Counter(row["code"] for row in failed)
     lines = []
-    for code, _ in found.most_common(MAX_PRINTED_REASONS):
-        mine = [row for row in failed if row["code"] == code]
-        many = len({row["design"] for row in mine})
-        text = mine[0]["reason"]
+    for code, _ in counts.most_common(MAX_PRINTED_REASONS):
+        examples = [row for row in failed if row["code"] == code]
+        many = len({row["design"] for row in examples})
+        text = examples[0]["reason"]
         text = text if len(text) <= MAX_REASON_LENGTH else text[: MAX_REASON_LENGTH - 1] + "…"
-        lines.append(f"  {many:,} {code}: for instance design {mine[0]['design']}, {text}")
-    if len(found) > MAX_PRINTED_REASONS:
-        lines.append(f"  and {len(found) - MAX_PRINTED_REASONS} other reasons")
+        lines.append(f"  {many:,} {code}: for instance design {examples[0]['design']}, {text}")
+    if len(counts) > MAX_PRINTED_REASONS:
+        lines.append(f"  and {len(counts) - MAX_PRINTED_REASONS} other reasons")
     return lines
 
 
 def _range(rows: list[dict[str, Any]]) -> tuple[str, str, str, str]:
-    """Of a pin: its factors, the worst and best design by their worst case, and its maximum."""
+    """Return a pin's factors, the worst and best design by their worst case, and its maximum."""
     solved = [row for row in rows if row["max_von_mises"]]
     if not solved:
         return DASH, DASH, DASH, DASH

@@ -29,19 +29,19 @@ log = logging.getLogger(__name__)
 
 
 class Store(Protocol):
-    """Where batches are kept."""
+    """A store in which batches are kept."""
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Return the number of batches."""
         ...
 
     def write(self, table: pa.Table) -> None:
-        """Keep one."""
+        """Keep a batch."""
         ...
 
     def read(self, schema: pa.Schema) -> list[pa.Table]:
-        """All that are kept."""
+        """Return all batches that are kept."""
         ...
 
 
@@ -53,21 +53,21 @@ class MemoryStore:
 
     @property
     def count(self) -> int:
-        """As that of Store."""
+        """Return the number of batches."""
         return len(self._tables)
 
     def write(self, table: pa.Table) -> None:
-        """As that of Store."""
+        """Keep a batch."""
         self._tables.append(table)
 
     def read(self, schema: pa.Schema) -> list[pa.Table]:
-        """As that of Store."""
+        """Return all batches that are kept."""
         return self._tables
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is swept: parameters, and the designs' values (N, p) in SI."""
+    """A planned sweep: parameters, and the designs' values (N, p) in SI."""
 
     study: Study
     parameters: tuple[Parameter, ...]
@@ -78,7 +78,7 @@ class Sweep:
 def planned(
     study: Study, pins: Sequence[str] | None = None, cases: Sequence[str] | None = None
 ) -> Sweep:
-    """The designs of a study with [vary]; the study itself is read and found usable.
+    """Plan the designs of a study with [vary]; the study itself is read and found usable.
 
     Raises: InputError.
     """
@@ -99,10 +99,12 @@ def solved(
     report: Report = lambda _, __: None,
     tell: Callable[[str], None] = log.warning,
 ) -> pa.Table:
-    """The table of all designs, of which those in the store are not solved again. jobs: processes
-    on this machine, by default as many as there are cores; scheduler: address of a Dask cluster
-    instead. report: called with the number of designs that are solved, and of all. tell: called
-    with what is odd about a cluster.
+    """Return the table of all designs; those in the store are not solved again.
+
+    jobs: processes on this machine, by default as many as there are cores.
+    scheduler: address of a Dask cluster instead.
+    report: called with the number of designs that are solved, and of all.
+    tell: called with warnings about a cluster.
 
     Raises: InputError.
     """
@@ -116,10 +118,10 @@ def solved(
     total, count = len(sweep.values), len(done)
     report(count, total)
 
-    def keep(found: SolvedBatch) -> None:
+    def keep(batch: SolvedBatch) -> None:
         nonlocal count
-        each = zip(found.batch.designs, found.batch.values, found.rows, strict=True)
-        rising = sorted(each, key=lambda design: design[0])
+        designs = zip(batch.batch.designs, batch.batch.values, batch.rows, strict=True)
+        rising = sorted(designs, key=lambda design: design[0])
         store.write(
             table_of(sweep.study, sweep.parameters, [(i + 1, v, rows) for i, v, rows in rising])
         )
@@ -156,11 +158,12 @@ def sweep(
     jobs: int | None = 1,
     scheduler: str | None = None,
 ) -> pa.Table:
-    """Solve the designs of a study's [vary]; a table with a row for each design, pin and case, as
-    designs.parquet has it (docs/sweep.md).
+    """Solve the designs of a study's [vary]; return a table with a row for each design, pin and
+    case, as in designs.parquet (docs/sweep.md).
 
-    pins, cases: names; all by default. jobs: number of processes (None: number of cores).
-    scheduler: address of a scheduler of dask instead.
+    pins, cases: names; all by default.
+    jobs: number of processes (None: number of cores).
+    scheduler: address of a Dask scheduler instead.
 
     Raises: InputError for bad input. A design that fails is a row with its reason.
     """

@@ -1,7 +1,7 @@
-"""The table of a sweep as Arrow and Parquet have it, in the study's units.
+"""The table of a sweep in Arrow and Parquet, in the study's units.
 
-A row for each design, pin and case. The file has no times, versions of ours or names of machines:
-the same study gives the same bytes.
+It has a row for each design, pin and case. The file has no times, versions of ours or names of
+machines: the same study gives the same bytes.
 """
 
 from __future__ import annotations
@@ -44,7 +44,9 @@ def table_of(
     parameters: Sequence[Parameter],
     designs: Sequence[tuple[int, Sequence[float], Sequence[DesignRow]]],
 ) -> pa.Table:
-    """The table of some designs: of each its number from 1, its values (p,) in SI and its rows."""
+    """Return the table of some designs, given by their numbers from 1, values (p,) in SI and
+    rows.
+    """
     import pyarrow as pa
 
     schema = _schema(study, parameters)
@@ -68,7 +70,7 @@ def table_of(
 
 
 def assembled(parts: Sequence[pa.Table]) -> pa.Table:
-    """All parts in the order of the designs."""
+    """Join all parts in the order of the designs."""
     import pyarrow as pa
 
     whole = pa.concat_tables(parts)
@@ -82,7 +84,10 @@ def assembled(parts: Sequence[pa.Table]) -> pa.Table:
 
 
 def write_table(table: pa.Table, path: Path) -> None:
-    """Write a table so that its file is complete or absent. Raises: OSError, also for a link."""
+    """Write a table so that its file is complete or absent.
+
+    Raises: OSError, also for a link.
+    """
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -92,7 +97,10 @@ def write_table(table: pa.Table, path: Path) -> None:
 
 
 def read_table(path: Path) -> pa.Table:
-    """What was written. Raises: InputError where it cannot be read."""
+    """Read a table that was written.
+
+    Raises: InputError where it cannot be read.
+    """
     from pyarrow import ArrowException, parquet
 
     try:
@@ -106,10 +114,12 @@ def read_table(path: Path) -> pa.Table:
 
 
 def facts(table: pa.Table) -> dict[str, Any]:
-    """The study, hash, units and parameters that a table of a sweep names; empty of any other."""
+    """Return the study, hash, units and parameters that a table of a sweep names; empty for any
+    other.
+    """
     stated = (table.schema.metadata or {}).get(METADATA_KEY)
-    found: dict[str, Any] = json.loads(stated) if stated else {}
-    return found
+    metadata: dict[str, Any] = json.loads(stated) if stated else {}
+    return metadata
 
 
 def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:

@@ -1,6 +1,7 @@
-"""The versions on which numbers depend, told by a Python that may have no pinstress.
+"""The versions on which numbers depend, reported by a Python that may have no pinstress.
 
-Its text is sent to other computers and run there: it imports nothing but the standard library.
+The text of this module is sent to other computers and run there: it imports nothing but the
+standard library.
 """
 
 from __future__ import annotations
@@ -19,28 +20,30 @@ SOURCE_HASH_DIGITS = 8  # digits of the hash of a source
 
 
 def versions(packages: Sequence[str]) -> dict[str, str]:
-    """The versions of Python, of this program with the start of the hash of its source, and of
-    packages, MISSING_VERSION for what cannot be imported; and which code a system makes the
-    program take (pinbase.platform), whose numbers differ in their last digits.
+    """Return the versions of Python, of this program with the start of the hash of its source, and
+    of packages, MISSING_VERSION for one that cannot be imported.
+
+    "code for" names the code that a system makes the program take (pinbase.platform); results of
+    the two differ in their last digits.
     """
     portable = sys.platform != "linux" or os.environ.get("PINSTRESS_PORTABLE") == "1"
-    own = {
+    known = {
         "Python": f"{sys.version_info.major}.{sys.version_info.minor}",
         "code for": "all systems" if portable else "Linux",
         "pinstress": _ours(),
     }
-    return own | {name: _version(name) for name in packages}
+    return known | {name: _version(name) for name in packages}
 
 
 def _ours() -> str:
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for name in OWN_PACKAGES:
         spec = util.find_spec(name)
         if spec is None or not spec.submodule_search_locations:
             return MISSING_VERSION
         for path, content in _sources(Path(next(iter(spec.submodule_search_locations)))):
-            found.update(f"{name}/{path} {len(content)}\n".encode() + content)
-    return f"{_version('pinstress')}, source {found.hexdigest()[:SOURCE_HASH_DIGITS]}"
+            digest.update(f"{name}/{path} {len(content)}\n".encode() + content)
+    return f"{_version('pinstress')}, source {digest.hexdigest()[:SOURCE_HASH_DIGITS]}"
 
 
 def _sources(root: Path) -> Iterator[tuple[str, bytes]]:

@@ -1,4 +1,6 @@
-"""Processes of this machine that solve batches: this one, or several over pipes. No network."""
+"""Processes of this machine that solve batches: this one, or several over pipes, without a
+network.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,9 @@ class BatchQueue:
 
     Such a batch is halved until the design is known; that one is solved alone, since the process
     may have ended by another one's need of memory, and given up if it ends its process again.
-    keep: called with each batch as it ends, in any order. lost: the rows of a design given up.
+
+    keep: called with each batch as it ends, in any order.
+    lost: the rows of a design given up.
     """
 
     def __init__(self, batches: Batches, keep: Keep, lost: Lost) -> None:
@@ -32,27 +36,29 @@ class BatchQueue:
         self._in_work = 0
 
     def take(self) -> Batch | None:
-        """The next to be solved; None while there is none, or one that must be solved alone."""
+        """Return the next batch to be solved; None while there is none, or one that must be solved
+        alone.
+        """
         if self._again:
-            found = self._again.pop()
+            batch = self._again.pop()
         elif self._batches.left:
-            found = self._batches.next()
+            batch = self._batches.next()
         elif self._suspects and not self._in_work:
-            found = self._suspects.pop()
-            self._alone.add(found.designs)
+            batch = self._suspects.pop()
+            self._alone.add(batch.designs)
         else:
             return None
         self._in_work += 1
-        return found
+        return batch
 
     def done(self, done: SolvedBatch) -> None:
-        """Keep what was solved."""
+        """Keep a solved batch."""
         self._in_work -= 1
         self._batches.learn(done)
         self._keep(done)
 
     def died(self, batch: Batch) -> None:
-        """Take note that its process ended by itself."""
+        """Record that the process of a batch ended by itself."""
         self._in_work -= 1
         if len(batch.designs) > 1:
             self._again += batch.halves()
@@ -73,8 +79,9 @@ def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
 def solve_side_by_side(
     problem: DesignProblem, work: BatchQueue, jobs: int, tick: Callable[[], None] = lambda: None
 ) -> None:
-    """Solve batches in `jobs` processes of this machine, which keep what they have meshed. tick:
-    called several times in a second.
+    """Solve batches in `jobs` processes of this machine, which keep the meshes that they made.
+
+    tick: called several times in a second.
     """
     hold_threads()
     preload(*WORKER_MODULES)
@@ -97,7 +104,10 @@ def _solve(problem: DesignProblem, batch: Batch, _: Tell) -> SolvedBatch:
 
 
 def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> SolvedBatch:
-    """The rows of designs whose process died. table: pin and case of each row."""
+    """Return the rows of designs whose process died.
+
+    table: pin and case of each row.
+    """
     row = partial(
         DesignRow,
         max_von_mises=None,

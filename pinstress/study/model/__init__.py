@@ -1,1 +1,1 @@
-"""From a study to the objects of the rooms: linkage, pins, cases, tasks."""
+"""Linkage, pins, cases and tasks, built from a study."""

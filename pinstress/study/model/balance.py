@@ -1,4 +1,4 @@
-"""What the loads of unconstrained pins leave over, in words (the rule: fea.core.equilibrium)."""
+"""Messages on unbalanced loads of unconstrained pins (the rule: fea.core.equilibrium)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MIN_REPORTED_SHARE = 1e-4  # share from which a part is reported beside a larger
 
 
 def unheld(study: Study, task: Task) -> list[str]:
-    """Why a pin would not be solved, by case."""
+    """Return why a pin could not be solved, by case."""
     how = "not held by its lugs" if task.lugs else "unconstrained"
     return [
         f"pin {task.pin.name} is {how} in case {case.case}: {balance.refusal}"
@@ -33,21 +33,23 @@ def unheld(study: Study, task: Task) -> list[str]:
 
 
 def given_warnings(study: Study) -> list[str]:
-    """A warning for every pin and case whose loads leave over more than round-off, but no more than
-    bands share: of given forces on pins with a profile, which take no time to find.
+    """Return a warning for every pin and case whose given loads are slightly out of balance.
+
+    Slightly is more than round-off, and no more than bands share. Only pins with a profile are
+    checked, since they take no time.
     """
     given = {name: x for name, x in study.table.case.items() if isinstance(x, GivenCase)}
     return [text for name in given for text in _quietly(partial(_of_given, study, name))]
 
 
 def other_warnings(study: Study, todo: list[Task]) -> list[str]:
-    """The same of all else, from what is to be solved."""
-    found = ((task.pin.name, *each) for task in todo for each in _reacted(study, task).items())
-    return [text for pin, case, text in found if not _stated(study, pin, case)]
+    """Return these warnings for all other loads, from the tasks to solve."""
+    rows = ((task.pin.name, *item) for task in todo for item in _reacted(study, task).items())
+    return [text for pin, case, text in rows if not _stated(study, pin, case)]
 
 
 def _stated(study: Study, pin: str, case: str) -> bool:
-    """Whether `given_warnings` sees to a pin in a case."""
+    """Return whether `given_warnings` covers a pin in a case."""
     return isinstance(study.table.case[case], GivenCase) and study.table.pin[pin].geometry is None
 
 
@@ -73,7 +75,9 @@ def _of_given(study: Study, name: str) -> list[str]:
 
 
 def _of_pin(study: Study, name: str, case: str, loads: CaseLoads, loaded: set[str]) -> list[str]:
-    """Nothing of a pin that the case does not load, of which others would say so."""
+    """Return the warnings for one pin; none where the case does not load it, which others
+    report.
+    """
     pin = pin_of(study, name)
     if not loaded & {*pin.connections}:
         return []
@@ -98,11 +102,11 @@ def _balances(study: Study, task: Task) -> list[tuple[PinLoads, Balance]]:
 
 
 def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
-    """What is left over of a case, and what would close it."""
+    """Return a sentence on the residual loads of a case, and on the loads that would close them."""
     (force, couple, torque), size = balance.shares, study.system.factor
     n, nm = study.system.force, study.system.unit("energy")
     by = "of the largest force times the length of the pin"
-    found = (
+    residuals = (
         (force, f"a force of {_shown(balance.left[0] / size('force'))} {n} ({force:.1%} of the "
          "largest)"),
         (couple, f"a couple across the axis of {_shown(balance.left[1] / size('moment'))} {nm} "
@@ -110,7 +114,7 @@ def _shared(study: Study, task: Task, case: PinLoads, balance: Balance) -> str:
         (torque, f"a torque of {_shown(balance.left[2] / size('moment'))} {nm} ({torque:.1%} of "
          "the largest)"),
     )  # fmt: skip
-    parts = [text for share, text in found if share > MIN_REPORTED_SHARE]
+    parts = [text for share, text in residuals if share > MIN_REPORTED_SHARE]
     where = "links" if task.lugs else "bands"
     return (
         f"case.{case.case}: the loads on pin {task.pin.name} are not quite in equilibrium"
@@ -129,7 +133,7 @@ def _when(case: PinLoads, balance: Balance) -> str:
 
 
 def _closed_by(study: Study, pin: PinLike, case: PinLoads, balance: Balance) -> str:
-    """What would put the forces in balance, of a case that states them."""
+    """Return the forces that would be in balance, for a case that states its forces."""
     force, couple, _ = balance.shares
     if not isinstance(study.table.case[case.case], GivenCase) or max(force, couple) == 0.0:
         return ""

@@ -1,4 +1,4 @@
-"""From a study's cases to the reactions on its pins."""
+"""Reactions on pins, from the cases of a study."""
 
 from __future__ import annotations
 
@@ -64,14 +64,19 @@ from pinstress.study.schema.landing import DropCase, GroundCase
 
 @dataclass(frozen=True)
 class CaseLoads:
-    """The reactions of one case, with the dynamics behind them where a mechanism made them.
+    """The reactions of one case, with the dynamics behind them where a mechanism gives them.
 
-    note: how the loads came about. at: reactions at other times (T,) s of the same motion. range:
-    over the ranges of an impulse. impulse: of the only one in the case. leg: of a spatial leg.
-    solve: the dynamics at other times (T,) s.
-    peaks: the largest forces over the time. over: other results of the whole motion;
-    frictionless: the same if nothing rubbed, where something does. moving:
-    what acts on the pins at any time. landing: of a drop.
+    note: how the loads came about.
+    at: reactions at other times (T,) s of the same motion.
+    range: reactions over the ranges of an impulse.
+    impulse: reactions of the only impulse in the case.
+    leg: dynamics of a spatial leg.
+    solve: dynamics at other times (T,) s.
+    peaks: the largest forces over the time.
+    over: other results of the whole motion.
+    frictionless: the same without friction, where there is any.
+    moving: the loads on the pins at any time.
+    landing: course of a drop.
     """
 
     reactions: Reactions
@@ -90,8 +95,9 @@ class CaseLoads:
 
 
 def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
-    """The same case at one time (s), whether or not that is a sample; None outside its time, and
-    between the instants of a table.
+    """Return the case at one time (s), whether or not that is a sample.
+
+    None outside the case's time, and between the instants of a table.
     """
     times = case.reactions.times
     if times is None:
@@ -118,7 +124,9 @@ def at_time(case: CaseLoads, time: float) -> CaseLoads | None:
 def case_loads(
     study: Study, name: str, mechanism: Linkage | None, extremes: bool = True
 ) -> CaseLoads:
-    """Reactions of a case. extremes: whether with those of a whole motion.
+    """Return the reactions of a case.
+
+    extremes: whether with those of a whole motion.
 
     Raises: InputError for mistakes in the study or its tables.
     """
@@ -159,10 +167,10 @@ def _leg(study: Study, name: str, case: LegCase) -> CaseLoads:
     at = partial(_hinge, study, name)
     times = instants(study, case)
     note = f"Axes of the hinge: {LEG_AXES}. The moment about z is the actuator's, not the pin's."
-    found = dynamics(study, times)
+    leg = dynamics(study, times)
     peaks = peak_forces(times, at)
     moving = MovingLoads(partial(_without_joints, at), times)
-    return CaseLoads(at(times), note=note, at=at, leg=found, peaks=peaks, moving=moving)
+    return CaseLoads(at(times), note=note, at=at, leg=leg, peaks=peaks, moving=moving)
 
 
 def _hinge(study: Study, name: str, times: Floats) -> Reactions:
@@ -175,8 +183,9 @@ def _without_joints(at: Callable[[Floats], Reactions], times: Floats) -> Acting:
 
 @dataclass(frozen=True)
 class _Moved:
-    """A case's dynamics at any times (T,) s of its motion. Not closures: it is sent to processes
-    that are started anew.
+    """A case's dynamics at any times (T,) s of its motion.
+
+    A class instead of closures, since it is sent to processes that are started anew.
     """
 
     name: str
@@ -204,39 +213,39 @@ def _motion(
     applied, note = applied_loads(study, name, case, mechanism)
     moved = _Moved(name, course, applied)
     if not extremes:
-        found = moved.solve(np.linspace(0.0, end, case.samples))
-        require_possible(course, moved.solve, found)
-        return CaseLoads(found.reactions, found, note)
+        solved = moved.solve(np.linspace(0.0, end, case.samples))
+        require_possible(course, moved.solve, solved)
+        return CaseLoads(solved.reactions, solved, note)
     return _over_time(moved, case.samples, note)
 
 
 def _over_time(moved: _Moved, samples: int, note: str) -> CaseLoads:
-    """A case with its extremes."""
+    """Return the loads of a case with their extremes."""
     course = moved.course
-    found = moved.solve(np.linspace(course.first, course.last, samples))
-    over = over_time(course, moved.solve, found)
+    solved = moved.solve(np.linspace(course.first, course.last, samples))
+    over = over_time(course, moved.solve, solved)
     free = None
     if course.loops.linkage.rubs:
         smooth = replace(moved, friction=False).solve
-        free = over_time(course, smooth, smooth(found.motion.times))
+        free = over_time(course, smooth, smooth(solved.motion.times))
     return CaseLoads(
-        found.reactions,
-        found,
+        solved.reactions,
+        solved,
         note,
         moved.reactions,
         solve=moved.solve,
         peaks=over.peaks,
         over=over,
         frictionless=free,
-        moving=MovingLoads(moved.acting, found.motion.times, over.corners),
+        moving=MovingLoads(moved.acting, solved.motion.times, over.corners),
     )
 
 
 def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes: bool) -> CaseLoads:
     leg, where = drop(study, name, case, mechanism)
     if not extremes:  # its course takes SciPy: extended and at rest instead
-        found = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
-        return CaseLoads(found.reactions, found)
+        solved = motion_reactions(name, move(mechanism, still(where), np.zeros(1)), (), False)
+        return CaseLoads(solved.reactions, solved)
     landing = fallen(study, name, leg)
     course = Course(mechanism, landing_laws(landing, where), 0.0, leg.duration)
     loads: list[Load] = [*springs(study, mechanism), *pushes(mechanism, landing, where)]
@@ -247,7 +256,9 @@ def _drop(study: Study, name: str, case: DropCase, mechanism: Linkage, extremes:
 def _on_ground(
     study: Study, name: str, case: GroundCase, mechanism: Linkage, extremes: bool
 ) -> CaseLoads:
-    """A rule's load on the leg at rest; that of a drop needs the drop, which `check` leaves out."""
+    """Return a rule's load on the leg at rest; that of a drop needs the drop, which `check`
+    leaves out.
+    """
     where, note = place(study, name, case, mechanism), ""
     drives, reference = still(where), case.reference or 0.0
     if case.drop is not None and extremes:
@@ -262,8 +273,8 @@ def _on_ground(
     applied = ground_load(where, GROUND_RULES[case.rule], reference, mechanism)
     note = ground_note(study, case, reference) if reference else ""
     loads: list[Load] = [*springs(study, mechanism), applied]
-    found = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
-    return CaseLoads(found.reactions, found, note)
+    solved = motion_reactions(name, move(mechanism, drives, np.zeros(1)), loads, timed=False)
+    return CaseLoads(solved.reactions, solved, note)
 
 
 def _at_instant(
@@ -273,10 +284,10 @@ def _at_instant(
     drives = [StateDrive(*values) for values in state(study, name, case, mechanism)]
     motion = move(mechanism, drives, np.zeros(1))
     hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
-    found = motion_reactions(name, motion, applied, timed=False, hold=hold)
+    solved = motion_reactions(name, motion, applied, timed=False, hold=hold)
     return CaseLoads(
-        found.reactions,
-        found,
+        solved.reactions,
+        solved,
         note,
         range=over_range(study, name, case, motion),
         impulse=with_impulse(study, name, case, motion),

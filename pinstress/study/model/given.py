@@ -12,7 +12,10 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 
 def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
-    """The forces of a case, in pin axes. Raises: TableError."""
+    """Return the forces of a case, in pin axes.
+
+    Raises: TableError.
+    """
     if case.table is None:
         forces, moments = (
             {c: tuple(values) for c, values in (given or {}).items()}
@@ -31,5 +34,5 @@ def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
         except ArgumentError as error:
             raise TableError(f"{case.table}: {error}", error.code) from None
 
-    found = read_reactions(study.path_to(case.table), layout, unit, known)
-    return replace(found, case=name)
+    reactions = read_reactions(study.path_to(case.table), layout, unit, known)
+    return replace(reactions, case=name)

@@ -1,4 +1,4 @@
-"""A pin's shape read from its file, in a separate process with limits of time and memory.
+"""Shape of a pin, read from its file in a separate process with limits of time and memory.
 
 OpenCASCADE crashes on some damaged files and hangs on others; a mesh of a few bytes may request
 more memory than there is.
@@ -35,8 +35,12 @@ LONG_LIMITS = Limits(600, 6000, MAX_READER_MEMORY)
 
 
 def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
-    """The body in the file: a profile, with cuts, if it is one and its bands and clamps
-    (by name) are on it; otherwise a solid, with its bands measured.
+    """Return the body in a file.
+
+    It is a profile, with cuts, if the body is one and its bands and clamps are on it; otherwise a
+    solid, with its bands measured.
+
+    clamps: names of surfaces.
 
     Raises: GeometryError, MeshError as SolidBody; GeometryError if it is not a regular file, is too
     large, or cannot be read within the limits.
@@ -51,16 +55,16 @@ def read_body(file: BodyFile, clamps: Iterable[str] = ()) -> PinLike:
 
 
 def turned_apart(file: BodyFile, upright: bool = True) -> RecognisedProfile:
-    """As `geometry.imported.recognise.recognised_profile`, in another process.
+    """Return `geometry.imported.recognise.recognised_profile`, computed in another process.
 
     Raises: as that and `apart`.
     """
-    found: RecognisedProfile = apart(recognised_profile, file, upright)
-    return found
+    profile: RecognisedProfile = apart(recognised_profile, file, upright)
+    return profile
 
 
 def require_readable(file: BodyFile) -> None:
-    """Raises: GeometryError if the file cannot be read, or is too large."""
+    """Raise GeometryError if the file cannot be read, or is too large."""
     try:
         require_regular(file.path, MAX_BODY_SIZE)
     except FileError as error:
@@ -73,11 +77,14 @@ def require_readable(file: BodyFile) -> None:
         ) from None
 
 
-def _profiled(file: BodyFile, found: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
-    """Raises: NotTurnedError where a band or a clamp is not one of the profile."""
-    start, stripes = found.start * file.unit, []
+def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -> Pin | CutPin:
+    """Return the recognised profile with its bands.
+
+    Raises: NotTurnedError where a band or a clamp is not one of the profile.
+    """
+    start, stripes = recognised.start * file.unit, []
     for place in file.places:
-        at = found.surfaces.get(place.surface or "")
+        at = recognised.surfaces.get(place.surface or "")
         if place.z is not None:
             at = place.z[0] - start, place.z[1] - start
         if at is None:
@@ -85,40 +92,44 @@ def _profiled(file: BodyFile, found: RecognisedProfile, clamps: set[str]) -> Pin
             raise NotTurnedError(file.name, file.path.name, why)
         stripes.append(Stripe(place.name, *at, place.connection))
     named = {place.name for place in file.places}
-    stripes += [Stripe(c, *found.surfaces[c], False) for c in clamps - named if c in found.surfaces]
+    stripes += [
+        Stripe(c, *recognised.surfaces[c], False)
+        for c in clamps - named
+        if c in recognised.surfaces
+    ]
     try:
-        profile = with_stripes(found.pin(file.name), stripes)
-        pin = CutPin.of(profile, found.cuts)
+        profile = with_stripes(recognised.pin(file.name), stripes)
+        pin = CutPin.of(profile, recognised.cuts)
         for clamp in clamps:
             pin.surface(clamp)
     except GeometryError as error:
         raise NotTurnedError(file.name, file.path.name, str(error)) from None
     counted = (
         (len(profile.segments), "segment"),
-        *((sum(c.what == kind for c in found.cuts), kind) for kind in CUT_KINDS),
+        *((sum(c.what == kind for c in recognised.cuts), kind) for kind in CUT_KINDS),
     )
     parts = ", ".join(f"{n} {what}{'s' * (n > 1)}" for n, what in counted if n)
     source = f"{file.path.name} is taken as a profile: {parts}"
-    if found.start:
-        source += f"; z counts from its start face, at z = {found.start:g} of the file"
+    if recognised.start:
+        source += f"; z counts from its start face, at z = {recognised.start:g} of the file"
     profile = replace(profile, source=source)
-    return replace(pin, profile=profile) if found.cuts else profile
+    return replace(pin, profile=profile) if recognised.cuts else profile
 
 
 def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
-    """The result of `work(file, ...)`, run in another process.
+    """Return the result of `work(file, ...)`, run in another process.
 
-    Raises: what it raises; GeometryError if that process crashes or exceeds its limits.
+    Raises: the errors of the work; GeometryError if that process crashes or exceeds its limits.
     """
     quick = work is recognised_profile or arguments in ((), (MEASURING_MESH_SIZE,))
     limits = CAD_LIMITS if quick and not file.meshed else LONG_LIMITS
     job: Job[Any] = Job(
         f"pin {file.name}", partial(_read, work, file, arguments, limits.memory), limits
     )
-    (made,) = in_parallel([job], 2, anew=not can_fork())
-    if isinstance(made, ProcessDied):
-        why = made.reason
-        if made.status == -signal.SIGABRT and not portable():
+    (result,) = in_parallel([job], 2, anew=not can_fork())
+    if isinstance(result, ProcessDied):
+        why = result.reason
+        if result.status == -signal.SIGABRT and not portable():
             why += f"; its memory limit is {limits.memory / 2**30:g} GB"
         raise GeometryError(
             f"pin {file.name}: reading {file.path.name} failed ({why}): it is "
@@ -126,11 +137,14 @@ def apart(work: Work, file: BodyFile, *arguments: object) -> Any:
             "or mesh it in another program and give the mesh",
             "reading-crashed",
         )
-    return made
+    return result
 
 
 def _read(work: Work, file: BodyFile, arguments: tuple[object, ...], memory: float, _: Tell) -> Any:
-    """Run `work` in the other process, whose limit of memory is so many bytes."""
+    """Run `work` in the other process.
+
+    memory: its limit, bytes.
+    """
     try:
         return work(file, *arguments)
     except (MemoryError, GeometryError, MeshError) as error:

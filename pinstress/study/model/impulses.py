@@ -1,4 +1,4 @@
-"""The loads of a case on its mechanism, and what impulses among them do alone and over ranges."""
+"""Loads of a case on its mechanism, and reactions to impulses, alone and over ranges."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from pinstress.study.schema.cases import (
 @dataclass(frozen=True)
 class ImpulseLoads:
     """Reactions over combinations of impulse time (s), velocity change (m/s) and pulse, an instant
-    each: times and velocities (P,), P pulses, forces (P,) N. nominal, nominal_pulse: of the case.
+    each.
+
+    times, velocities: (P,); forces: (P,) N, with P pulses.
+    nominal, nominal_pulse: of the case.
     """
 
     times: Floats
@@ -37,7 +40,10 @@ class ImpulseLoads:
 
 @dataclass(frozen=True)
 class ImpulseShare:
-    """Reactions without an impulse and with it, two instants; time: of the impulse, s."""
+    """Reactions without an impulse and with it, two instants.
+
+    time: of the impulse, s.
+    """
 
     time: float
     reactions: Reactions
@@ -46,9 +52,9 @@ class ImpulseShare:
 def applied_loads(
     study: Study, name: str, case: MechanismCase, mechanism: Linkage
 ) -> tuple[tuple[Load, ...], str]:
-    """The loads of a case with the mechanism's springs, and how impulses among them came about."""
-    made = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
-    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(made)]
+    """Return the loads of a case with the mechanism's springs, and a note on its impulses."""
+    applied = (_load(study, name, case, k, mechanism) for k in range(len(case.apply)))
+    loads: list[Load] = [*springs(study, mechanism), *chain.from_iterable(applied)]
     notes = [_impulse_note(study, x) for x in case.apply if x.impulse is not None]
     return tuple(loads), " ".join(notes)
 
@@ -61,12 +67,15 @@ def _load(
     mechanism: Linkage,
     size: float | None = None,
 ) -> tuple[Applied, ...]:
-    """One of the loads; size: of its impulse, N, by default as stated."""
+    """Return one of the loads.
+
+    size: of its impulse, N, by default as stated.
+    """
     table = case.apply[which]
     force = table.force or (0.0, 0.0)
     if (impulse := table.impulse) is not None:
-        own = _size(impulse, impulse.velocity_change, impulse.impulse_time)
-        force = _directed(impulse.direction, own if size is None else size)
+        nominal = _size(impulse, impulse.velocity_change, impulse.impulse_time)
+        force = _directed(impulse.direction, nominal if size is None else size)
     elif table.direction is not None:
         force = _directed(table.direction, 1.0)
     return load(study, f"case.{name}.apply[{which + 1}]", table, force, mechanism)
@@ -99,7 +108,7 @@ def _impulse_note(study: Study, load: ApplyTable) -> str:
 def over_range(
     study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
 ) -> ImpulseLoads | None:
-    """The case again for every combination in the ranges of its impulse, if it has any.
+    """Return the reactions to every combination in the ranges of the case's impulse, if it has any.
 
     Raises: InputError where several impulses have ranges.
     """
@@ -135,7 +144,7 @@ def over_range(
 def with_impulse(
     study: Study, name: str, case: StaticCase | InstantCase, motion: Motion
 ) -> ImpulseShare | None:
-    """The case without its impulse and with it, if it has one."""
+    """Return the reactions of the case without its impulse and with it, if it has one."""
     which = [k for k, load in enumerate(case.apply) if load.impulse]
     if len(which) != 1 or (impulse := case.apply[which[0]].impulse) is None:
         return None
@@ -144,14 +153,14 @@ def with_impulse(
 
 
 def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats) -> Reactions:
-    """Reactions with an impulse of these sizes (P,) N, an instant each."""
+    """Return the reactions to an impulse of these sizes (P,) N, an instant each."""
     case, mechanism = study.table.case[name], motion.linkage
     assert isinstance(case, MechanismCase)
     hold = (case.hold or ()) if isinstance(case, StaticCase) else ()
     others: list[Load] = [*springs(study, mechanism)]
     for k in range(len(case.apply)):
         others += _load(study, name, case, k, mechanism) if k != which else ()
-    found = [
+    reactions = [
         motion_reactions(
             name,
             motion,
@@ -162,6 +171,7 @@ def _of_sizes(study: Study, name: str, motion: Motion, which: int, sizes: Floats
         for size in sizes.tolist()
     ]
     forces, moments, turn = (
-        np.concatenate([getattr(r, key) for r in found]) for key in ("forces", "moments", "turn")
+        np.concatenate([getattr(r, key) for r in reactions])
+        for key in ("forces", "moments", "turn")
     )
-    return replace(found[0], forces=forces, moments=moments, turn=turn)
+    return replace(reactions[0], forces=forces, moments=moments, turn=turn)

@@ -1,4 +1,4 @@
-"""From a study's drop to the fallen leg, and to where it touches the ground in its mechanism."""
+"""Drop of a landing leg, and the point where it touches the ground in its mechanism."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ UNSPRUNG_MASS_TOLERANCE = 0.1
 
 
 def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdown:
-    """Where the ground pushes. Raises: InputError."""
+    """Return the point where the ground pushes.
+
+    Raises: InputError.
+    """
     try:
         up, aft = axes(mechanism, case.forward)
     except ArgumentError as error:
@@ -50,7 +53,10 @@ def place(study: Study, name: str, case: AtWheel, mechanism: Linkage) -> Touchdo
 
 
 def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[Drop, Touchdown]:
-    """A leg that can fall, and where it touches. Raises: InputError, LinkageError."""
+    """Return a leg that can fall, and the point where it touches the ground.
+
+    Raises: InputError, LinkageError.
+    """
     where = place(study, name, case, mechanism)
     key = "case." + name
     try:
@@ -62,50 +68,53 @@ def drop(study: Study, name: str, case: DropCase, mechanism: Linkage) -> tuple[D
         key = f"case.{name}.tyre"
         tyre = _tyre(case.tyre)
         key = f"case.{name}"
-        own = case.unsprung or _unsprung(case, mechanism, where)
-        return _drop(case, mechanism, strut, rises, tyre, own), where
+        unsprung = case.unsprung or _unsprung(case, mechanism, where)
+        return _drop(case, mechanism, strut, rises, tyre, unsprung), where
     except ArgumentError as error:
         raise study.error(f"{key}: {error}", code=error.code) from None
 
 
 def _unsprung(case: DropCase, mechanism: Linkage, where: Touchdown) -> float:
-    """That of the mechanism, kg. Raises: ArgumentError where it has none."""
+    """Return the unsprung mass of the mechanism, kg.
+
+    Raises: ArgumentError where it has none.
+    """
     if case.strut is None:
         raise ArgumentError(
             "give unsprung: without a strut nothing in the mechanism moves with the axle",
             "no-unsprung",
         )
-    found = effective_mass(mechanism, where, case.strut.stroke)
-    if found <= 0.0:
+    mass = effective_mass(mechanism, where, case.strut.stroke)
+    if mass <= 0.0:
         raise ArgumentError(
             "give unsprung, or masses of the bodies that move with the axle: the mechanism has "
             "none",
             "no-unsprung",
         )
-    return found
+    return mass
 
 
 def unsprung_warnings(study: Study) -> list[str]:
-    """For every drop whose unsprung mass is not that of its mechanism, with both."""
+    """Return a warning for every drop whose unsprung mass differs from that of its mechanism."""
     drops = {n: c for n, c in study.table.case.items() if isinstance(c, DropCase)}
-    found = []
+    warnings = []
     for name, case in drops.items():
         if case.unsprung is None or case.strut is None:
             continue
         try:
             mechanism = linkage(study)
-            own = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
+            mass = effective_mass(mechanism, place(study, name, case, mechanism), case.strut.stroke)
         except (InputError, LinkageError, ArgumentError):
             continue  # whoever needs the case says what is wrong with it
-        if abs(case.unsprung - own) > UNSPRUNG_MASS_TOLERANCE * own:
+        if abs(case.unsprung - mass) > UNSPRUNG_MASS_TOLERANCE * mass:
             text = (
                 f"case.{name}.unsprung: {case.unsprung:.4g} kg is stated, but the mechanism's "
-                f"bodies move with the axle like {own:.4g} kg; the stated mass is used for the "
+                f"bodies move with the axle like {mass:.4g} kg; the stated mass is used for the "
                 "fall, the bodies' for the forces in the leg. Remove it to use that of the "
                 "mechanism, or correct the masses"
             )
-            found.append(str(study.error(text)))
-    return found
+            warnings.append(str(study.error(text)))
+    return warnings
 
 
 def _drop(
@@ -153,10 +162,10 @@ def _strut(table: StrutTable) -> Strut:
         assert table.spring is not None
         spring = LinearSpring(table.spring.stiffness, table.spring.preload)
     oil = table.oil
-    made = None
+    damper = None
     if oil is not None:
-        made = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
-    return Strut(spring, table.stroke, made, table.friction)
+        damper = Oil(oil.density, oil.area, oil.orifice, oil.discharge, oil.rebound)
+    return Strut(spring, table.stroke, damper, table.friction)
 
 
 def _tyre(table: TyreTable) -> PowerTyre | TableTyre:
@@ -175,7 +184,10 @@ def _wheel(case: DropCase, unsprung: float) -> Wheel | None:
 
 
 def fallen(study: Study, name: str, leg: Drop) -> Landing:
-    """The drop's course. Raises: InputError where the leg does not survive it."""
+    """Return the drop's course.
+
+    Raises: InputError where the leg does not survive it.
+    """
     try:
         return land(leg)
     except LandingError as error:
@@ -183,7 +195,7 @@ def fallen(study: Study, name: str, leg: Drop) -> Landing:
 
 
 def drop_note(case: DropCase, leg: Drop) -> str:
-    """The clause of a drop, and its unsprung mass where the mechanism gives it."""
+    """Return the clause of a drop, and its unsprung mass where the mechanism gives it."""
     clause = "" if case.rule is None else f"{DROP_RULES[case.rule].clause}."
     if case.unsprung is not None:
         return clause
@@ -191,14 +203,14 @@ def drop_note(case: DropCase, leg: Drop) -> str:
 
 
 def still(where: Touchdown) -> list[Law]:
-    """Laws that keep all drives as with the strut extended."""
+    """Return laws that keep all drives as with the strut extended."""
     return [StateDrive(value) for value in where.extended]
 
 
 def ground_load(
     where: Touchdown, rule: GroundRule, reference: float, mechanism: Linkage
 ) -> Applied:
-    """What the ground does to the wheel in the plane of the mechanism, by a rule."""
+    """Return the load of the ground on the wheel in the plane of the mechanism, by a rule."""
     x, y = (
         reference * (rule.vertical * u + rule.drag * a)
         for u, a in zip(where.up, where.aft, strict=True)
@@ -207,7 +219,7 @@ def ground_load(
 
 
 def ground_note(study: Study, case: GroundCase, reference: float) -> str:
-    """Clause and components of a rule's load."""
+    """Return the clause and the components of a rule's load."""
     rule, force = GROUND_RULES[case.rule], study.system.factor("force")
     parts = {
         "vertical": rule.vertical,

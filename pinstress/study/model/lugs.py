@@ -1,4 +1,4 @@
-"""From a study to the lugs in which its pins sit, or may sit."""
+"""Lugs in which the pins of a study sit, or may sit."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ CLAMP_DISTANCE_RATIO = 0.8
 
 
 def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]:
-    """Those of a pin, one for every connection and those of a structure that are named, if they
-    support it; else none.
+    """Return the lugs that support a pin, none if others hold it.
+
+    There is one for every connection, and those of the structure that are named.
 
     Raises: InputError for impossible lugs, and for a pin that lugs cannot support.
     """
@@ -49,10 +50,11 @@ def lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> tuple[Lug, ...]
 
 
 def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lug, ...]:
-    """Those of a pin that the study gives, which checks know whatever holds the pin. holding: its
-    `lugs`, where these hold it.
+    """Return the lugs of a pin that the study gives; checks use them whatever holds the pin.
 
-    Raises: InputError for impossible ones.
+    holding: the pin's `lugs`, where these hold it.
+
+    Raises: InputError for impossible lugs.
     """
     given = study.table.pin[pin.name].lug
     profile = pin.profile if isinstance(pin, CutPin) else pin
@@ -63,8 +65,11 @@ def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lu
 
 
 def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
-    """One for every connection and those of a structure. at: their key. Raises: InputError for
-    impossible ones.
+    """Return one lug for every connection, and those of the structure.
+
+    at: their key.
+
+    Raises: InputError for impossible lugs.
     """
     table = study.table.pin[pin.name]
     made_of = material(study, table.material)
@@ -83,15 +88,18 @@ def _fitting(study: Study, pin: Pin, at: str) -> tuple[Lug, ...]:
 
 
 def known_lugs(study: Study, pin: Pin) -> tuple[Lug, ...]:
-    """The same of a pin that is known to sit in lugs. Raises: ArgumentError for impossible ones."""
+    """Return these lugs for a pin that is known to sit in lugs.
+
+    Raises: ArgumentError for impossible lugs.
+    """
     table = study.table.pin[pin.name]
     made_of = material(study, table.material)
-    each = _held(pin, table)
-    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in each)
+    names = _held(pin, table)
+    return tuple(_lug(study, pin, name, _given(table, name), made_of) for name in names)
 
 
 def _held(pin: Pin, table: PinTable) -> tuple[str, ...]:
-    """Where there are lugs, the structure's last."""
+    """Return the names of a pin's lugs, the structure's last."""
     return *pin.connections, *(name for name in table.lug if name not in pin.connections)
 
 
@@ -100,7 +108,10 @@ def _given(table: PinTable, connection: str) -> LugTable:
 
 
 def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
-    """The profile of a pin that lugs can hold. Raises: InputError for another."""
+    """Return the profile of a pin that lugs can hold.
+
+    Raises: InputError for another pin.
+    """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
     if isinstance(pin, CutPin) and joints == "foundation":
@@ -133,7 +144,7 @@ def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
 
 
 def _clear_of(cut: Cut, band: Band) -> str:
-    """What keeps a cut clear of the edges of a lug."""
+    """Return what keeps a cut clear of the edges of a lug."""
     low, high = cut.opens
     if isinstance(cut, Hole):
         return "move it"
@@ -145,7 +156,7 @@ def _clear_of(cut: Cut, band: Band) -> str:
 
 
 def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
-    """The lugs at either end of the ranges of their clearances that the study gives."""
+    """Return the lugs at both ends of the ranges of clearance that the study gives."""
     return [
         [replace(x, clearance=(x.range.clearance or (x.clearance,) * 2)[end]) for x in lugs]
         for end in (0, 1)
@@ -154,8 +165,11 @@ def _ends_of_clearance(lugs: list[Lug]) -> list[list[Lug]]:
 
 @dataclass(frozen=True)
 class AssumedLugs:
-    """Lugs in which a pin may sit that the study loads and clamps otherwise: pin, with its clamped
-    segments as bands on which no link bears. assumed: whether no lug is given. why: there are none.
+    """Lugs in which a pin may sit that the study loads and clamps otherwise.
+
+    pin: with its clamped segments as bands on which no link bears.
+    assumed: whether no lug is given.
+    why: the reason why there are none.
     """
 
     pin: Pin | None = None
@@ -165,8 +179,9 @@ class AssumedLugs:
 
 
 def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> AssumedLugs:
-    """A lug at every connection, and one of the structure at every clamped segment, with the
-    defaults for what the study does not say.
+    """Return a lug at every connection, and one of the structure at every clamped segment.
+
+    Defaults fill in for values that the study omits.
     """
     if not isinstance(pin, Pin):
         return AssumedLugs(why="the pin has cuts or is from a file")
@@ -181,16 +196,16 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
-        found = tuple(
+        assumed = tuple(
             _lug(study, pin, name, table.lug.get(name, LugTable()), made_of) for name in names
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))
-    return AssumedLugs(free, found, not table.lug)
+    return AssumedLugs(free, assumed, not table.lug)
 
 
 def _freed(pin: Pin, clamped: list[str]) -> Pin:
-    """With clamped segments on which no link bears."""
+    """Return the pin with clamped segments on which no link bears."""
     segments = zip(pin.segments, pin.labels, strict=True)
     return replace(
         pin,
@@ -226,10 +241,10 @@ def _range(given: LugRangeTable) -> LugRange:
 
 
 def _stiffness(tilt: str | float) -> float:
-    """N m/rad, of a tilt in words or as a stiffness."""
+    """Return the stiffness, N m/rad, of a tilt in words or as a number."""
     return {"guided": math.inf, "free": 0.0}[tilt] if isinstance(tilt, str) else tilt
 
 
 def _bending(material: Material, outer: float, thickness: float) -> float:
-    """Of a shank as wide as the eye, N m/rad."""
+    """Return the bending stiffness of a shank as wide as the eye, N m/rad."""
     return material.youngs_modulus * outer * thickness**3 / (12.0 * CLAMP_DISTANCE_RATIO * outer)

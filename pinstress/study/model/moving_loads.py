@@ -1,5 +1,7 @@
-"""What acts on the pins of a motion at any time: polynomials between instants at which the
-mechanism was solved, so dense that they give the rest (loads.motion.refine).
+"""Loads on the pins of a motion at any time.
+
+They are polynomials between instants at which the mechanism was solved, dense enough for
+interpolation (loads.motion.refine).
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ Acting = tuple[Reactions, Floats]  # with the accelerations (T, J, 2) m/s^2 of t
 
 
 def acting(dynamics: Dynamics) -> Acting:
-    """The reactions of a mechanism, and the accelerations of its joints in their order."""
+    """Return the reactions of a mechanism, and the accelerations of its joints in their order."""
     motion = dynamics.motion
     joints = [motion.joint(joint.name)[2] for joint in motion.linkage.joints]
     return dynamics.reactions, np.stack(joints, axis=1)
@@ -25,8 +27,9 @@ def acting(dynamics: Dynamics) -> Acting:
 class MovingLoads:
     """A motion's reactions and the accelerations of its joints.
 
-    solve: of both at times (T,) s, in any order. times: samples, s. corners: where something may
-    jump, s.
+    solve: gives both at times (T,) s, in any order.
+    times: samples, s.
+    corners: times at which a value may jump, s.
     """
 
     def __init__(
@@ -40,7 +43,7 @@ class MovingLoads:
     @cached_property
     def _resolved(self) -> Resolved:
         def values(times: Floats) -> Floats:
-            """(T, K): forces, moments, turn by connection; acceleration by joint."""
+            """Return (T, K) values: forces, moments, turn by connection; acceleration by joint."""
             r, joints = self._solve(times)
             parts = (r.forces, r.moments, r.turn, joints)
             return np.concatenate([x.reshape(len(times), -1) for x in parts], axis=1)
@@ -53,14 +56,14 @@ class MovingLoads:
 
     @cached_property
     def instants(self) -> Floats:
-        """(N,) s: the samples and others, so dense that little happens between them."""
+        """The samples and further times (N,) s, dense enough for interpolation."""
         return np.union1d(self._times, self._resolved.nodes)
 
     def at(self, times: Floats) -> Acting:
-        """At times (T,) s, by the polynomials."""
+        """Return the loads at times (T,) s, by the polynomials."""
         r = self._first
         count, values = len(r.connections), self._resolved.interpolate(times)
         forces, moments, turn, joints = np.split(values, np.cumsum([3, 3, 1]) * count, axis=1)
         forces, moments = (x.reshape(len(times), count, 3) for x in (forces, moments))
-        found = Reactions(r.case, times, r.connections, r.bodies, forces, moments, turn)
-        return found, joints.reshape(len(times), -1, 2)
+        reactions = Reactions(r.case, times, r.connections, r.bodies, forces, moments, turn)
+        return reactions, joints.reshape(len(times), -1, 2)

@@ -1,4 +1,4 @@
-"""A body from a CAD file as the `[pin.NAME]` of a study."""
+"""Text of the `[pin.NAME]` of a study for a body from a CAD file."""
 
 from __future__ import annotations
 
@@ -31,8 +31,10 @@ BARE_KEY_PATTERN = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def imported_text(path: Path, name: str | None, unit: str, material: str) -> str:
-    """TOML of the pin in a CAD file. name: of the pin, by default the file's; unit: of length in
-    the file, which the text uses, too.
+    """Return the TOML of the pin in a CAD file.
+
+    name: of the pin, by default the file's.
+    unit: of length in the file, which the text uses, too.
 
     Raises: InputError for a file that cannot be read, has no solid or several, or is not turned,
     and for a name that cannot be used.
@@ -63,12 +65,12 @@ def imported_text(path: Path, name: str | None, unit: str, material: str) -> str
         raise InputError(str(error), code=error.code) from None
 
 
-def _text(file: BodyFile, found: RecognisedProfile, unit: str, material: str) -> str:
-    pin, head = found.pin(file.name), f"[pin.{_key(file.name)}]"
+def _text(file: BodyFile, profile: RecognisedProfile, unit: str, material: str) -> str:
+    pin, head = profile.pin(file.name), f"[pin.{_key(file.name)}]"
     lines = [
         f"# From {json.dumps(file.path.name)}:",
-        f"# the axis is along {_vector(found.along)} of the file, and",
-        f"# z = 0 is {found.start:g} {unit} along it; angles count from {_vector(found.x)}.",
+        f"# the axis is along {_vector(profile.along)} of the file, and",
+        f"# z = 0 is {profile.start:g} {unit} along it; angles count from {_vector(profile.x)}.",
         head,
         f"material = {json.dumps(material, ensure_ascii=False)}  # a [material] of the study",
         "profile = [",
@@ -76,7 +78,7 @@ def _text(file: BodyFile, found: RecognisedProfile, unit: str, material: str) ->
         "]",
         *_listed(pin, file.unit, unit),
     ]
-    for cut in found.cuts:
+    for cut in profile.cuts:
         lines += ["", f"[[pin.{_key(file.name)}.{cut.what}]]", *_cut(cut, file.unit, unit)]
     return "\n".join(lines) + "\n"
 
@@ -94,7 +96,7 @@ def _segment(s: Segment, one: float, unit: str) -> Iterator[str]:
 
 
 def _listed(pin: Pin, one: float, unit: str) -> Iterator[str]:
-    """The cylinders on which links may bear."""
+    """Yield the cylinders on which links may bear."""
     yield '# Links bear on cylinders: give the segment connection = "NAME", or split it first.'
     for i, (s, band) in enumerate(zip(pin.segments, pin.bands, strict=True), 1):
         if not s.cone and band.length > pin.tolerance:
@@ -104,7 +106,7 @@ def _listed(pin: Pin, one: float, unit: str) -> Iterator[str]:
 
 
 def _cut(cut: Cut, one: float, unit: str) -> Iterator[str]:
-    """Keys of a cut; those that have their defaults are left out."""
+    """Yield the keys of a cut, except those that have their defaults."""
 
     def given(**lengths: float | None) -> Iterator[str]:
         for key, si in lengths.items():

@@ -1,4 +1,4 @@
-"""From a study to pins and their materials."""
+"""Pins of a study and their materials."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ METRES_PER_UNIT = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
 def material(study: Study, name: str) -> Material:
-    """A material of the study."""
+    """Return a material of the study."""
     m = study.table.material[name]
     strengths = m.yield_strength, m.ultimate_strength, m.shear_strength, m.bearing_strength
     elastic = m.youngs_modulus, m.poisson_ratio, m.density
@@ -38,29 +38,29 @@ def material(study: Study, name: str) -> Material:
 
 
 def pin(study: Study, name: str) -> PinLike:
-    """A pin of the study.
+    """Return a pin of the study.
 
     Raises: InputError for an impossible shape, a file without a solid, or an unknown clamp;
     MeshError when a solid cannot be cut or that of a file cannot be meshed.
     """
     p = study.table.pin[name]
     try:
-        made = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
+        shape = _from_file(study, name, p) if p.geometry is not None else _turned(name, p)
     except GeometryError as error:
         raise study.error(str(error), _key(name, p, error.at), error.code) from None
     unknown: list[Wrong] = []
     for key, clamp in _clamps(study, name):
         try:
-            made.surface(clamp)
+            shape.surface(clamp)
         except GeometryError as error:
             unknown.append(Wrong(str(error), at=key, code=error.code))
     if unknown:
         raise study.errors(unknown)
-    return made
+    return shape
 
 
 def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:
-    """All clamped surfaces of a pin, each after its key."""
+    """Yield all clamped surfaces of a pin, each after its key."""
     clamps = {f"pin.{name}.clamp": study.table.pin[name].clamp}
     for case, table in study.table.case.items():
         clamps[f"case.{case}.clamp.{name}"] = table.clamp.get(name, [])
@@ -70,7 +70,7 @@ def _clamps(study: Study, name: str) -> Iterator[tuple[str, str]]:
 
 
 def _key(name: str, p: PinTable, at: Place) -> str:
-    """The key of the part of a pin that geometry names."""
+    """Return the key of the part of a pin that geometry names."""
     match at:
         case ("segment", int(i)):
             return f"pin.{name}.profile[{i}]" if p.profile is not None else f"pin.{name}.meridian"
@@ -84,8 +84,10 @@ def _key(name: str, p: PinTable, at: Place) -> str:
 
 
 def shape_notes(pin: PinLike) -> str:
-    """Where its shape comes from, and errors of it that no error estimate includes, as text; empty
-    if there is nothing to say.
+    """Return notes on the source of a pin's shape, and on its errors that no error estimate
+    includes.
+
+    The text is empty if there is nothing to note.
     """
     return "; ".join(filter(None, (pin.source, _lost_shape(pin))))
 
@@ -113,18 +115,18 @@ def _lost_shape(pin: PinLike) -> str:
 
 
 def weight(pin: PinLike, density: float, gravity: float = 9.80665) -> float:
-    """Weight (N) for a density in kg/m^3."""
+    """Return the weight (N) for a density in kg/m^3."""
     return density * gravity * pin.volume
 
 
 def slenderness(pin: PinLike) -> float:
-    """Length over the largest diameter on which a link bears."""
+    """Return the length over the largest diameter on which a link bears."""
     return pin.length / (2.0 * max(pin.band(name).radius for name in pin.connections))
 
 
 def far_ends(pin: PinLike) -> tuple[tuple[float, float], ...]:
-    """Diameter and bore (m) at the far ends of what `outline` draws; none where all are
-    cylinders.
+    """Return the diameter and bore (m) at the far ends of what `outline` draws; empty where all
+    are cylinders.
     """
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if not isinstance(profile, Pin) or profile.stepped:
@@ -133,8 +135,10 @@ def far_ends(pin: PinLike) -> tuple[tuple[float, float], ...]:
 
 
 def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
-    """Cylinders or cones to draw a pin by: length, diameter, bore (m), name, and "band" or "plain";
-    of a shape from a file its bands, and as much as there is between them.
+    """Return the cylinders or cones to draw a pin by.
+
+    Each has length, diameter, bore (m), name, and "band" or "plain". A shape from a file is drawn
+    by its bands, and the space between them.
     """
     profile = pin.profile if isinstance(pin, CutPin) else pin
     if isinstance(profile, Pin):
@@ -207,7 +211,10 @@ def _at_ends(radius: float | tuple[float, float]) -> tuple[float, float]:
 
 
 def by_corners(name: str, p: PinTable) -> Pin:
-    """A pin whose outline is given by its corners. Raises: GeometryError."""
+    """Return a pin whose outline is given by its corners.
+
+    Raises: GeometryError.
+    """
     outside, bore = ([Bend(*x) for x in line or ()] for line in (p.meridian, p.bore_meridian))
     stripes = (Stripe(n, *b.z, b.connection) for n, b in p.band.items() if b.z is not None)
     return with_stripes(pin_of_polyline(name, outside, bore), stripes)

@@ -1,4 +1,4 @@
-"""Sequences of a study: their cases, and when each begins."""
+"""Sequences of a study: their cases, and the time at which each begins."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ class Occurrence:
 
 
 def steps(table: SequenceTable, times: Mapping[str, Floats | None]) -> Iterator[Occurrence]:
-    """Every occurrence of every case; times: (T,) s of each, None at rest."""
+    """Yield every occurrence of every case.
+
+    times: (T,) s of each case, None at rest.
+    """
     begin = 0.0
     for step in table.steps:
         course = times[step.case]
@@ -36,13 +39,16 @@ def steps(table: SequenceTable, times: Mapping[str, Floats | None]) -> Iterator[
 
 
 def complete(study: Study, cases: Container[str]) -> tuple[str, ...]:
-    """The sequences all of whose cases are among these."""
+    """Return the sequences all of whose cases are among these."""
     table = study.table.sequence
     return tuple(name for name, s in table.items() if all(x.case in cases for x in s.steps))
 
 
 def chosen_cases(study: Study, wanted: Iterable[str] | None) -> list[str]:
-    """The wanted cases, with those of the wanted sequences; by default all. Raises: ChoiceError."""
+    """Return the wanted cases, with those of the wanted sequences; by default all.
+
+    Raises: ChoiceError.
+    """
     names = select([*study.table.case, *study.table.sequence], wanted, "case")
     asked = dict.fromkeys(names)
     for name in asked.keys() & study.table.sequence.keys():
@@ -51,8 +57,8 @@ def chosen_cases(study: Study, wanted: Iterable[str] | None) -> list[str]:
 
 
 def require_times(study: Study, times: Mapping[str, Floats | None]) -> None:
-    """Raises: InputError where a step's case has no time and no duration, or has both, or a
-    sequence has too many instants.
+    """Raise InputError for a step's case that has no time and no duration, or has both, and for
+    a sequence with too many instants.
     """
     for name in complete(study, times):
         count = 0

@@ -1,4 +1,4 @@
-"""What is to be solved: each pin, its constraints, and its loads in every case."""
+"""Tasks to solve: each pin, its constraints, and its loads in every case."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from pinstress.study.reading.file import Study
 
 @dataclass(frozen=True)
 class PinImpulse:
-    """Loads on a pin without an impulse and with it, two instants; time: of the impulse, s."""
+    """Loads on a pin without an impulse and with it, two instants.
+
+    time: of the impulse, s.
+    """
 
     time: float
     loads: PinLoads
@@ -31,13 +34,16 @@ class PinImpulse:
 
 @dataclass(frozen=True)
 class Task:
-    """One pin of a material, clamped in one way, with its loads in all the cases where it is.
+    """One pin of a material, clamped in one way, with its loads in all cases that clamp it so.
 
     left_out: by case, the connections whose force and moment are not applied because their band is
-    clamped. ranges: by case, the loads over the ranges of its impulse. between: of the cases that
-    are motions, the loads at any times. lugs: that support the pin, if any; surroundings: in which
-    it may sit where none do. impulses: by case, of those that have one. given: the lugs that the
-    study gives, whether they support the pin or not.
+    clamped.
+    ranges: by case, the loads over the ranges of its impulse.
+    between: by case that is a motion, the loads at any times.
+    lugs: those that support the pin, if any.
+    surroundings: lugs in which it may sit where none support it.
+    impulses: by case that has an impulse.
+    given: the lugs that the study gives, whether they support the pin or not.
     """
 
     pin: PinLike
@@ -54,7 +60,7 @@ class Task:
 
 
 def tasks(study: Study, pins: list[PinLike], loads: dict[str, CaseLoads]) -> list[Task]:
-    """What is to be solved: the pins that any case loads.
+    """Return the tasks of the pins that any case loads.
 
     Raises: InputError when there is nothing to solve, or when all loads on a pin are at its clamps.
     """
@@ -101,16 +107,16 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         left_out[case] = tuple(c for c in here if c in constrained)
         spread = study.table.case[case].distribution
         heavy = not clamps and bool(made_of.density)
-        made = partial(_pin_loads, case, given, applied, spread, heavy)
+        build = partial(_pin_loads, case, given, applied, spread, heavy)
         if given.moving is None:
-            cases.append(made(given.reactions))
+            cases.append(build(given.reactions))
         else:
-            between[case] = partial(_at, made, given.moving)
+            between[case] = partial(_at, build, given.moving)
             cases.append(between[case](given.moving.instants))
         if given.range is not None:
-            ranges[case] = made(given.range.reactions)
+            ranges[case] = build(given.range.reactions)
         if given.impulse is not None:
-            impulses[case] = PinImpulse(given.impulse.time, made(given.impulse.reactions))
+            impulses[case] = PinImpulse(given.impulse.time, build(given.impulse.reactions))
     in_lugs = lugs(study, pin, clamps) if cases else ()
     around = assumed_lugs(study, pin, clamps) if cases and not in_lugs else None
     given_ones = given_lugs(study, pin, in_lugs) if cases else ()
@@ -120,8 +126,8 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
     )  # fmt: skip
 
 
-def _at(made: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:
-    return made(*moving.at(times))
+def _at(build: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:
+    return build(*moving.at(times))
 
 
 def _pin_loads(
@@ -133,8 +139,10 @@ def _pin_loads(
     reactions: Reactions,
     accelerations: Floats | None = None,
 ) -> PinLoads:
-    """Loads on a pin at some connections. heavy: whether its own weight acts. accelerations:
-    (T, J, 2) m/s^2 of the joints, by default those of the case's instants.
+    """Return the loads on a pin at some connections.
+
+    heavy: whether its own weight acts.
+    accelerations: (T, J, 2) m/s^2 of the joints, by default those of the case's instants.
     """
     body = _own_weight(given, applied[0], reactions, accelerations) if heavy else np.zeros(3)
     forces = np.stack([reactions.in_pin_axes(c) for c in applied], axis=1)
@@ -147,16 +155,20 @@ def _pin_loads(
 def _own_weight(
     case: CaseLoads, connection: str, reactions: Reactions, accelerations: Floats | None
 ) -> Floats:
-    """Gravity less the pin's acceleration, (T, 3) m/s^2 in its own axes, where a mechanism moves
-    it; else zero. A clamped pin's weight goes into its clamp, as the loads there do.
+    """Return gravity less the pin's acceleration, (T, 3) m/s^2 in its own axes; zero without a
+    mechanism.
+
+    A clamped pin's weight goes into its clamp, as the loads there do.
     """
     if case.dynamics is None:
         return np.zeros(3)
     motion = case.dynamics.motion
     for k, joint in enumerate(motion.linkage.joints):
         if any(c.name == connection for c in joint.connections):
-            own = motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
+            acceleration = (
+                motion.joint(joint.name)[2] if accelerations is None else accelerations[:, k]
+            )
             across = np.zeros((len(reactions), 3))
-            across[:, :2] = np.array(motion.linkage.gravity) - own
+            across[:, :2] = np.array(motion.linkage.gravity) - acceleration
             return reactions.to_pin_axes(across, connection)
     return np.zeros(3)

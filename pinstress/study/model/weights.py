@@ -13,19 +13,21 @@ STATED_WEIGHT_TOLERANCE = 0.02  # of the profile's weight
 
 
 def weight_warnings(study: Study) -> list[str]:
-    """For every joint whose weight is not that of its pin's shape both, with the one that is used;
-    and weights that are not used at all.
+    """Return a warning for every joint whose stated weight is not that of its pin's shape.
+
+    It gives both weights, and the one that is used. Weights that are not used at all have a warning
+    too.
     """
     mechanism = study.table.mechanism
     if mechanism is None:
         return []
     gravity = math.hypot(*mechanism.gravity) or STANDARD_GRAVITY
-    found = []
+    warnings = []
     for name, joint in mechanism.joint.items():
         if joint.weight is not None:
             said = _idle(name, joint.fixed_in) or _differs(study, name, joint.weight, gravity)
-            found += [str(study.error(f"mechanism.joint.{name}.weight: {said}"))] if said else []
-    return found
+            warnings += [str(study.error(f"mechanism.joint.{name}.weight: {said}"))] if said else []
+    return warnings
 
 
 def _idle(name: str, fixed_in: str | None) -> str:
@@ -44,14 +46,14 @@ def _differs(study: Study, name: str, stated: float, gravity: float) -> str:
     if not density:
         return ""
     try:
-        own = weight(pin(study, name), density, gravity)
+        computed = weight(pin(study, name), density, gravity)
     except InputError:
         return ""  # whoever needs the pin says what is wrong with it
-    if abs(stated - own) <= STATED_WEIGHT_TOLERANCE * own:
+    if abs(stated - computed) <= STATED_WEIGHT_TOLERANCE * computed:
         return ""
     unit, factor = study.system.force, study.system.factor("force")
     return (
         f"{stated / factor:.4g} {unit} is stated, but the pin's shape and density give "
-        f"{own / factor:.4g} {unit}; the stated weight is used. Remove it to use the weight of the "
-        "shape, or correct the shape or the density"
+        f"{computed / factor:.4g} {unit}; the stated weight is used. Remove it to use the weight "
+        "of the shape, or correct the shape or the density"
     )

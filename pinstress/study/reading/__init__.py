@@ -1,1 +1,1 @@
-"""Reading a study file, and what is wrong with it, by line."""
+"""Reading of a study file, and its errors by line."""

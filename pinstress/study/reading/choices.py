@@ -43,8 +43,9 @@ class ChoiceError(InputError):
 def select(
     names: Iterable[str], wanted: Iterable[str] | None, what: str, argument: str = ""
 ) -> list[str]:
-    """The wanted names in their order, or all. argument: by which they were given, {what}s by
-    default.
+    """Return the wanted names in their order, or all.
+
+    argument: the argument that gave them, {what}s by default.
 
     Raises: ChoiceError for an unknown name, or an empty list.
     """
@@ -75,7 +76,10 @@ def select(
 
 
 def require_model(model: Model | None) -> Model | None:
-    """The same. Raises: ChoiceError for an unknown model."""
+    """Return the model.
+
+    Raises: ChoiceError for an unknown one.
+    """
     from fea.core.requirement import Model  # which is slow to import
 
     must = f"must be one of {listed(get_args(Model))}"
@@ -84,20 +88,31 @@ def require_model(model: Model | None) -> Model | None:
 
 
 def require_tolerance(tolerance: float | None) -> float | None:
-    """The same. Raises: ChoiceError unless it is between 0 and 1."""
+    """Return the tolerance.
+
+    Raises: ChoiceError unless it is between 0 and 1.
+    """
     right = tolerance is None or (_is_number(tolerance) and 0.0 < tolerance < 1.0)
     return _require(right, "tolerance", tolerance, "must be between 0 and 1", "out-of-range")
 
 
 def require_positive(argument: str, value: float | None, endless: bool = False) -> float | None:
-    """The same. endless: whether it may be infinite. Raises: ChoiceError unless it is positive."""
+    """Return the value.
+
+    endless: whether it may be infinite.
+
+    Raises: ChoiceError unless it is positive.
+    """
     most = math.inf if endless else MAX_ARGUMENT
     right = value is None or (_is_number(value) and 0.0 < value <= most)
     return _require(right, argument, value, "must be a positive number", "not-positive")
 
 
 def require_count(argument: str, value: int | None) -> int | None:
-    """The same. Raises: ChoiceError unless it is a whole number from 1 on."""
+    """Return the value.
+
+    Raises: ChoiceError unless it is a whole number of at least 1.
+    """
     right = value is None or _is_count(value)
     return _require(right, argument, value, "must be a whole number of at least 1", "not-a-count")
 

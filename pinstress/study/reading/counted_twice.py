@@ -1,8 +1,9 @@
 """Factors that a study gives twice: in its required safety factor, and for its margins.
 
 The required factor compares yield with the stress under the loads of the study as they are. Limit,
-ultimate and fitting factors multiply these loads in the margins of safety. Who puts one of them
-into the required factor, too, has it in both: 14 CFR 25.305 lets a pin yield beyond limit load.
+ultimate and fitting factors multiply these loads in the margins of safety. A study that includes
+one of them in the required factor, too, counts it twice: 14 CFR 25.305 lets a pin yield beyond
+limit load.
 """
 
 from __future__ import annotations
@@ -25,8 +26,9 @@ FACTOR_WORDS = {
 
 
 def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, ...]:
-    """Which factors of margins the required factor looks to contain, in a sentence. notes: by key,
-    where a number comes from; one that names no such factor settles it.
+    """Return a sentence on the factors of margins that the required factor seems to contain.
+
+    notes: the source of each number, by key; a note that names no such factor settles it.
     """
     required, note = table.required_safety_factor, notes.get(REQUIRED_FACTOR_KEY, "")
     if required is None or required <= 1.0:
@@ -38,9 +40,9 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
     factors = [f"{key} {value:g}" for key, value in values.items()]
     rest = required / math.prod(values.values())
     times = [] if note or abs(rest - 1.0) <= FACTOR_DIFFERENCE_TOLERANCE else [f"{rest:.3g}"]
-    found = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
+    statement = f"{'contains' if note else 'is'} {' times '.join(factors + times)}"
     return (
-        f"{REQUIRED_FACTOR_KEY}: {required:g} {found}{' by its note' * bool(note)}, and the "
+        f"{REQUIRED_FACTOR_KEY}: {required:g} {statement}{' by its note' * bool(note)}, and the "
         f"margins of safety "
         f"already contain {' and '.join(keys)}; the required factor compares yield with the stress "
         "under the loads of the study as they are (1: no yielding at limit load); if it is another "
@@ -49,14 +51,14 @@ def counted_twice(table: AnalysisTable, notes: Mapping[str, str]) -> tuple[str, 
 
 
 def _in_words(table: AnalysisTable, note: str) -> list[str]:
-    """The factors that a note names and margins contain."""
+    """Return the factors that a note names and margins contain."""
     return [
         k for k, words in FACTOR_WORDS.items() if words.search(note) and getattr(table, k) > 1.0
     ]
 
 
 def _in_numbers(table: AnalysisTable, required: float) -> list[str]:
-    """The factors of which the required one is the product, with one at least that is stated."""
+    """Return the factors whose product is the required one, at least one of them stated."""
     stated = table.model_fields_set
     fits = [
         keys
@@ -67,8 +69,9 @@ def _in_numbers(table: AnalysisTable, required: float) -> list[str]:
 
 
 def _products(table: AnalysisTable) -> Iterator[tuple[list[str], float]]:
-    """Of limit or ultimate factor and fitting factor, those above 1; also with the usual fitting
-    factor where margins have none.
+    """Yield the products of the limit or ultimate factor and the fitting factor, of those above 1.
+
+    Where margins have no fitting factor, the usual one is tried too.
     """
     fitting = table.fitting_factor
     if fitting > 1.0:

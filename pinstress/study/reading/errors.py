@@ -16,9 +16,10 @@ MAX_LINE_LENGTH = 800  # characters; a longer line loses its middle
 
 
 class InputError(Exception):
-    """Bad input: the message names the file, the key and what would be right. Exit status 2.
+    """Bad input: the message names the file, the key and the remedy. Exit status 2.
 
-    code: short and stable, for programs. lines: the errors, one by one, by their codes in `codes`;
+    code: short and stable, for programs.
+    lines: the errors, one by one, by their codes in `codes`.
     more: the number of further errors.
     """
 
@@ -28,7 +29,7 @@ class InputError(Exception):
         super().__init__("\n".join(map(clipped, message.split("\n"))))
         errors = tuple(listed) or ((str(self), code),)
         self.lines = tuple(line for line, _ in errors)
-        self.codes = tuple(each for _, each in errors)
+        self.codes = tuple(error_code for _, error_code in errors)
         self.more = more
 
     @property
@@ -38,7 +39,7 @@ class InputError(Exception):
 
 
 def clipped(line: str) -> str:
-    """The beginning, which says where, and the end, which says what would be right."""
+    """Return the beginning of a line, which has the key, and its end, which has the remedy."""
     if len(line) <= MAX_LINE_LENGTH:
         return line
     half = MAX_LINE_LENGTH // 2
@@ -47,8 +48,9 @@ def clipped(line: str) -> str:
 
 @dataclass(frozen=True)
 class Wrong:
-    """An error: a message that begins with its key, or the key `at` to point at. hint: a
-    likely intended name, which takes time to find: only errors that are printed search for it.
+    """An error: a message that begins with its key, or with the key `at` to point at.
+
+    hint: gives a likely intended name; called only for errors that are printed, as it takes time.
     """
 
     message: str
@@ -58,8 +60,9 @@ class Wrong:
 
 
 def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
-    """The errors of a valid TOML text, the first of them in the order of the file, each with its
-    line as "file:line: key: remedy".
+    """Return the errors of a valid TOML text, the first of them in the order of the file.
+
+    Each has its line as "file:line: key: remedy".
     """
     from pinstress.study.reading.toml_lines import lines_of  # only for studies that are wrong
 
@@ -92,7 +95,7 @@ class Errors:
         self.more = 0
 
     def attempt(self, make: Callable[[], T]) -> T | None:
-        """What is made, or None when the input for it is wrong."""
+        """Return the result of `make`, or None when its input is wrong."""
         try:
             return make()
         except InputError as error:
@@ -101,7 +104,7 @@ class Errors:
             return None
 
     def tell(self) -> None:
-        """Raises: InputError with all errors, if there are any."""
+        """Raise InputError with all errors, if there are any."""
         if self.lines:
             listed = list(self.lines.items())
             beyond = max(len(listed) - MAX_LISTED_ERRORS, 0)

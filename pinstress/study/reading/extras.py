@@ -12,7 +12,7 @@ MISSING = "missing-extra"
 
 
 def require_package(package: str, user: str) -> None:
-    """Require an optional package before the work begins that needs it.
+    """Require an optional package before the work that needs it begins.
 
     user: the option or command that needs it, with which the message begins.
 
@@ -23,7 +23,7 @@ def require_package(package: str, user: str) -> None:
 
 
 def require_fatigue(study: Study) -> None:
-    """Require what the fatigue assessment of a study needs, if it has one.
+    """Require the packages of the fatigue assessment of a study, if it has one.
 
     Raises: InputError with the line of [fatigue], as `require_package`.
     """
@@ -32,7 +32,7 @@ def require_fatigue(study: Study) -> None:
 
 
 def _missing(package: str) -> str:
-    """What to do where a package is not installed; empty where it is."""
+    """Return the remedy where a package is not installed; empty where it is."""
     if find_spec(package) is not None:
         return ""
     return f"needs {package}, which is not installed: pip install 'pinstress[{EXTRAS[package]}]'"

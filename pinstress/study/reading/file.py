@@ -1,4 +1,4 @@
-"""Reading a study file: TOML, validated, in SI, every cross-reference checked."""
+"""Reading of a study file: TOML, validated, in SI, with every cross-reference checked."""
 
 from __future__ import annotations
 
@@ -35,8 +35,9 @@ MAX_KEY_LENGTH = 200  # characters; no name is longer, and messages have it in f
 
 @dataclass(frozen=True)
 class Sourced:
-    """Where a number of the study comes from; value: as the study writes it, of a whole table its
-    numbers with their keys.
+    """The source of a number of the study.
+
+    value: as the study writes it; of a whole table its numbers with their keys.
     """
 
     key: str
@@ -47,9 +48,12 @@ class Sourced:
 
 @dataclass(frozen=True)
 class Study:
-    """A valid study. table: its content in SI. questions: implausible values, each after its key.
+    """A valid study.
+
+    table: its content in SI.
+    questions: implausible values, each after its key.
     located: whether messages give lines of its text, which the user did not write if the study was
-    made in Python.
+    built in Python.
     """
 
     path: Path
@@ -64,8 +68,8 @@ class Study:
         """Implausible values, each with its line: the first ones, and the number of others."""
         if not self.questions:
             return ()
-        found = self.errors([Wrong(question) for question in self.questions])
-        return found.lines + ((f"{self.path}: and {found.more:,} more",) if found.more else ())
+        errors = self.errors([Wrong(question) for question in self.questions])
+        return errors.lines + ((f"{self.path}: and {errors.more:,} more",) if errors.more else ())
 
     @property
     def system(self) -> UnitSystem:
@@ -83,23 +87,28 @@ class Study:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def path_to(self, name: str) -> Path:
-        """Path of a file that the study refers to. Raises: InputError for an impossible name."""
+        """Return the path of a file that the study refers to.
+
+        Raises: InputError for an impossible name.
+        """
         if "\0" in name or len(name) > MAX_PATH_LENGTH:
             raise self.error(f"{as_text(name)} is not a file name", code="not-a-file-name")
         return self.path.parent / name
 
     def error(self, message: str, at: str = "", code: str = "") -> InputError:
-        """An error of this study, with the line of the key that the message begins with, or of the
-        key `at`.
+        """Return an error of this study, with the line of the key that the message begins with,
+        or of the key `at`.
         """
         return self.errors([Wrong(message, at=at, code=code)])
 
     def errors(self, wrong: Sequence[Wrong]) -> InputError:
-        """The same for several."""
+        """Return several errors of this study as one."""
         return study_error(self.path, self._lines, wrong)
 
     def table_error(self, key: str, error: TableError) -> InputError:
-        """The error of a table that is named at `key`: of one that is missing, with this key."""
+        """Return the error of a table that is named at `key`; a missing table gets the line of
+        this key.
+        """
         if error.code == "no-such-file":
             return self.error(f"{key}: {error}", code=error.code)
         return InputError(str(error), code=error.code)
@@ -109,11 +118,11 @@ class Study:
         return self.text if self.located else ""
 
     def clamps(self, pin: str, case: str) -> tuple[str, ...]:
-        """Clamped surfaces of a pin in a case, as named in the study."""
+        """Return the clamped surfaces of a pin in a case, as named in the study."""
         return tuple(self.table.case[case].clamp.get(pin, self.table.pin[pin].clamp))
 
     def connections(self, pin: str) -> tuple[str, ...]:
-        """Connections that bear on a pin."""
+        """Return the connections that bear on a pin."""
         return tuple(name for _, name in self.table.pin[pin].connections)
 
 
@@ -145,8 +154,11 @@ def load_study(path: str | os.PathLike[str]) -> Study:
 
 
 def parse_study(path: Path, text: str, located: bool = True) -> Study:
-    """Validate the text of a study file at `path`. located: as a Study's. Raises: InputError as
-    load_study.
+    """Validate the text of a study file at `path`.
+
+    located: as in Study.
+
+    Raises: InputError as load_study.
     """
     lines = text if located else ""
     provenance: list[Sourced] = []
@@ -178,14 +190,15 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
 
 
 def raw_study(study: Study) -> dict[str, Any]:
-    """What the study's file has, without provenance and notes."""
+    """Return the content of the study's file, without provenance and notes."""
     raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
     return raw
 
 
 def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
-    """The study with other numbers in what `raw_study` returned, validated without a way through
-    text; implausible ones are not looked for.
+    """Return the study with other numbers in what `raw_study` returned, validated directly.
+
+    Implausible values are not looked for.
 
     Raises: InputError as load_study.
     """
@@ -204,8 +217,11 @@ def _system(raw: Mapping[str, Any]) -> UnitSystem:
 
 
 def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -> StudyTable:
-    """The content in SI. wrong: earlier errors, to which those of references are added. Raises:
-    InputError for content of the wrong form.
+    """Return the content in SI.
+
+    wrong: earlier errors, to which those of references are added.
+
+    Raises: InputError for content of the wrong form.
     """
     try:
         table = StudyTable.model_validate(raw, context={"system": _system(raw)})
@@ -217,10 +233,10 @@ def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -
 
 
 def _written(value: Any) -> str:
-    """A value as the study writes it, shortened; of a table its values with their keys."""
+    """Return a value as the study writes it, shortened; for a table its values with their keys."""
     if isinstance(value, dict):
-        own = ((k, v) for k, v in value.items() if not isinstance(v, dict))
-        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(own, MAX_LISTED_NAMES))
+        numbers = ((k, v) for k, v in value.items() if not isinstance(v, dict))
+        return ", ".join(f"{cut(k)} {_written(v)}" for k, v in islice(numbers, MAX_LISTED_NAMES))
     if isinstance(value, list):
         more = ", ..." * (len(value) > MAX_LISTED_NAMES)
         return f"[{', '.join(map(_written, value[:MAX_LISTED_NAMES]))}{more}]"
@@ -229,9 +245,12 @@ def _written(value: Any) -> str:
     return cut(value) if isinstance(value, str) else in_toml(value)
 
 
-def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> Any:
-    """The same tree without provenance and notes, which go to `found`; of { value, provenance,
-    note } the value remains. long: where keys go that are too long.
+def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) -> Any:
+    """Return the tree without provenance and notes, which are added to `sourced`.
+
+    The value remains of { value, provenance, note }.
+
+    long: receives the errors for keys that are too long.
     """
     if isinstance(node, list):
         if len(node) > MAX_LIST_ITEMS:
@@ -242,13 +261,13 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
                 )
             )
             return []
-        return [unwrapped(v, f"{key}[{i}]", found, long) for i, v in enumerate(node, 1)]
+        return [unwrapped(v, f"{key}[{i}]", sourced, long) for i, v in enumerate(node, 1)]
     if not isinstance(node, dict):
         return node
     if isinstance(node.get("provenance"), str):
         kind, note = node["provenance"], str(node.get("note", ""))
         node = {k: v for k, v in node.items() if k not in ("provenance", "note")}
-        found.append(Sourced(key, kind, note, _written(node.get("value", node))))
+        sourced.append(Sourced(key, kind, note, _written(node.get("value", node))))
         if set(node) == {"value"}:
             return node["value"]
     long += [
@@ -257,12 +276,17 @@ def unwrapped(node: Any, key: str, found: list[Sourced], long: list[Wrong]) -> A
         for k in node if len(k) > MAX_KEY_LENGTH
     ]  # fmt: skip
     inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= MAX_KEY_LENGTH}
-    return {k: unwrapped(node[k], place, found, long) for k, place in inner.items()}
+    return {k: unwrapped(node[k], place, sourced, long) for k, place in inner.items()}
 
 
 def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:
-    """The study with a case for every name in the column `case` of the table of a section whose
-    name has a *, which that name replaces. folder: of the tables. wrong: where errors go.
+    """Return the study with the cases of tables: sections whose name has a *.
+
+    Such a section gives a case for every name in the column `case` of its table, which replaces the
+    *.
+
+    folder: of the tables.
+    wrong: receives the errors.
 
     Raises: InputError for an unusable table.
     """

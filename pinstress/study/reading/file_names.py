@@ -1,4 +1,4 @@
-"""Whether the files written for pins and cases have different names."""
+"""Check that the files written for pins and cases have different names."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterable
 
 
 def field_name(pin: str, case: str) -> str:
-    """The name, without suffix, of the files written for a pin in a case."""
+    """Return the name, without suffix, of the files written for a pin in a case."""
     return f"{pin}_{case}"
 
 
 def same_files(pins: Iterable[str], cases: Iterable[str]) -> Iterable[str]:
-    """Errors for names that give the same file name, also on systems that ignore case."""
+    """Yield errors for names that give the same file name, also on systems that ignore case."""
     cases = list(cases)
     owners: dict[str, str] = {}
     for kind, names in (("pin", pins := list(pins)), ("case", cases)):

@@ -1,4 +1,4 @@
-"""Studies made in Python: from tables as a study file has them, and from another study."""
+"""Studies built in Python: from tables as a study file has them, and from another study."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ INDEX_PATTERN = re.compile(r"\[(\d+)\]")
 def study_from(
     tables: Mapping[str, Any] | str, folder: str | os.PathLike[str] = ".", name: str = "study"
 ) -> Study:
-    """A study from a dict with the keys of a study file (docs/study-file.md), in which None means
-    that the key is absent, or from the text of such a file.
+    """Return a study from a dict with the keys of a study file (docs/study-file.md), or from its
+    text.
 
-    folder: folder of the files that the study refers to. name: name of the study in messages and
-    results.
+    tables: None for a value means that the key is absent.
+    folder: folder of the files that the study refers to.
+    name: name of the study in messages and results.
 
     Raises: InputError as load_study.
     """
@@ -41,9 +42,11 @@ def study_from(
 
 
 def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
-    """The study with other values, by key as in messages: {"pin.E.profile[2].diameter":
-    "1.5 in", "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced
-    values is removed; comments are kept.
+    """Return the study with other values.
+
+    changes: values by key as in messages: {"pin.E.profile[2].diameter": "1.5 in",
+    "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced values is
+    removed; comments are kept.
 
     Raises: InputError as load_study, and for a key that does not exist in the study.
     """
@@ -62,8 +65,11 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:
-    """The parts of a key: names, and indices from 0. Raises: InputError."""
-    found: list[str | int] = []
+    """Return the parts of a key: names, and indices from 0.
+
+    Raises: InputError.
+    """
+    parts: list[str | int] = []
     at = 0
     while at < len(key):
         match = KEY_PART_PATTERN.match(key, at)
@@ -72,12 +78,12 @@ def key_parts(study: Study, key: str) -> list[str | int]:
                 f"{as_text(key)} is not a key; a key looks like pin.E.profile[2].diameter",
                 code="not-a-key",
             )
-        found.append(match[1] if match[1] is not None else match[2])
-        found += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
+        parts.append(match[1] if match[1] is not None else match[2])
+        parts += [int(i) - 1 for i in INDEX_PATTERN.findall(match[3])]
         at = match.end()
-    if not found:
+    if not parts:
         raise study.error("'' is not a key", code="not-a-key")
-    return found
+    return parts
 
 
 def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
@@ -88,14 +94,17 @@ def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
             raise IndexError
         return table[part]
     except (KeyError, IndexError, TypeError):
-        there = part + 1 if isinstance(part, int) else part
+        position = part + 1 if isinstance(part, int) else part
         raise study.error(
-            f"{key}: the study has no {as_text(there)} there", code="unknown-key"
+            f"{key}: the study has no {as_text(position)} there", code="unknown-key"
         ) from None
 
 
 def _plain(value: Any, key: str) -> Any:
-    """As TOML has it: numbers of numpy, tuples and paths too. Raises: InputError for others."""
+    """Return a value as TOML has it; numbers of numpy, tuples and paths are accepted.
+
+    Raises: InputError for others.
+    """
     if isinstance(value, Mapping):
         return {str(k): _plain(v, f"{key}.{k}") for k, v in value.items() if v is not None}
     if isinstance(value, bool | int | float | str):

@@ -16,7 +16,10 @@ IGNORED_TEXTS = "title", "report", "assumptions"  # texts that change no result
 
 
 def inputs(study: Study) -> dict[str, str]:
-    """By key, as the study writes them; of a file that it names also the start of its SHA-256."""
+    """Return the values of a study by key, as it writes them.
+
+    A value that names a file has also the start of the file's SHA-256.
+    """
     raw = raw_study(study)
     return {
         key: _written(study, value)
@@ -46,7 +49,7 @@ def _written(study: Study, value: Any) -> str:
 
 
 def _file(study: Study, name: str) -> bytes | None:
-    """Its content, if a file of the study has that name."""
+    """Return the content of a file of the study, None if it has none of that name."""
     if "." not in name or "\0" in name or len(name) > MAX_PATH_LENGTH:
         return None
     try:

@@ -1,4 +1,6 @@
-"""Limits on the size of a study: more would take hours, or more memory than machines have."""
+"""Limits on the size of a study; larger ones would take hours, or more memory than machines
+have.
+"""
 
 from __future__ import annotations
 
@@ -21,30 +23,32 @@ MAX_BODIES = 500  # and joints: three unknowns each, in dense equations
 
 
 def texts(node: Any, key: str = "") -> Iterator[tuple[str, str]]:
-    """The texts of a study, each with its key."""
+    """Yield the texts of a study, each with its key."""
     if isinstance(node, str):
         yield key, node
     elif isinstance(node, list):
-        for i, each in enumerate(node, 1):
-            yield from texts(each, f"{key}[{i}]")
+        for i, item in enumerate(node, 1):
+            yield from texts(item, f"{key}[{i}]")
     elif isinstance(node, dict):
-        for name, each in node.items():
-            yield from texts(each, f"{key}.{name}" if key else name)
+        for name, item in node.items():
+            yield from texts(item, f"{key}.{name}" if key else name)
 
 
-def control_characters(found: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
-    """Errors for texts with characters that command terminals and that PDF and XML cannot show."""
-    for key, text in found:
+def control_characters(named_texts: Iterable[tuple[str, str]]) -> Iterator[Wrong]:
+    """Yield errors for texts with characters that command terminals or that PDF and XML cannot
+    show.
+    """
+    for key, text in named_texts:
         if bad := CONTROL_CHARACTER_PATTERN.search(text):
             what = f"has the control character U+{ord(bad[0]):04X}"
             yield Wrong(f"{key}: {what}; remove it", code="control-character")
 
 
 def too_many(table: StudyTable) -> Iterator[str]:
-    """Errors for whatever exceeds a limit."""
-    for key, what, there, most in _counted(table):
-        if len(there) > most:
-            yield f"{key}: {len(there):,} {what}; the limit is {most:,}"
+    """Yield errors for whatever exceeds a limit."""
+    for key, what, items, most in _counted(table):
+        if len(items) > most:
+            yield f"{key}: {len(items):,} {what}; the limit is {most:,}"
     for name, pin in table.pin.items():
         diameters = [d for d in pin.diameters if d]
         if not diameters:
@@ -59,8 +63,8 @@ def too_many(table: StudyTable) -> Iterator[str]:
             yield f"{key}: {_odd('as wide as elsewhere', stepped, MAX_DIAMETER_RATIO)}"
 
 
-def _odd(what: str, found: float, most: float) -> str:
-    return f"the pin is {found:,.0f} times {what}; the limit is {most:,.0f}; check the units"
+def _odd(what: str, ratio: float, most: float) -> str:
+    return f"the pin is {ratio:,.0f} times {what}; the limit is {most:,.0f}; check the units"
 
 
 def _counted(table: StudyTable) -> Iterator[tuple[str, str, Sized, int]]:

@@ -1,4 +1,6 @@
-"""Numbers of a study that can be and are hardly meant: mostly their unit is another one."""
+"""Possible mistakes in the numbers of a study: values that are allowed but unusual, mostly
+because of another unit.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +17,9 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem, split, to_si
 
 @dataclass(frozen=True)
 class UsualRange:
-    """What a quantity lies between, in SI, of whose, and near what; and the units in which it is
-    stated, metric and imperial, the first to say it in.
+    """The usual range of a quantity in SI, its owner and typical value, and its usual units.
+
+    The units are metric and imperial; messages use the first.
     """
 
     dimension: str
@@ -60,7 +63,9 @@ MAX_YIELD_STRAIN = 1.0 / 20.0  # at which a material yields
 @dataclass(frozen=True)
 class StatedValue:
     """A number of the study: a key of USUAL_RANGES, its own key, its value in SI and as it is
-    written; most: in SI, where less than the usual is plausible.
+    written.
+
+    most: upper bound in SI, where values below the usual are plausible.
     """
 
     kind: str
@@ -71,21 +76,24 @@ class StatedValue:
 
     @property
     def usual(self) -> UsualRange:
-        """What it usually is."""
+        """The usual range of the quantity."""
         return USUAL_RANGES[self.kind]
 
     def plausible(self, value: float) -> bool:
-        """Whether a value (SI) would be."""
+        """Return whether a value (SI) would be plausible."""
         return self.usual.low <= value <= min(self.usual.high, self.most)
 
 
 def questions(table: StudyTable, raw: dict[str, Any], system: UnitSystem) -> tuple[str, ...]:
-    """What is hardly meant, each with the key and the likely unit. raw: what the table is from."""
-    return tuple(text for each in _numbers(table, raw) if (text := _question(each, system)))
+    """Return the possible mistakes, each with the key and the likely unit.
+
+    raw: the content of the file.
+    """
+    return tuple(text for number in _numbers(table, raw) if (text := _question(number, system)))
 
 
 def _numbers(table: StudyTable, raw: Any) -> Iterator[StatedValue]:
-    """Everything that has a usual range."""
+    """Yield all numbers that have a usual range."""
     for name, material in table.material.items():
         yield from _of_material(f"material.{name}", material, raw["material"][name])
     for name, pin in table.pin.items():
@@ -152,13 +160,15 @@ def _question(stated: StatedValue, system: UnitSystem) -> str:
 
 
 def _likely(stated: StatedValue, system: UnitSystem) -> str:
-    """The number as it is written with the unit in which it is most usual, if there is one: of the
-    units of its own kind the one nearest to the typical value, else of the others.
+    """Return the number as written with its most plausible unit, if there is one.
+
+    Of the units of its own system the one nearest to the typical value is taken, else of the
+    others.
     """
-    found = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
-    if found is None:
+    quantity = split(stated.written) if isinstance(stated.written, str) else (stated.written, "")
+    if quantity is None:
         return ""
-    (number, unit), usual = found, stated.usual
+    (number, unit), usual = quantity, stated.usual
     kinds = [usual.metric, usual.imperial]
     if unit in usual.imperial or (not unit and system is UNIT_SYSTEMS["in-lbf-s"]):
         kinds.reverse()

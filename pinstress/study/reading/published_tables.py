@@ -11,7 +11,10 @@ from pinstress.study.reading.file import Study
 
 @dataclass(frozen=True)
 class PublishedRow:
-    """A published value of a quantity of the item `name`; where: file and line."""
+    """A published value of a quantity of the item `name`.
+
+    where: file and line.
+    """
 
     case: str
     time: float | None
@@ -26,8 +29,10 @@ class PublishedRow:
 class Published:
     """Published values in the study's units.
 
-    peaks: (maximum von Mises, safety factor) by pin and case. reactions: magnitude by case and
-    connection. motion: rows of time, speed, acceleration. values: single quantities.
+    peaks: (maximum von Mises, safety factor) by pin and case.
+    reactions: magnitude by case and connection.
+    motion: rows of time, speed, acceleration.
+    values: single quantities.
     """
 
     peaks: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
@@ -37,7 +42,10 @@ class Published:
 
 
 def read_published(study: Study) -> Published:
-    """The study's tables of published values. Raises: InputError."""
+    """Return the study's tables of published values.
+
+    Raises: InputError.
+    """
     named = study.table.published
     if named is None:
         return Published()
@@ -54,7 +62,7 @@ def read_published(study: Study) -> Published:
 
 def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
     columns = ("case", "time", "quantity", "name", "reason")
-    found = []
+    rows = []
     for where, text, (value,) in _rows(study, name, columns, ("published",)):
         case, when, quantity, what, reason = text
         if case not in study.table.case:
@@ -65,21 +73,21 @@ def _values(study: Study, name: str | None) -> tuple[PublishedRow, ...]:
             raise InputError(
                 f"{where}: time {when!r} is not a number", code="not-a-number"
             ) from None
-        found.append(PublishedRow(case, time, quantity, what, value, reason, where))
-    return tuple(found)
+        rows.append(PublishedRow(case, time, quantity, what, value, reason, where))
+    return tuple(rows)
 
 
 def _rows(
     study: Study, name: str | None, names: tuple[str, ...], numbers: tuple[str, ...]
 ) -> list[tuple[str, list[str], list[float]]]:
-    """Rows of one table: file and line, names and numbers of each."""
+    """Return the rows of one table: file and line, names and numbers of each."""
     if name is None:
         return []
-    found = []
+    rows = []
     try:
         for row in read_table(study.path_to(name), (*names, *numbers)):
             cells = [row.cells[c] for c in names]
-            found.append((row.where, cells, [row.number(c) for c in numbers]))
+            rows.append((row.where, cells, [row.number(c) for c in numbers]))
     except TableError as error:
         raise study.table_error("published", error) from None
-    return found
+    return rows

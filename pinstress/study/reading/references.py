@@ -30,16 +30,16 @@ from pinstress.study.schema.tables import StudyTable
 
 
 def cross_references(table: StudyTable) -> Iterator[Wrong]:
-    """References to things that do not exist."""
+    """Yield the references to things that do not exist."""
     bears: dict[str, str] = {}
     for name, pin in table.pin.items():
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
-        own = dict.fromkeys(connection for _, connection in pin.connections)
-        own |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
-        own |= dict.fromkeys(pin.band)
+        surfaces = dict.fromkeys(connection for _, connection in pin.connections)
+        surfaces |= dict.fromkeys(s.name for s in pin.profile or () if s.name)
+        surfaces |= dict.fromkeys(pin.band)
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
-            yield from _known(key, "connection or segment", connection, own)
+            yield from _known(key, "connection or segment", connection, surfaces)
             for at, made_of in (
                 ("material", lug.material),
                 ("bushing.material", None if lug.bushing is None else lug.bushing.material),
@@ -76,8 +76,9 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
 
 
 def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
-    """Bearing strengths with which no pressure is compared: of materials of no pin on which a link
-    bears, and of no lug or bushing.
+    """Yield errors for bearing strengths with which no pressure is compared.
+
+    They belong to materials of no pin on which a link bears, and of no lug or bushing.
     """
     bears: set[str | None] = set()
     for pin in table.pin.values():
@@ -146,7 +147,9 @@ MATERIAL_TABLE_OF_METHOD = {
 
 
 def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
-    """A spectrum of cases that exist, and data for its method in some material of a pin."""
+    """Yield errors unless the spectrum's cases exist and a pin's material has data for its
+    method.
+    """
     for case in fatigue.occurrences:
         known = {**table.case, **table.sequence}
         yield from _known(f"fatigue.occurrences.{case}", "case", case, known)
@@ -175,7 +178,7 @@ def _of_fatigue(table: StudyTable, fatigue: FatigueTable) -> Iterator[Wrong]:
 
 
 def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, float | None]:
-    """What else a method needs, by key."""
+    """Return the further parameters of a method, by key."""
     ultimate = {"ultimate_strength": material.ultimate_strength}
     sn = material.fatigue
     if fatigue.method == "fkm-p-ram" or sn is None:
@@ -204,7 +207,7 @@ def _of_pins(
 
 
 def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
-    """Every key below [mechanism] that names a joint, with the name."""
+    """Yield every key below [mechanism] that names a joint, with the name."""
     for name, slider in mechanism.slider.items():
         for joint in slider.joints:
             if isinstance(joint, str):
@@ -283,9 +286,9 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
     moves = all(d.moves for d in mechanism.drive)
     holders = dict.fromkeys([*map(drive_name, mechanism.drive), *mechanism.slider, *mechanism.stop])
     for name, case in table.case.items():
-        for each in (case.hold or ()) if isinstance(case, StaticCase) else ():
+        for hold_name in (case.hold or ()) if isinstance(case, StaticCase) else ():
             what = "drive, slider or stop"
-            yield from _known(f"case.{name}.hold", what, each, holders)
+            yield from _known(f"case.{name}.hold", what, hold_name, holders)
         if isinstance(case, MotionCase) and not moves:
             yield Wrong(
                 f"case.{name}: a motion needs start, end and duration in [mechanism.drive]",
@@ -308,7 +311,7 @@ def _of_its_cases(table: StudyTable, mechanism: MechanismTable) -> Iterator[Wron
 def _of_laws(
     where: str, load: ApplyTable, mechanism: MechanismTable, moves: bool
 ) -> Iterator[Wrong]:
-    """Arguments of the tables of a load, and its switches."""
+    """Yield errors for arguments of the tables of a load, and for its switches."""
     positions = {**mechanism.slider, **dict.fromkeys(map(drive_name, mechanism.drive))}
     timed = [key for key in ("begin", "end") if getattr(load, key) is not None]
     for key in ("force_law", "couple_law"):

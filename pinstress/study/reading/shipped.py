@@ -1,4 +1,4 @@
-"""Where the studies that ship with the project are: in the wheel, or in the checkout."""
+"""Location of the studies that ship with the project: in the wheel, or in the checkout."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from pathlib import Path
 
 
 def shipped_studies() -> dict[str, Path]:
-    """Paths of the studies that ship with the program, by name."""
+    """Return the paths of the studies that ship with the program, by name."""
     folder = shipped("one_pin.toml").parent
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 
 
 def shipped(name: str) -> Path:
-    """Path of a shipped study."""
+    """Return the path of a shipped study."""
     here = Path(__file__).parents[2]
     inside = here / "studies" / name
     return inside if inside.is_file() else here.parent / "studies" / name

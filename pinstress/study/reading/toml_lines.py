@@ -1,4 +1,4 @@
-"""On which line of a study file a key stands, for messages that name the key.
+"""Lines of the keys of a study file, for messages that name a key.
 
 tomllib keeps no positions and tomlkit gives none. The text has been read by tomllib already, so it
 is valid TOML and its headers, keys and brackets only need to be followed.
@@ -26,8 +26,9 @@ Place = tuple[str | int, ...]  # keys, and indices from 0 into arrays
 
 
 class Tokens:
-    """The tokens of a text one after the other, each with the line on which it begins: a list of
-    those of a large file would take gigabytes.
+    """The tokens of a text one after the other, each with the line on which it begins.
+
+    They are an iterator, since a list of those of a large file would take gigabytes.
     """
 
     def __init__(self, text: str) -> None:
@@ -39,41 +40,43 @@ class Tokens:
 
     @property
     def first(self) -> tuple[str, int]:
-        """The token that comes next."""
+        """The next token."""
         assert self._next is not None
         return self._next
 
     def pop(self) -> tuple[str, int]:
-        """The same, and past it."""
+        """Return the next token and advance past it."""
         first = self.first
         self._next = next(self._rest, None)
         return first
 
 
 def places(text: str) -> dict[Place, int]:
-    """The line, from 1 on, of every key, table and array element of a valid TOML text. A table
-    that has no line of its own has the first of what it contains.
+    """Return the line, from 1 on, of every key, table and array element of a valid TOML text.
+
+    A table without a line of its own has the first line of its content.
     """
     tokens = Tokens(text)
-    found: dict[Place, int] = {}
+    lines: dict[Place, int] = {}
     sizes: dict[Place, int] = {}  # of the arrays of tables
     table: Place = ()
     while tokens:
         token, line = tokens.first
         if token == "[":
             table = _header(tokens, sizes)
-            _mark(table, line, found)
+            _mark(table, line, lines)
         elif token == "\n":
             tokens.pop()
         else:
-            _pair(tokens, table, found)
-    return found
+            _pair(tokens, table, lines)
+    return lines
 
 
 def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
-    """The line of the key with which each message begins ("pin.B.profile[2].length: ..."), or of
-    the nearest table around it that is there; None where there is none. If the message goes on to
-    quote a key of that table ("unknown key 'x'"), it is that key's.
+    """Return the line of the key with which each message begins ("pin.B.profile[2].length: ...").
+
+    Where that key is absent, the line is that of the nearest table around it, or None. If the
+    message goes on to quote a key of that table ("unknown key 'x'"), it is that key's.
     """
     known: dict[str, int] = {}
     everywhere = places(text)
@@ -96,8 +99,10 @@ def _line(known: dict[str, int], longest: int, message: str) -> int | None:
 
 
 def _keys(known: dict[str, int], message: str) -> Iterator[str]:
-    """The known keys with which a message begins, the longest first: looked up where one may end,
-    which is much less than to compare it with every key of a large study.
+    """Yield the known keys with which a message begins, the longest first.
+
+    They are looked up where a key may end, which takes far less time than comparing the message
+    with every key of a large study.
     """
     for end in reversed([m.start() for m in KEY_END_PATTERN.finditer(message)]):
         if message[:end] in known:
@@ -105,7 +110,7 @@ def _keys(known: dict[str, int], message: str) -> Iterator[str]:
 
 
 def _said(place: Sequence[str | int]) -> str:
-    """A place as messages spell it, which count from 1."""
+    """Return a place as messages spell it, which count from 1."""
     return "".join(f"[{p + 1}]" if isinstance(p, int) else f".{p}" for p in place)[1:]
 
 
@@ -119,7 +124,7 @@ def _tokens(text: str) -> Iterator[tuple[str, int]]:
 
 
 def _header(tokens: Tokens, sizes: dict[Place, int]) -> Place:
-    """The table that [a.b] or the next [[a.b]] opens."""
+    """Return the table that [a.b] or the next [[a.b]] opens."""
     tokens.pop()
     array = tokens.first[0] == "["
     if array:
@@ -137,7 +142,7 @@ def _header(tokens: Tokens, sizes: dict[Place, int]) -> Place:
 
 
 def _key(tokens: Tokens, end: str) -> list[str]:
-    """The parts of a dotted key, and past its end."""
+    """Return the parts of a dotted key, and advance past its end."""
     parts = []
     while (token := tokens.pop()[0]) != end:
         if token[0] in "\"'":
@@ -147,15 +152,15 @@ def _key(tokens: Tokens, end: str) -> list[str]:
     return parts
 
 
-def _pair(tokens: Tokens, table: Place, found: dict[Place, int]) -> None:
+def _pair(tokens: Tokens, table: Place, lines: dict[Place, int]) -> None:
     line = tokens.first[1]
     place = (*table, *_key(tokens, "="))
-    _mark(place, line, found)
-    _value(tokens, place, found)
+    _mark(place, line, lines)
+    _value(tokens, place, lines)
 
 
-def _value(tokens: Tokens, place: Place, found: dict[Place, int]) -> None:
-    """Past a value, and what it contains; what ends it remains."""
+def _value(tokens: Tokens, place: Place, lines: dict[Place, int]) -> None:
+    """Advance past a value and its content; the token that ends it remains."""
     first, _ = tokens.pop()
     if first not in ("[", "{"):
         while tokens.first[0] not in (",", "]", "}", "\n"):
@@ -168,13 +173,13 @@ def _value(tokens: Tokens, place: Place, found: dict[Place, int]) -> None:
             tokens.pop()
             return
         if first == "{":
-            _pair(tokens, place, found)
+            _pair(tokens, place, lines)
         else:
-            _mark((*place, i), tokens.first[1], found)
-            _value(tokens, (*place, i), found)
+            _mark((*place, i), tokens.first[1], lines)
+            _value(tokens, (*place, i), lines)
 
 
-def _mark(place: Place, line: int, found: dict[Place, int]) -> None:
+def _mark(place: Place, line: int, lines: dict[Place, int]) -> None:
     for depth in range(1, len(place)):
-        found.setdefault(place[:depth], line)
-    found[place] = line
+        lines.setdefault(place[:depth], line)
+    lines[place] = line

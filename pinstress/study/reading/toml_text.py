@@ -1,4 +1,4 @@
-"""The TOML of a study file, read in a time that is proportional to its length.
+"""TOML of a study file, read in a time that is proportional to its length.
 
 tomllib takes minutes and gigabytes for a key of ten thousand parts, so such text, which no study
 needs, is refused by its tokens before tomllib reads it.
@@ -20,7 +20,10 @@ MAX_WORD_LENGTH = 1000  # characters of a number or of a key without quotes
 
 
 def read_toml(path: Path, text: str) -> dict[str, Any]:
-    """The content of a text. Raises: InputError with the line."""
+    """Return the content of a text.
+
+    Raises: InputError with the line.
+    """
     _require_moderate(path, text)
     try:
         return tomllib.loads(text)
@@ -31,7 +34,7 @@ def read_toml(path: Path, text: str) -> dict[str, Any]:
 
 
 def _require_moderate(path: Path, text: str) -> None:
-    """Raises: InputError for tables nested too deeply and for words too long."""
+    """Raise InputError for tables nested too deeply and for words too long."""
     line, at = 1, 0
     open_: list[int] = [0]  # by bracket that is open, outermost first: dots of the key before it
     depth = 0  # brackets and dots together

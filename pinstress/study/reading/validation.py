@@ -1,4 +1,4 @@
-"""What pydantic finds wrong with a study, in our words: none of its own reach a user."""
+"""Validation errors of pydantic in our words; none of its own messages reach a user."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ OTHER_MISTAKE = ("not-valid", "cannot have this value")
 
 
 def explain(error: ValidationError) -> list[Wrong]:
-    """Everything that is wrong, each with its key."""
+    """Return all errors, each with its key."""
     return [_explained(dict(item)) for item in error.errors(include_url=False)]
 
 
@@ -64,7 +64,7 @@ def _explained(item: dict[str, Any]) -> Wrong:
 
 
 def _key(loc: tuple[int | str, ...], kind: str) -> str:
-    """The key in the file, as messages spell it: without the tags that pydantic adds for unions."""
+    """Return the key as messages spell it, without the tags that pydantic adds for unions."""
     key = ""
     for i, part in enumerate(loc):
         if str(part).startswith(("<", "[key]")) or (i == 2 and loc[0] == "case"):
@@ -74,7 +74,7 @@ def _key(loc: tuple[int | str, ...], kind: str) -> str:
 
 
 def _found(kind: str, context: dict[str, Any], value: object) -> str:
-    """What is there instead."""
+    """Return the actual value, as the end of the message."""
     if kind in ("too_short", "too_long"):
         most = context.get("min_length", context.get("max_length"))
         what = "entry" if context["field_type"] == "Dictionary" else "element"

@@ -21,7 +21,7 @@ from pinstress.study.schema.types import (
 
 
 def require_one(what: str, *given: Any) -> None:
-    """Raises: ArgumentError unless exactly one is given."""
+    """Raise ArgumentError unless exactly one is given."""
     if sum(x is not None for x in given) != 1:
         raise ArgumentError(f"give {what}", "give-one")
 

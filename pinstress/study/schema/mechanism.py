@@ -263,7 +263,7 @@ AnyDrive = Annotated[
 
 
 def drive_name(drive: SliderDrive | RotaryDrive) -> str:
-    """The name of a drive: its slider, or its own name or that of the body it turns."""
+    """Return the name of a drive: its slider, or its own name or that of the body it turns."""
     return drive.slider if isinstance(drive, SliderDrive) else drive.name or drive.body
 
 

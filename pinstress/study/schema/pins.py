@@ -98,12 +98,12 @@ class SegmentTable(StrictTable):
 
     @property
     def diameters(self) -> tuple[float, float]:
-        """At its start and far end, m."""
+        """The diameters at its start and far end, m."""
         return self.diameter if isinstance(self.diameter, tuple) else (self.diameter,) * 2
 
     @property
     def bores(self) -> tuple[float, float]:
-        """At its start and far end, m."""
+        """The bores at its start and far end, m."""
         return self.bore if isinstance(self.bore, tuple) else (self.bore,) * 2
 
 
@@ -330,8 +330,9 @@ class PinTable(StrictTable):
 
     @property
     def diameters(self) -> tuple[float, ...]:
-        """Of the segments or corners in order, m, each once where equal ones follow each other;
-        none of a pin from a file.
+        """The diameters of the segments or corners in order, m; empty for a pin from a file.
+
+        Each is listed once where equal ones follow each other.
         """
         of_segments = (d for s in self.profile or () for d in s.diameters)
         of_corners = (2.0 * corner[1] for corner in self.meridian or ())
@@ -339,7 +340,7 @@ class PinTable(StrictTable):
 
     @property
     def connections(self) -> list[tuple[str, str]]:
-        """Connections that bear on it, each with its key."""
+        """The connections that bear on the pin, each with its key."""
         if self.profile is not None:
             named = enumerate(self.profile, 1)
             return [(f"profile[{i}].connection", s.connection) for i, s in named if s.connection]

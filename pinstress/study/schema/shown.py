@@ -20,12 +20,14 @@ _SHORT_REPR.maxlong = _SHORT_REPR.maxstring = _SHORT_REPR.maxother = MAX_TEXT_LE
 
 
 def cut(text: str, most: int = MAX_TEXT_LENGTH) -> str:
-    """The text, or its beginning and an ellipsis."""
+    """Return the text, or its beginning and an ellipsis."""
     return text if len(text) <= most else text[: most - 1] + ELLIPSIS
 
 
 def as_text(value: object) -> str:
-    """A value as Python writes it, shortened; also an integer too long for Python to write."""
+    """Return a value as Python writes it, shortened; also an integer too long for Python to
+    write.
+    """
     if isinstance(value, str):
         return repr(cut(value))
     if isinstance(value, int) and value.bit_length() > 4 * MAX_TEXT_LENGTH:
@@ -34,27 +36,29 @@ def as_text(value: object) -> str:
 
 
 def listed(names: Iterable[object]) -> str:
-    """Names after each other: the first few, and how many more there are."""
+    """Return names one after the other: the first few, and how many more there are."""
     names = list(names)
     more = f" and {len(names) - MAX_LISTED_NAMES:,} more" if len(names) > MAX_LISTED_NAMES else ""
     return (", ".join(cut(str(name)) for name in names[:MAX_LISTED_NAMES]) or "none") + more
 
 
 def nearest(name: object, known: Iterable[str], cutoff: float = 0.6) -> str | None:
-    """The known name that is most like this one, if any is: first but for capitals. None that
-    merely has some letters in common.
+    """Return the known name that is most like this one, None if all merely have some letters in
+    common.
+
+    A name that differs only in capitals comes first.
     """
     wanted, among = cut(str(name)), [cut(k) for k in islice(known, MAX_COMPARED_NAMES)]
-    for each in among:
-        if each.casefold() == wanted.casefold():
-            return each
-    found = difflib.get_close_matches(wanted, among, n=MAX_HINT_CANDIDATES, cutoff=cutoff)
-    return next((one for one in found if _misspelt(wanted.casefold(), one.casefold())), None)
+    for candidate in among:
+        if candidate.casefold() == wanted.casefold():
+            return candidate
+    close = difflib.get_close_matches(wanted, among, n=MAX_HINT_CANDIDATES, cutoff=cutoff)
+    return next((one for one in close if _misspelt(wanted.casefold(), one.casefold())), None)
 
 
 def _misspelt(a: str, b: str) -> bool:
-    """Whether one is part of the other, or a third of the letters at most are wrong, missing, added
-    or swapped with the next.
+    """Return whether one is part of the other, or at most a third of the letters are wrong,
+    missing, added or swapped with the next.
     """
     if min(len(a), len(b)) >= MIN_PART_LETTERS and (a in b or b in a):
         return True
@@ -62,7 +66,7 @@ def _misspelt(a: str, b: str) -> bool:
 
 
 def _mistakes(a: str, b: str) -> int:
-    """Of this kind (the optimal string alignment distance)."""
+    """Return the number of such mistakes (the optimal string alignment distance)."""
     before: list[int] = []
     row = list(range(len(b) + 1))
     for i, x in enumerate(a, 1):
@@ -76,14 +80,14 @@ def _mistakes(a: str, b: str) -> int:
 
 
 def near(name: object, known: Iterable[str]) -> str:
-    """A hint for a name that is not known."""
+    """Return a hint for a name that is not known."""
     known = list(known)
-    found = nearest(name, known)
-    return f"did you mean {found!r}?" if found else f"there are {listed(known)}"
+    suggestion = nearest(name, known)
+    return f"did you mean {suggestion!r}?" if suggestion else f"there are {listed(known)}"
 
 
 def in_toml(value: object) -> str:
-    """A value as the study file spells it, or what kind of value it is."""
+    """Return a value as the study file spells it, or the kind of value it is."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, dict):

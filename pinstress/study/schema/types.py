@@ -80,23 +80,24 @@ PROVENANCE_PROPERTIES: dict[str, Any] = {
 
 
 def _complete(schema: dict[str, Any], table: type["StrictTable"]) -> None:
-    """Descriptions and provenance for a table's JSON Schema."""
+    """Add descriptions and provenance to a table's JSON Schema."""
     for key, words in described(table).items():
         schema["properties"][table.model_fields[key].alias or key]["description"] = words
     schema["properties"].update(PROVENANCE_PROPERTIES)
 
 
 def described(table: type["StrictTable"]) -> dict[str, str]:
-    """The description of each key: the string under the field in the code, read only when a schema
-    is requested, since it takes time.
+    """Return the description of each key: the string under the field in the code.
+
+    It is read only when a schema is requested, since that takes time.
     """
     descriptions: dict[str, str] = {}
     for one in reversed(table.__mro__):
         if not issubclass(one, StrictTable) or one is StrictTable:
             continue
-        (made,) = ast.parse(dedent(inspect.getsource(one))).body
-        assert isinstance(made, ast.ClassDef)
-        for field, text in pairwise(made.body):
+        (definition,) = ast.parse(dedent(inspect.getsource(one))).body
+        assert isinstance(definition, ast.ClassDef)
+        for field, text in pairwise(definition.body):
             match (field, text):
                 case (
                     ast.AnnAssign(target=ast.Name(id=key)),
@@ -107,7 +108,7 @@ def described(table: type["StrictTable"]) -> dict[str, str]:
 
 
 def sourced(value: list[dict[str, Any]]) -> dict[str, Any]:
-    """JSON Schema of { value = ..., provenance = "given", note = "..." }."""
+    """Return the JSON Schema of { value = ..., provenance = "given", note = "..." }."""
     return {
         "type": "object",
         "properties": {
@@ -292,7 +293,9 @@ def _unknown(key: object, known: list[str]) -> InitErrorDetails:
 
 
 def hint_for_key(key: str, known: list[str]) -> str:
-    """What an unknown key may mean: found only for errors that are printed, since it takes time."""
+    """Return a hint on an unknown key; called only for errors that are printed, since it takes
+    time.
+    """
     if key in REMOVED_KEYS:
         return REMOVED_KEYS[key]
     near = nearest(key, known, cutoff=0.5)

@@ -165,9 +165,9 @@ def _expected(dimension: str) -> Any:
 
 
 def to_si(value: object, dimension: str, system: UnitSystem) -> float:
-    """A study's number or string as a float in SI.
+    """Return a study's number or string as a float in SI.
 
-    Raises: ArgumentError saying what is wrong with it and what would be right.
+    Raises: ArgumentError with what is wrong with it and the remedy.
     """
     _, example = DIMENSION_EXPONENTS[dimension]
     if isinstance(value, bool) or not isinstance(value, int | float | str):
@@ -208,7 +208,7 @@ def _plain(number: float, dimension: str, system: UnitSystem) -> float:
 
 
 def split(text: str) -> tuple[float, str] | None:
-    """A quantity's number and unit; None for a text that does not begin with a number."""
+    """Return a quantity's number and unit; None for a text that does not begin with a number."""
     text = text.strip() if len(text) <= MAX_QUANTITY_LENGTH else ""
     number = NUMBER_PATTERN.match(text)
     return (float(number[0]), text[number.end() :].strip()) if number else None
@@ -228,18 +228,18 @@ def _parse(text: str, dimension: str, system: UnitSystem) -> float:
             f"mark",
             "decimal-comma",
         )
-    found = split(text)
-    if found is None and MINUS_SIGN in text:
+    quantity = split(text)
+    if quantity is None and MINUS_SIGN in text:
         hyphen = text.replace(MINUS_SIGN, "-")
         raise ArgumentError(
             f"{as_text(text)} has a Unicode minus sign; write {hyphen!r}", "not-a-number"
         )
-    if found is None:
+    if quantity is None:
         raise ArgumentError(
             f"{as_text(text)} does not begin with a number; write for instance {example!r}",
             "not-a-number",
         )
-    number, unit = found
+    number, unit = quantity
     if not unit:
         return _plain(number, dimension, system)
     return number * _unit_factor(unit, dimension, text)
@@ -276,7 +276,9 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
 
 
 def _meant(unit: str, dimension: str) -> str | None:
-    """The usual unit of a dimension that is spelled so but for capitals, blanks and dots."""
+    """Return the usual unit of a dimension that is spelled so except for capitals, blanks and
+    dots.
+    """
     spelled = {_bare(usual): usual for usual, (of, _) in USUAL_UNITS.items() if of == dimension}
     return spelled.get(_bare(unit))
 
@@ -286,5 +288,5 @@ def _bare(unit: str) -> str:
 
 
 def _symbols() -> dict[str, None]:
-    """The names in the usual units, each once."""
+    """Return the names in the usual units, each once."""
     return dict.fromkeys(name for unit in USUAL_UNITS for name in re.findall(r"[A-Za-z]+", unit))

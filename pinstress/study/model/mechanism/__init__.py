@@ -1,1 +1,1 @@
-"""From a study's mechanism to the linkage, its drives and the forces on it."""
+"""Linkage of a study's mechanism, its drives and the forces on it."""

@@ -1,4 +1,4 @@
-"""The mechanism as drawn: where its joints are, and which bodies are on them."""
+"""The mechanism as drawn: the positions of its joints, and the bodies on them."""
 
 from __future__ import annotations
 
@@ -12,20 +12,26 @@ from pinstress.study.schema.mechanism import MechanismTable
 
 @dataclass(frozen=True)
 class Drawing:
-    """at: of the joints, m. shown: a length (m) as text."""
+    """The mechanism as drawn.
+
+    at: positions of the joints, m.
+    shown: gives a length (m) as text.
+    """
 
     mechanism: MechanismTable
     at: dict[str, Point]
     shown: Callable[[float], str]
 
     def on(self, joint: str) -> list[str]:
-        """The bodies at a joint, the one that carries the pin among them."""
+        """Return the bodies at a joint, including the one that carries the pin."""
         j = self.mechanism.joint[joint]
         return ([j.fixed_in] if j.fixed_in else []) + list(j.connections.values())
 
     def require_on(self, joint: str, body: str, at: tuple[str, str], right: str) -> None:
-        """Raises: LinkageError where the body is not at the joint; at: the key in question, right:
-        what to do.
+        """Raise LinkageError where the body is not at the joint.
+
+        at: the key in question.
+        right: what to do.
         """
         if body not in (on := self.on(joint)):
             raise LinkageError(

@@ -1,4 +1,4 @@
-"""From a study's drives to their laws, and to their values in a case."""
+"""Laws of a study's drives, and their values in a case."""
 
 from __future__ import annotations
 
@@ -32,19 +32,25 @@ AnyDriveTable = SliderDrive | RotaryDrive
 
 
 def mechanism_of(study: Study) -> MechanismTable:
-    """The study's mechanism. Raises: InputError where it has none."""
+    """Return the study's mechanism.
+
+    Raises: InputError where it has none.
+    """
     if study.table.mechanism is None:
         raise study.error("the study has no [mechanism]; add one", code="no-mechanism")
     return study.table.mechanism
 
 
 def laws(study: Study) -> tuple[Law, ...]:
-    """The law of every drive. Raises: InputError for a table that cannot be used."""
+    """Return the law of every drive.
+
+    Raises: InputError for a table that cannot be used.
+    """
     return tuple(_law(study, d) for d in mechanism_of(study).drive)
 
 
 def offsets(study: Study) -> dict[str, float]:
-    """The offset subtracted from each driven slider's length to display its position, m."""
+    """Return the offset subtracted from each driven slider's length to display its position, m."""
     drives = mechanism_of(study).drive
     return {d.slider: d.position_offset for d in drives if isinstance(d, SliderDrive)}
 
@@ -59,12 +65,15 @@ def _law(study: Study, drive: AnyDriveTable) -> Law:
 
 
 def span(study: Study) -> float:
-    """Time at which the last drive ends, s."""
+    """Return the time at which the last drive ends, s."""
     return max(float(law.finish) for law in laws(study))  # type: ignore[attr-defined]
 
 
 def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
-    """The law of a drive with a table. Raises: InputError."""
+    """Return the law of a drive with a table.
+
+    Raises: InputError.
+    """
     path = study.path_to(drive.table or "")
     slides = isinstance(drive, SliderDrive)
     length, time = study.system.factor("length"), study.system.factor("time")
@@ -93,7 +102,10 @@ def drive_table(study: Study, drive: AnyDriveTable) -> TableDrive:
 def state(
     study: Study, name: str, case: StaticCase | InstantCase | AtWheel, drawn: Linkage
 ) -> list[tuple[float, float, float]]:
-    """Position, velocity and acceleration of every drive in a case, SI. Raises: InputError."""
+    """Return the position, velocity and acceleration of every drive in a case, SI.
+
+    Raises: InputError.
+    """
     drives = mechanism_of(study).drive
     rates = (case.velocity, case.acceleration) if isinstance(case, InstantCase) else (0.0, 0.0)
     return [
@@ -140,9 +152,9 @@ def _coordinate(
         return default
     slides = isinstance(drive, SliderDrive)
     try:
-        found = to_si(value, DRIVE_DIMENSIONS[key][0 if slides else 1], study.system)
+        coordinate = to_si(value, DRIVE_DIMENSIONS[key][0 if slides else 1], study.system)
     except ArgumentError as error:
         raise study.error(f"{where}: {error}", code=error.code) from None
     if key == "position" and isinstance(drive, RotaryDrive) and drive.line is not None:
-        found += 2.0 * math.pi * round((default - found) / (2.0 * math.pi))
-    return found
+        coordinate += 2.0 * math.pi * round((default - coordinate) / (2.0 * math.pi))
+    return coordinate

@@ -1,4 +1,4 @@
-"""From a study's loads, springs and tables to the forces on its linkage."""
+"""Forces on a linkage, from a study's loads, springs and tables."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ RADIANS_PER_DEGREE = math.pi / 180.0
 
 @dataclass(frozen=True)
 class _Column:
-    """A column of a table: its name in a file, its dimension, SI value of the file's unit, and its
-    unit in messages.
+    """A column of a table: its name in a file, its dimension, SI value of the file's unit, and
+    its unit in messages.
     """
 
     name: str
@@ -61,8 +61,11 @@ def _angle(name: str) -> _Column:
 def curve(
     study: Study, where: str, given: CurveTable | None, x: _Column, value: tuple[str, str]
 ) -> ForceTable | None:
-    """A table as a function; where: its key. x: its argument; value: name and dimension of its
-    value.
+    """Return a table as a function.
+
+    where: its key.
+    x: its argument.
+    value: name and dimension of its value.
 
     Raises: InputError for a table that cannot be used.
     """
@@ -93,7 +96,10 @@ def _rows(study: Study, given: CurveTable, x: _Column, y: _Column) -> list[tuple
 
 
 def springs(study: Study, mechanism: Linkage) -> tuple[Spring, ...]:
-    """The springs and dampers of a mechanism. Raises: InputError."""
+    """Return the springs and dampers of a mechanism.
+
+    Raises: InputError.
+    """
     table = study.table.mechanism
     assert table is not None
     lines = (_spring(study, mechanism, *item) for item in table.spring.items())
@@ -146,7 +152,12 @@ def _at(mechanism: Linkage, place: JointOrPoint) -> Point:
 def load(
     study: Study, where: str, table: ApplyTable, force: Point, mechanism: Linkage
 ) -> tuple[Applied, ...]:
-    """A load of a case; force: N, along `force_law` of size one. Raises: InputError."""
+    """Return a load of a case.
+
+    force: N, along `force_law` of size one.
+
+    Raises: InputError.
+    """
     at = table.at
     if at is None:
         at = next(b.centre for b in mechanism.bodies if b.name == table.body)
@@ -176,8 +187,8 @@ def _varying(
     if law is None:
         return None
     measure, x = _argument(study, law, mechanism)
-    found = curve(study, where, law, x, (value, value))
-    return None if found is None else Varying(measure, found)
+    table = curve(study, where, law, x, (value, value))
+    return None if table is None else Varying(measure, table)
 
 
 def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Measure, _Column]:
@@ -187,8 +198,8 @@ def _argument(study: Study, law: ForceLawTable, mechanism: Linkage) -> tuple[Mea
         return Distance((a, b), (p, q)), _column(study, "length", "length")
     if law.position_of is None:
         return Clock(), _column(study, "time", "time")
-    found: dict[str, Slider | Turn] = {s.name: s for s in mechanism.sliders}
-    of = (found | {t.name: t for t in mechanism.turns})[law.position_of]
+    sources: dict[str, Slider | Turn] = {s.name: s for s in mechanism.sliders}
+    of = (sources | {t.name: t for t in mechanism.turns})[law.position_of]
     if isinstance(of, Turn):
         return Position(of), _angle("position_deg")
     return Position(of), _column(study, "position", "length")

@@ -1,4 +1,4 @@
-"""From a study's gears and racks to teeth that mesh."""
+"""Meshing teeth of a study's gears and racks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ NAME_JOINT_REMEDY = "name the joint about which it turns"
 
 
 def gears(name: str, table: GearTable, drawing: Drawing) -> Teeth:
-    """A pair of gears. Raises: LinkageError."""
+    """Return a pair of gears.
+
+    Raises: LinkageError.
+    """
     key = ("gear", name)
     for body, joint in zip(table.bodies, table.joints, strict=True):
         drawing.require_on(joint, body, key, NAME_JOINT_REMEDY)
@@ -53,7 +56,10 @@ def _require_reach(name: str, distance: float, needed: float, drawing: Drawing) 
 
 
 def rack(name: str, table: RackTable, drawing: Drawing, sliders: tuple[Slider, ...]) -> Teeth:
-    """A gear and a rack. Raises: LinkageError."""
+    """Return a gear and a rack.
+
+    Raises: LinkageError.
+    """
     key = ("rack", name)
     drawing.require_on(table.joint, table.pinion, key, NAME_JOINT_REMEDY)
     slider = next(s for s in sliders if s.name == table.slider)

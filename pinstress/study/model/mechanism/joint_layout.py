@@ -17,11 +17,16 @@ class LayoutError(CodedError, ValueError):
 
 
 def places(mechanism: MechanismTable, show: Show) -> dict[str, Point]:
-    """Every joint's position as drawn, m; `show` formats a length. Raises: LayoutError."""
-    found: dict[str, Point] = {}
+    """Return every joint's position as drawn, m.
+
+    show: formats a length.
+
+    Raises: LayoutError.
+    """
+    positions: dict[str, Point] = {}
     waiting = dict(mechanism.joint)
     while waiting:
-        ready = [name for name, j in waiting.items() if set(_origins(j)) <= set(found)]
+        ready = [name for name, j in waiting.items() if set(_origins(j)) <= set(positions)]
         if not ready:
             name = next(iter(waiting))
             unknown = [o for o in _origins(waiting[name]) if o not in mechanism.joint]
@@ -31,8 +36,8 @@ def places(mechanism: MechanismTable, show: Show) -> dict[str, Point]:
             circle = f"{key}: the positions of {', '.join(waiting)} depend on each other"
             raise LayoutError(f"{circle}; give one of them as [x, y]", "circular-positions")
         for name in ready:
-            found[name] = _placed(name, waiting.pop(name), found, show)
-    return {name: found[name] for name in mechanism.joint}
+            positions[name] = _placed(name, waiting.pop(name), positions, show)
+    return {name: positions[name] for name in mechanism.joint}
 
 
 def _origins(joint: JointTable) -> tuple[str, ...]:
@@ -41,14 +46,14 @@ def _origins(joint: JointTable) -> tuple[str, ...]:
     return joint.at.origins if isinstance(joint.at, Dyad) else ()
 
 
-def _placed(name: str, joint: JointTable, found: Mapping[str, Point], show: Show) -> Point:
+def _placed(name: str, joint: JointTable, positions: Mapping[str, Point], show: Show) -> Point:
     at: Place = joint.at
     if isinstance(at, Polar):
-        x, y = found[at.origin]
+        x, y = positions[at.origin]
         return x + at.distance * math.cos(at.angle), y + at.distance * math.sin(at.angle)
     if not isinstance(at, Dyad):
         return at
-    (x1, y1), (x2, y2) = (found[o] for o in at.origins)
+    (x1, y1), (x2, y2) = (positions[o] for o in at.origins)
     a, b = at.distances
     base = math.hypot(x2 - x1, y2 - y1)
     if not abs(a - b) <= base <= a + b or base == 0.0:

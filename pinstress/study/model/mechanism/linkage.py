@@ -1,4 +1,4 @@
-"""From a study's mechanism to the linkage."""
+"""Linkage of a study's mechanism."""
 
 from __future__ import annotations
 
@@ -45,7 +45,10 @@ STANDARD_GRAVITY = 9.80665
 
 
 def linkage(study: Study) -> Linkage:
-    """The study's mechanism. Raises: InputError with all its contradictions."""
+    """Return the linkage of the study's mechanism.
+
+    Raises: InputError with all its contradictions.
+    """
     mechanism = mechanism_of(study)
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
     try:
@@ -64,14 +67,19 @@ def linkage(study: Study) -> Linkage:
 
 def _wrong(error: LinkageError) -> list[Wrong]:
     return [
-        Wrong(f"mechanism: {each}", at=".".join(map(str, ("mechanism", *each.at))), code=each.code)
-        for each in error.each
+        Wrong(
+            f"mechanism: {problem}",
+            at=".".join(map(str, ("mechanism", *problem.at))),
+            code=problem.code,
+        )
+        for problem in error.each
     ]
 
 
 def determined(study: Study, mechanism: Linkage) -> Mobility:
-    """The mobility of a mechanism whose drives determine every position, and each of whose sharing
-    rules applies to an indeterminate force. Raises: InputError.
+    """Return the mobility of a mechanism whose drives determine every position.
+
+    Raises: InputError where they do not, or where a sharing rule applies to no indeterminate force.
     """
     try:
         return require_determined(mechanism)
@@ -84,13 +92,13 @@ def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage:
     wrong: list[LinkageError] = []
 
     def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
-        made = []
+        parts = []
         for one in of:
             try:
-                made.append(make(one))
+                parts.append(make(one))
             except LinkageError as error:
                 wrong.extend(error.each)
-        return tuple(made)
+        return tuple(parts)
 
     bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items())
     sliders = each(lambda s: _slider(drawing, *s), mechanism.slider.items())
@@ -127,7 +135,7 @@ def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage:
 
 
 def _circle(joint: JointTable) -> float:
-    """Radius of the friction circle, m."""
+    """Return the radius of the friction circle, m."""
     mu = joint.friction or 0.0
     return 0.5 * (joint.diameter or 0.0) * mu / math.hypot(1.0, mu)
 
@@ -153,7 +161,9 @@ def _slider(drawing: Drawing, name: str, s: SliderTable) -> Slider:
 
 
 def _turn(study: Study, drawing: Drawing, drive: RotaryDrive) -> Turn:
-    """The driven angle; of its values a turn apart, the drawn one is nearest to the start."""
+    """Return the driven angle; of its values a turn apart, the drawn one is nearest to the
+    start.
+    """
     at, drawn = ("drive", drive_name(drive)), 0.0
     right = "the line gives its angle; name two of its joints"
     for body, line, sign in (
@@ -209,7 +219,7 @@ def _body(drawing: Drawing, name: str, b: BodyTable, g: float) -> Body:
 
 
 def _pin_mass(study: Study, joint: str, weight: float | None, gravity: float) -> float:
-    """Mass of a floating pin: as stated, or of the profile of that name, or nothing."""
+    """Return the mass of a floating pin: as stated, or of the profile of that name, or zero."""
     if weight is not None:
         return weight / gravity
     if joint not in study.table.pin:
@@ -219,7 +229,7 @@ def _pin_mass(study: Study, joint: str, weight: float | None, gravity: float) ->
 
 
 def ground_joint(linkage: Linkage) -> str:
-    """The joint about which moments on the ground are taken: the first that stands still."""
+    """Return the joint about which moments on the ground are taken: the first that stands still."""
     for joint in linkage.joints:
         if joint.fixed_in == GROUND or any(c.body == GROUND for c in joint.connections):
             return joint.name

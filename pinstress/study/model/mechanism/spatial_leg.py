@@ -1,4 +1,4 @@
-"""From a study's spatial leg to its dynamics and the loads on the pin at its hinge."""
+"""Dynamics of a study's spatial leg, and the loads on the pin at its hinge."""
 
 from __future__ import annotations
 
@@ -14,13 +14,16 @@ LEG_AXES = "x = z'' (up), y = x'' (right), z = y'' (ahead, along the hinge)"
 
 
 def instants(study: Study, case: LegCase) -> Floats:
-    """The samples of a case, (T,) s."""
+    """Return the samples of a case, (T,) s."""
     assert study.table.spatial_leg is not None
     return np.linspace(0.0, study.table.spatial_leg.fold.duration, case.samples)
 
 
 def dynamics(study: Study, times: Floats) -> LegDynamics:
-    """The leg's dynamics at times (T,) s. Raises: InputError."""
+    """Return the leg's dynamics at times (T,) s.
+
+    Raises: InputError.
+    """
     table = study.table.spatial_leg
     assert table is not None
     if len(table.leg_inertia) not in (3, 6):
@@ -66,21 +69,23 @@ def dynamics(study: Study, times: Floats) -> LegDynamics:
     return leg_dynamics(leg, motion)
 
 
-def hinge_reactions(study: Study, case: str, times: Floats, found: LegDynamics) -> Reactions:
-    """What the leg does to the pin at its hinge, which is fixed in the aircraft with its axis along
-    y'': force, and moment across the axis; the moment about the axis is the actuator's.
+def hinge_reactions(study: Study, case: str, times: Floats, leg: LegDynamics) -> Reactions:
+    """Return the load of the leg on the pin at its hinge: force, and moment across the axis.
+
+    The pin is fixed in the aircraft with its axis along y''; the moment about the axis is the
+    actuator's.
     """
     table = study.table.spatial_leg
     assert table is not None
     cyclic = [2, 0, 1]
-    moments = found.M_B[:, None, cyclic].copy()
+    moments = leg.M_B[:, None, cyclic].copy()
     moments[..., 2] = 0.0
     return Reactions(
         case=case,
         times=times,
         connections=(table.connection,),
         bodies=("leg",),
-        forces=found.F_B[:, None, cyclic],
+        forces=leg.F_B[:, None, cyclic],
         moments=moments,
         turn=np.zeros((len(times), 1)),
     )
