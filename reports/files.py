@@ -21,7 +21,7 @@ from reports.text.loads_summary import write_loads_summary
 
 
 def write_reports(results: Results, directory: Path) -> Path:
-    """Write results.json, the tables and report.html; returns the page's path."""
+    """Write results.json, the tables and report.html; return the page's path."""
     write_stress_tables(results, directory)
     return write_pages(results, directory)
 
@@ -35,13 +35,13 @@ def write_stress_tables(results: Results, directory: Path) -> None:
 
 
 def write_loads(results: Results, directory: Path) -> Path:
-    """Write results.json, the tables and a report of what needs no stresses; returns its path."""
+    """Write results.json, the tables and a report of what needs no stresses; return its path."""
     _write_tables(results, directory, ())
     return write_pages(results, directory)
 
 
 def write_pages(results: Results, directory: Path) -> Path:
-    """Write report.html and the animations that it has a place for; returns the page's path."""
+    """Write report.html and the animations that it shows; return the page's path."""
     if results.motion:
         write_animations(results, directory)
     return write_page(results, directory)

@@ -10,14 +10,13 @@ from pinbase.dimensions import Stress, Time
 
 @dataclass(frozen=True)
 class Remedy:
-    """The changes that make a pin reach the required factor in all cases, each sufficient alone.
+    """The changes, each sufficient alone, that make a pin reach its factor in its worst case.
 
     For a singular row they are computed with the upper end of its stress range.
     yield_strength: that would suffice.
     load_factor: on all loads; exact where stress is `proportional` to them (not in contact).
     diameter_factor: on all diameters, bores and fillets; None where `diameter_note` gives a reason.
-    impulse_time: of the impulse that loads the pin; None without one or where no time is long
-    enough.
+    impulse_time: of the impulse that loads the pin; None without one or where no time suffices.
     given_time: the impulse time of the study.
     singular: whether the factor is reached only outside the excluded zones.
     """

@@ -151,8 +151,8 @@ def _counted(judged: Judged, v: Variation) -> float:
 def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None:
     """Return the length at which the permitted stress is reached, interpolated linearly.
 
-    It lies between the given length and the varied one; it is the varied one where the maximum as
-    given is of another model.
+    It lies between the given length and the varied one; it is the varied one where the variation
+    has an interval of its own, since the maximum as given is then of another model.
     """
     end = judged.high if judged.safe else judged.low
     return _on_the_way(judged, v, given, (end, v.max_von_mises * end / judged.maximum))
@@ -161,7 +161,10 @@ def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None
 def _on_the_way(
     judged: Judged, v: Variation, given: float | None, ends: tuple[float, float]
 ) -> float | None:
-    """Return the same length for stresses as given and as varied."""
+    """Return the length at which the permitted stress is reached, interpolated between `ends`.
+
+    ends: the stress at the given length and at the varied one.
+    """
     (first, last) = ends
     if v.length is None or given is None or v.interval is not None or first == last:
         return v.length

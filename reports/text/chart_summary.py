@@ -127,7 +127,7 @@ def _fastest(curves: dict[str, Curve], wanted: float) -> tuple[str, Cost] | None
 
 
 def _ratio(chart: Chart) -> str:
-    """Return the comparison of our model with the fastest solid element at equal error."""
+    """Return sentences that compare our model with the fastest solid element at equal error."""
     (ours, planes), (theirs, solids) = (
         _curves(chart, HARMONIC_MODEL_NAMES),
         _curves(chart, SOLID_MODEL_NAMES),

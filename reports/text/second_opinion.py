@@ -35,7 +35,7 @@ def outcome_of(opinion: Opinion) -> str:
 
 
 def sentences(opinion: Opinion, units: Units) -> list[str]:
-    """Return CalculiX's result for a row, and its comparison with the computed one."""
+    """Return sentences on CalculiX's result for a row, and its agreement."""
     if opinion.failure:
         return [f"Not compared with CalculiX: {opinion.failure}."]
     said = _contact(opinion, units) if opinion.contact else [_same_mesh(opinion, units)]

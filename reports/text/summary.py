@@ -15,7 +15,7 @@ MAX_LISTED_CASES = 4  # cases of a pin; of more, their number is given
 
 
 def summary(results: Results) -> str:
-    """Return how many pins are safe, which are not, and the rows without a maximum."""
+    """Return sentences on pins that are safe, those that are not, and rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
     ways = (
@@ -25,7 +25,7 @@ def summary(results: Results) -> str:
 
 
 def _against_required(results: Results) -> str:
-    """Return the outcome of every pin by the worst of its checks."""
+    """Return a sentence on the outcome of every pin by the worst of its checks."""
     required = results.required_safety_factor
     worst = list(worst_checks(results).values())
     good = SAFE if required is not None else BELOW_YIELD
@@ -63,7 +63,7 @@ def _due_to(check: JudgedCheck) -> str:
 
 
 def _depending(results: Results) -> str:
-    """Return the rows whose outcome changes, in both directions, within a range of the study."""
+    """Return sentences on the rows whose outcome changes within a range of the study."""
     text = ""
     rows = [p for p in results.pins if outcome(p) == DEPENDS]
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
@@ -89,14 +89,14 @@ def _depending(results: Results) -> str:
 
 
 def _at_edges(results: Results) -> str:
-    """Return the pins with contact at the edges of lugs, which no factor counts."""
+    """Return a sentence on contact stress at lug edges, which no factor counts."""
     if not any(p.places and p.places.contact and p.places.contact.edges for p in results.pins):
         return ""
     return "Contact stress at lug edges is reported separately (contact_edges.csv)."
 
 
 def _without_range(results: Results) -> str:
-    """Return the pins without a range over the joint although their supports are prescribed."""
+    """Return a sentence on prescribed supports without a range over the joint."""
     pins = dict.fromkeys(
         p.pin
         for p in results.pins
