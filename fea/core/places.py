@@ -22,9 +22,8 @@ from pinbase.dimensions import Force, Length, Moment, Point, Stress
 
 Place = Literal["surface", "section"]
 
-BENEATH_DISTANCE = (
-    0.1  # of the diameter: farther from every pressed cell a point lies beneath the contact
-)
+# Of the diameter: farther from every pressed cell a point lies beneath the contact
+BENEATH_DISTANCE = 0.1
 
 
 @dataclass(frozen=True)

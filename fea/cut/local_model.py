@@ -292,9 +292,8 @@ class LocalModel:
             area = area_vectors(self.space.nodes[corners], x, y)
             normals = self.surface.normals[r.face.rows].mean(axis=1)
             area *= np.sign(np.sum(area * normals[:, None], axis=2))[..., None]
-            local = here[np.searchsorted(r.nodes, corners)][
-                :, :, TENSOR_TO_VOIGT
-            ]  # (F, 6, 3, 3, L)
+            # (F, 6, 3, 3, L)
+            local = here[np.searchsorted(r.nodes, corners)][:, :, TENSOR_TO_VOIGT]
             at = np.einsum("qi,fiabl->fqabl", shapes, local)
             t = np.einsum("q,fqabl,fqb->fqal", weight, at, area)
             np.add.at(out, corners, -np.einsum("qi,fqal->fial", shapes, t))

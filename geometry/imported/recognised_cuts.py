@@ -313,9 +313,8 @@ class CutFaces:
             return Hole(z, 2.0 * c.radius, angle, chamfer=chamfer)
         outward = 1.0 if c.high > -c.low else -1.0
         end = c.low if outward > 0.0 else c.high
-        floor, bottom = (
-            self._bottom(c, end, outward) if blind else (end / 2.0, Bottom())
-        )  # in a bore
+        # In a bore
+        floor, bottom = self._bottom(c, end, outward) if blind else (end / 2.0, Bottom())
         angle = angle if outward > 0.0 else angle + math.pi
         angle = math.atan2(math.sin(angle), math.cos(angle))
         return Hole(z, 2.0 * c.radius, angle, outer - outward * floor, bottom, chamfer)

@@ -16,10 +16,8 @@ from pinbase.platform import portable
 
 MB = 2**20
 TIME_CHECK_INTERVAL = 0.1  # s between two looks at the time
-EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = (
-    124,
-    125,
-)  # exit statuses of a process that a thread has ended
+# Exit statuses of a process that a thread has ended
+EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = 124, 125
 
 
 @dataclass(frozen=True)

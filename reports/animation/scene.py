@@ -18,10 +18,8 @@ MAX_ARROW_LENGTH = 120.0  # arrow
 BODY_COLOUR_COUNT = 10  # in animation.css
 JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of joints' names
 MAX_NAME_LETTERS = 14  # of a name on the picture
-CYLINDER_SHARE_OF_SHORTEST, CYLINDER_SHARE_OF_LONGEST = (
-    0.85,
-    0.3,
-)  # of a slider's shortest and longest length: its cylinder
+# Of a slider's shortest and longest length: its cylinder
+CYLINDER_SHARE_OF_SHORTEST, CYLINDER_SHARE_OF_LONGEST = 0.85, 0.3
 RAIL_OVERHANG = 30.0  # that a rail goes on past the block
 
 

@@ -8,9 +8,8 @@ from reports.data.decision import limit, outcome, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
 from reports.data.results import PinResult, Results
 
-MAX_DETAILED_CASES = (
-    8  # cases; of more, a report shows only the governing one of each pin in detail
-)
+# Cases; of more, a report shows only the governing one of each pin in detail
+MAX_DETAILED_CASES = 8
 
 
 @dataclass(frozen=True)

@@ -13,13 +13,8 @@ import numpy as np
 T = TypeVar("T")
 Unit = Callable[[str], float]
 
-SYSTEM_INDEPENDENT_DIMENSIONS = (
-    "1",
-    "degrees",
-    "rad",
-    "rad/s",
-    "rad/s^2",
-)  # the same in every system
+# The same in every system
+SYSTEM_INDEPENDENT_DIMENSIONS = "1", "degrees", "rad", "rad/s", "rad/s^2"
 
 
 def in_units(value: T, unit: Unit) -> T:

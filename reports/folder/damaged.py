@@ -14,9 +14,8 @@ from loads import MB
 from pinbase.errors import Damaged
 
 Model = TypeVar("Model", bound=BaseModel)
-SURROGATE_ESCAPE_PATTERN = re.compile(
-    r"\\u[dD][89a-fA-F]"
-)  # of a character beyond the first 65,536
+# Of a character beyond the first 65,536
+SURROGATE_ESCAPE_PATTERN = re.compile(r"\\u[dD][89a-fA-F]")
 
 MAX_JSON_DEPTH = 100  # parts in parts; pinstress writes no more than twenty
 ERROR_WORDS = {  # of pydantic's errors, which speak of Python

@@ -23,9 +23,8 @@ from reports.plots.theme import on_page
 SCRIPT_FILES = ("vega.min.js", "vega-lite.min.js", "vega-interpreter.js")
 REPORT_PAGE = "report.html"
 MAX_UNPACKED_SIZE = 512 * MB  # of what a page has packed
-PLOT_NAME_PATTERN = re.compile(
-    r"[A-Za-z][A-Za-z0-9_.~%-]*"
-)  # as reports.format.file_names makes them
+# As reports.format.file_names makes them
+PLOT_NAME_PATTERN = re.compile(r"[A-Za-z][A-Za-z0-9_.~%-]*")
 MAX_PLOT_NAME_LENGTH = 2000
 PACKED_SCRIPT_PATTERN = r'<script type="text/plain" id="{}">([\w+/=]+)</script>'
 

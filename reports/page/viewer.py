@@ -21,17 +21,14 @@ from reports.format.words import verdict_words
 from reports.tables.column import Column, Grid, Table, read_only
 
 MAX_LOAD_INTEGER = 32767  # loads are integers up to this, scaled by the largest
-MAX_STRESS_INTEGER = (
-    4095  # the same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
-)
-MAX_DISPLACEMENT_INTEGER = (
-    127  # the same of displacements, which are shown by nothing but the shape
-)
+# The same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
+MAX_STRESS_INTEGER = 4095
+# The same of displacements, which are shown by nothing but the shape
+MAX_DISPLACEMENT_INTEGER = 127
 MAX_SECTION_INTEGER = 4095  # stresses on a section are integers up to this, at the maximum
 PRESSURE_PERCENTILE = 90.0  # per cent of cells under pressure whose colours differ
-SURFACE_MAXIMUM_SHARE = (
-    0.999  # of the maximum; if the whole surface is below it, the maximum is inside
-)
+# Of the maximum; if the whole surface is below it, the maximum is inside
+SURFACE_MAXIMUM_SHARE = 0.999
 Segment = tuple[str, float, float]  # its name, and between which z
 
 

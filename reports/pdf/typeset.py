@@ -24,11 +24,8 @@ Content = dict[str, Any]  # of reports.page.paper
 
 FIXED_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # the same results, the same bytes
 FONT_NAME = "Libertinus Serif"  # comes with typst
-PLOT_WIDTH, MAX_PLOT_HEIGHT, REDUCED_PLOT_HEIGHT = (
-    330,
-    120,
-    95,
-)  # of plots, and of the views in them that are higher
+# Of plots, and of the views in them that are higher
+PLOT_WIDTH, MAX_PLOT_HEIGHT, REDUCED_PLOT_HEIGHT = 330, 120, 95
 FONT_FAMILY_PATTERN = re.compile(r'font-family="[^"]*"')
 
 

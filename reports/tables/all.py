@@ -43,9 +43,8 @@ CSV_ONLY_TABLES = (
     "linkage",
     "sliders",
 )
-MAX_SHEET_ROWS = (
-    2000  # rows of a sheet; longer tables are written as CSV only, which is much faster
-)
+# Rows of a sheet; longer tables are written as CSV only, which is much faster
+MAX_SHEET_ROWS = 2000
 
 
 def sheets(tables: Sequence[Table[Any]]) -> list[Table[Any]]:

@@ -19,9 +19,8 @@ from reports.tables.column import Table
 if TYPE_CHECKING:
     import xlsxwriter
 
-FIXED_CREATION_TIME = datetime(
-    2000, 1, 1
-)  # a fixed time of creation: the same results, the same bytes
+# a fixed time of creation: the same results, the same bytes
+FIXED_CREATION_TIME = datetime(2000, 1, 1)
 MAX_COLUMN_WIDTH = 60  # characters of a column
 WIDTH_SAMPLE_ROWS = 200  # rows whose texts decide how wide a column is
 MAX_PLAIN_NUMBER, MIN_PLAIN_NUMBER = (

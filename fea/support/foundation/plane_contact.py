@@ -26,9 +26,8 @@ from fea.support.contact.contact import ContactProblem
 from fea.support.contact.flexibility import half_plane
 
 MAX_PLANE_HARMONIC, PLANE_CONTACT_SECTORS = 16, 60
-_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(
-    8
-)  # exact for the powers of r, near for 1 / r
+# Exact for the powers of r, near for 1 / r
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 @lru_cache(maxsize=512)  # eyes of a study are much alike

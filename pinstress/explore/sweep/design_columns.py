@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 ROW_COLUMNS = ("pin", "case", *(c.key for c in RESULT_COLUMNS if not c.numeric))  # texts
-COLUMN_TITLES = {  # in the order of the page
-    c.key: c.heading for c in in_order(RESULT_COLUMNS, ("mass",)) if c.numeric
-}
+# In the order of the page
+COLUMN_TITLES = {c.key: c.heading for c in in_order(RESULT_COLUMNS, ("mass",)) if c.numeric}
 
 
 @dataclass(frozen=True)
