@@ -81,7 +81,7 @@ class DesignRow:
     beneath_error: float | None = None
 
 
-class Memo(Generic[K, V]):
+class Recent(Generic[K, V]):
     """A memory of the values of the latest keys, at most `most` of them."""
 
     def __init__(self, most: int) -> None:
@@ -133,11 +133,11 @@ class Evaluator:
         self.table = tuple(
             (pin, case) for pin in self._pins for case in self._cases if (pin, case) in rows
         )
-        self._loads = Memo[tuple[object, ...], CaseLoads | InputError](
+        self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
             MAX_REMEMBERED_LOADS * len(self._cases)
         )
         self.meshes = EveryMesh()
-        self._answers = Memo[str, tuple[DesignAnswer, ...]](MAX_REMEMBERED_PEAKS)
+        self._answers = Recent[str, tuple[DesignAnswer, ...]](MAX_REMEMBERED_PEAKS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
             for case in self._cases

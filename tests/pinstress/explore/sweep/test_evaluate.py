@@ -10,7 +10,7 @@ import pinstress
 from fea.harmonic.kept_fields import EveryMesh
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
-from pinstress.explore.sweep.evaluate import Evaluator, Memo
+from pinstress.explore.sweep.evaluate import Evaluator, Recent
 from pinstress.explore.sweep.number import number_at
 from pinstress.study.model.cases import case_loads
 from tests.support.programs.swept import DIAMETER, FORCE, ONE_PIN, STRENGTH
@@ -143,7 +143,7 @@ def test_pins_that_a_number_does_not_touch_are_solved_once(
 
 
 def test_what_was_asked_for_last_is_remembered() -> None:
-    known = Memo[int, str](2)
+    known = Recent[int, str](2)
     for key in (1, 2):
         known.put(key, str(key))
     assert known.get(1) == "1"
