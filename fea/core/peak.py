@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from fea.core.mesh_result import SingularIntensity
@@ -141,6 +141,10 @@ class Maximum:
         if self.governing is None or self.governing.times is None:
             return None
         return float(self.governing.times[0])
+
+    def with_reason(self, why: Reason) -> Maximum:
+        """The maximum with the reason for its model."""
+        return replace(self, why=why.text, reasons=self.reasons + why.codes)
 
     @property
     def upper_end(self) -> float:

@@ -282,10 +282,9 @@ def _foundation(at: Attempt) -> dict[str, Solution]:
 
 def with_reason(solution: Solution, why: Reason) -> Solution:
     """The solution with the reason for its model, if the model gave an answer."""
-    peak = solution.peak
     if solution.answer is None:
         return solution
-    return replace(solution, peak=replace(peak, why=why.text, reasons=peak.reasons + why.codes))
+    return replace(solution, peak=solution.peak.with_reason(why))
 
 
 def _chosen(requirement: Requirement, model: str) -> Reason:

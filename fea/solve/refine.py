@@ -124,8 +124,7 @@ def refine(
         between = _between(held, problem, case.case)
         loads, history = _at_crest(mesh, case, seen[case.case], between)
         peak = judge(history, mesh.zones, posed.tolerance, notes.get(case.case, NO_REASON))
-        why_here = why + met(requirement, material, history)
-        peak = replace(peak, why=why_here.text, reasons=peak.reasons + why_here.codes)
+        peak = peak.with_reason(why + met(requirement, material, history))
         out[case.case] = held.finished(_solution(peak, mesh, loads, history, held), requirement)
     return out
 

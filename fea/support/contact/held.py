@@ -91,12 +91,13 @@ class ContactSupport:
         compared = contact.compared(near, requirement)
         # More cells than memory allows are none; and on the last ones all cases are answered.
         finest = self.finer is None or _count(model, self.finer) > MAX_CELLS
-        held = HeldContact(problem, contact, near, compared, finest, refused)
+        starts = {case: contact.press(links) for case, links in contact.instants.items()}
+        held = HeldContact(problem, contact, starts, near, compared, finest, refused)
         if self.finer is None or self.cells is not ROUGH:  # rough ones are a trial only
             failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
             held = replace(held, failures=held.failures | failed)
-        cases = [held.start(case) for case in contact.instants]
-        rigid, _, notes = balanced(held.pin, problem.material, cases, "harmonic")
+        pressed = tuple(starts.values())
+        rigid, _, notes = balanced(held.pin, problem.material, pressed, "harmonic")
         return replace(held, failures=held.failures | rigid, notes=notes)
 
 
@@ -146,12 +147,14 @@ def _count(model: ContactModel, cells: Resolution) -> int:
 class HeldContact:
     """A pin in contact with its lugs (fea.support.support.HeldPin).
 
+    starts: by case, the pressures at the instants of which their patterns are made.
     candidates: by case, the instants that may govern.
     compared: by case, contact on these cells against that on larger ones.
     """
 
     problem: PinProblem
     contact: PressedCases
+    starts: Mapping[str, PinLoads]
     candidates: Mapping[str, Candidates]
     compared: Mapping[str, Compared]
     finest: bool
@@ -183,7 +186,7 @@ class HeldContact:
 
     def start(self, case: str) -> PinLoads:
         """The pressures at the instants from which their patterns are made."""
-        return self.contact.press(self.contact.instants[case])
+        return self.starts[case]
 
     def press(self, links: PinLoads) -> PinLoads:
         """The pressures under loads of the links."""
