@@ -33,6 +33,7 @@ RUN, SWEEP = ("run", "study.toml", "--out", "out"), ("sweep", "study.toml", "--o
 # What needs a package: the study, the command, and how its message begins.
 USERS = [
     ("distributed", varied(LOADS), (*SWEEP, "--scheduler", "tcp://nowhere:1"), "--scheduler"),
+    ("cryptography", ONE_PIN, ("cluster-keys", "keys"), "cluster-keys"),
     ("pylife", ONE_PIN + FATIGUE, RUN, "study.toml:37: fatigue"),
     ("typst", ONE_PIN, (*RUN, "--pdf"), "--pdf"),
     ("typst", ONE_PIN, ("pdf", "out"), "pdf"),
