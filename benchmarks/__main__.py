@@ -39,7 +39,16 @@ from benchmarks.pins import (
     tension,
 )
 from benchmarks.record import record
-from benchmarks.runs import designs_page, gear, least_weight, page, reliability, speed, sweep
+from benchmarks.runs import (
+    cluster,
+    designs_page,
+    gear,
+    least_weight,
+    page,
+    reliability,
+    speed,
+    sweep,
+)
 from benchmarks.solids import calculix, ngsolve_peer
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel
 
@@ -86,6 +95,7 @@ TIMES = {
     "models": models.models,
     "shoulders": shoulders.shoulders,
     "sweep": sweep.sweep,
+    "cluster": cluster.cluster,
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,
