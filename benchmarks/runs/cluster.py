@@ -50,7 +50,8 @@ def cluster() -> str:
         f"{DESIGNS:,} designs of one pin, {FORCES} forces by {STRENGTHS} strengths, by this "
         f"process, and by {WORKERS} workers with TLS on the same machine; processor time of the "
         "cluster is that of scheduler, workers and this process. In the first round the workers "
-        f"import all that solving needs. Allowed are {MAX_OVERHEAD:g} ms more a design:\n\n{table(head, rows)}"
+        f"import all that solving needs. Allowed are {MAX_OVERHEAD:g} ms more a design:\n\n"
+        + table(head, rows)
     )
 
 

@@ -36,6 +36,8 @@ CHEAP = (
     f'"{FORCE}" = {{ uniform = [-1000, -500] }}\n'
     f'"{STRENGTH}" = {{ uniform = ["200 ksi", "250 ksi"] }}'
 )
+# Every worker has solved a design: to report its versions, it imports nothing of ours.
+SOLVES = "workers and all(client.run(eval, \"'fea' in __import__('sys').modules\").values())"
 PIPED = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
 # As a batch system's cluster, which has no worker while there is no work.
 ADAPTIVE = """
@@ -178,6 +180,27 @@ def test_an_adaptive_cluster_begins_with_no_worker(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "designs.parquet").read_bytes() == _alone(tmp_path)
 
 
+@pytest.mark.parametrize("end", ["scheduler", "Ctrl-C"])
+def test_reliability_that_ends_too_early_says_what_is_kept(tmp_path: Path, end: str) -> None:
+    (tmp_path / "bar.toml").write_text(BAR.replace("samples = 200", "samples = 20_000", 1))
+    command = [sys.executable, "-m", "pinstress", "reliability", "bar.toml", "--out", "out"]
+    env = os.environ | {"PINSTRESS_CACHE": str(tmp_path / "cache")}
+    with dask_cluster(tmp_path / "cluster") as cluster:
+        cluster.worker()
+        with started([*command, *cluster.options], cwd=tmp_path, env=env, **PIPED) as program:
+            cluster.wait_until(SOLVES)
+            if end == "scheduler":
+                cluster.scheduler.kill()
+            else:
+                program.send_signal(signal.SIGINT)
+            _, said = program.communicate(timeout=300)
+    assert program.returncode == (2 if end == "scheduler" else 130), said
+    assert "is lost" in said or end != "scheduler"
+    assert "are kept in the cache: the same command goes on with them" in said
+    assert "Traceback" not in said
+    assert [path.name for path in tmp_path.iterdir() if "out" in path.name] == []
+
+
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskCluster]:
     """Two workers."""
@@ -195,8 +218,7 @@ def test_reliability_of_a_cluster_is_that_of_one_machine(
         made = pinstress("reliability", "bar.toml", "--out", out, *options, cwd=tmp_path)
         assert made.returncode == 0, made.stderr
         assert "Warning" not in made.stderr
-    # both workers have solved designs: to report its versions, a worker imports nothing of ours
-    cluster.wait_until("all(client.run(eval, \"'fea' in __import__('sys').modules\").values())")
+    cluster.wait_until(SOLVES)
     names = sorted(path.name for path in (tmp_path / "alone").iterdir())
     assert "reliability.json" in names
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == names

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pinbase.processes.pool import Progress
+from pinstress.analysis.cache import user_cache
 from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
 from pinstress.explore.reliability.drivers import base_samples, indices
 from pinstress.explore.reliability.form import (
@@ -69,7 +70,7 @@ def assess(
 
     nominal: results of the study as it is.
     jobs: number of processes that solve samples.
-    cluster: solves them instead.
+    cluster: solves them instead; what it has solved is kept in the user's cache.
 
     Raises: InputError for a study without random numbers or without strengths.
     """
@@ -79,9 +80,9 @@ def assess(
     evaluator, elsewhere = evaluator_of(problem), None
     _require_strengths(study, evaluator)
     if cluster is not None:
-        from pinstress.explore.sweep.scheduler import design_rows
+        from pinstress.explore.reliability.on_cluster import design_rows
 
-        elsewhere = partial(design_rows, cluster, problem)
+        elsewhere = partial(design_rows, cluster, problem, user_cache())
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(asked.samples, space.size, asked.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))

@@ -21,21 +21,11 @@ from distributed import Future, KilledWorker, get_worker
 from loads import FileError, read_regular, sent_files
 from pinbase.processes.pool import Job, Tell, in_parallel
 from pinstress.analysis.cache import REQUIRED_PACKAGES
-from pinstress.explore.sweep.batches import (
-    Batch,
-    Batches,
-    DesignProblem,
-    Rows,
-    SolvedBatch,
-    evaluator_of,
-    solve_batch,
-)
+from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
 from pinstress.explore.sweep.cluster import Cluster, connected, other_versions, short
 from pinstress.explore.sweep.connection import Connection
-from pinstress.explore.sweep.evaluate import DesignRow
-from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.versions import versions
-from pinstress.explore.sweep.workers import BatchQueue, failed_rows
+from pinstress.explore.sweep.workers import BatchQueue
 from pinstress.study.model.imported_pin import MAX_BODY_SIZE
 from pinstress.study.reading.errors import InputError
 
@@ -89,8 +79,8 @@ def solve_on(
     Raises: InputError where the scheduler or all workers are lost, or a worker that has come has
     other versions; batches kept by then stay.
     """
-    contents = _read(files)
-    problem = replace(problem, files=_hash(contents))
+    contents = contents_of(files)
+    problem = replace(problem, files=hash_of(contents))
     running: dict[Future[WorkerAnswer], Batch] = {}
 
     def start(batch: Batch, given: Contents | None) -> None:
@@ -122,27 +112,6 @@ def solve_on(
                 work.done(outcome.done)
 
 
-def design_rows(
-    cluster: Cluster, problem: DesignProblem, values: Floats, report: Callable[[int], None]
-) -> Rows:
-    """Solve designs on a cluster and return their rows, in their order.
-
-    values: (n, p) of the numbers of the problem, SI.
-    report: called with the number of designs that are solved.
-    """
-    rows: dict[int, list[DesignRow]] = {}
-
-    def keep(done: SolvedBatch) -> None:
-        rows.update(zip(done.batch.designs, done.rows, strict=True))
-        report(len(rows))
-
-    evaluator = evaluator_of(problem)
-    batches = Batches(problem.numbers, values, set(), cluster.workers)
-    work = BatchQueue(batches, keep, partial(failed_rows, evaluator.table))
-    solve_on(cluster, problem, evaluator.files, work)
-    return [rows[i] for i in range(len(values))]
-
-
 def require_cluster(connection: Connection) -> None:
     """Check in another process that a cluster can solve designs.
 
@@ -165,7 +134,7 @@ def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch)
     if contents is not None:
         _contents.clear()
         _contents[problem.files] = contents
-    known = _contents.get(problem.files) if problem.files != _hash(()) else ()
+    known = _contents.get(problem.files) if problem.files != hash_of(()) else ()
     done = None
     if known is not None:
         with sent_files(dict(known)):
@@ -178,7 +147,11 @@ def _versions_here() -> dict[str, str]:
     return versions(NUMERIC_PACKAGES)
 
 
-def _read(files: tuple[Path, ...]) -> Contents:
+def contents_of(files: tuple[Path, ...]) -> Contents:
+    """Return the contents of files.
+
+    Raises: InputError where one cannot be read.
+    """
     try:
         return tuple((str(path), read_regular(path, MAX_BODY_SIZE)) for path in files)
     except (OSError, FileError) as error:
@@ -187,7 +160,8 @@ def _read(files: tuple[Path, ...]) -> Contents:
         ) from None
 
 
-def _hash(contents: Contents) -> str:
+def hash_of(contents: Contents) -> str:
+    """Return a hash of paths and contents of files."""
     return hashlib.sha256(
         repr([(path, hashlib.sha256(content).hexdigest()) for path, content in contents]).encode()
     ).hexdigest()
