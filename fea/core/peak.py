@@ -228,6 +228,12 @@ def discretisation_error(
     return 3.0 * change / math.expm1(least_order * math.log(ratio))
 
 
+def widened(interval: tuple[float, float], relative: float) -> tuple[float, float]:
+    """Both ends of an interval, Pa, with a relative error; never below zero."""
+    low, high = interval
+    return max(0.0, low * (1.0 - relative)), high * (1.0 + relative)
+
+
 def accuracy(relative: float, tolerance: float, known: bool) -> Reason:
     """The relative error, and whether it is within the tolerance."""
     if known:
