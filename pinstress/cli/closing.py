@@ -43,7 +43,7 @@ def report_left_out(results: Results) -> None:
 def report_reused(plan: Plan, outcomes: list[PinOutcome]) -> None:
     """Report the number of pins that were taken from the cache."""
     pins = {task.pin.name for task in plan.tasks}
-    anew = {t.pin.name for t, row in zip(plan.tasks, outcomes, strict=True) if not row.before}
+    anew = {t.pin.name for t, row in zip(plan.tasks, outcomes, strict=True) if not row.cached}
     if pins - anew:
         click.echo(
             f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} reused from the cache "

@@ -62,7 +62,7 @@ def dependences(
     return tuple(dependence_list)
 
 
-def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence, ...]:
+def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     """Return what the outcome of a row depends on; empty where it is not decided as described."""
     described = as_described(pin)
     if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
@@ -74,7 +74,7 @@ def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence
     judged = Judged(
         low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
     )
-    return dependences(judged, contact, pin.joint, landing)
+    return dependences(judged, contact, pin.joint, pin.landing)
 
 
 def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependence]:

@@ -76,9 +76,6 @@ def detailed_rows(results: Results) -> Results:
     return replace(
         results,
         pins=tuple(x for x in results.pins if governs[x.pin] == x.case),
-        margins=tuple(x for x in results.margins if governs.get(x.pin) == x.case or not x.case),
-        arms=tuple(x for x in results.arms if governs.get(x.pin) == x.case),
-        landing=tuple(x for x in results.landing if governs.get(x.pin) == x.case),
         reactions=tuple(x for x in results.reactions if x.case in cases),
         surfaces=tuple(
             replace(x, cases=tuple(c for c in x.cases if governs.get(x.pin) == c.case))

@@ -6,17 +6,17 @@ tables and pages are written.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Annotated, Literal, Self
 
 from assess.fatigue.records import PointFatigue, PointHistory
+from assess.judgement import Judgement
 from assess.margin import Margin, PinMargin
 from assess.opinion.opinions import Opinion
 from assess.opinion.records import BeamCheck
 from assess.plastic.records import LimitLoad
 from assess.strength.bending_arms import BendingArms
-from fea.core.peak import Refinement, SingularZone
+from fea.core.peak import Maximum, Refinement, SingularZone
 from fea.core.places import Places
 from fea.support.records import JointResult
 from pinbase.dimensions import (
@@ -25,8 +25,6 @@ from pinbase.dimensions import (
     Forces,
     Length,
     Moments,
-    Point,
-    Stress,
     Stresses,
     Time,
     Times,
@@ -156,61 +154,179 @@ class Dependence:
 
 
 @dataclass(frozen=True)
-class PinResult:
-    """The result of one pin in one case; numbers are None for `rigid` and `failed`.
+class LandingRange:
+    """The results of one pin over the ranges of a landing's impulse, at P points.
 
-    time: None without a motion. location: x, y, z in the pin's own axes.
-    decided: whether the maximum with its error stays below what the `required` factor permits (1
-    where none is required), for the pin as described; None where that is open.
-    depends_on: values within the study's ranges that change that outcome.
-    held: the supports of the pin, in words.
-    left_out: given forces that were not applied because their band is clamped.
-    published_*: the publication's value, in the study's units.
-    position_unit: as in ReactionTable. why: which model answered and why it was sufficient.
-    singular_at: stress singularities. If one governs (verdict `singular`), maximum, factor and
-    history exclude all of them; the intervals are those over half and twice the excluded distance,
-    and error_estimate reaches both ends.
-    error_parts: stresses by source of error (mesh, time, ..). loads: at the governing instant.
-    joint: contact with the lugs at that instant, if lugs support the pin.
-    places: surface, section and contact; the maximum is the larger of the first two; None where the
-    model has none.
-    second_opinion: of CalculiX, if any. limit_load: past yield, if requested.
+    impulse_time, velocity_change, force, max_von_mises: (P,). pulses: (P,).
+    safety_factor: (P,), None without a yield strength.
+    nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
+    spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
     """
 
     pin: str
     case: str
-    model: str
+    impulse_time: Times
+    velocity_change: Velocities
+    force: Forces
+    max_von_mises: Stresses
+    safety_factor: Floats | None
+    nominal: tuple[Time, Velocity]
     verdict: str
-    note: str
-    max_von_mises: Stress | None
-    error_estimate: Stress | None
-    location: Point | None
-    time: Time | None
-    position: DrivePosition | None
-    safety_factor: float | None
-    yields: bool | None
-    decided: bool | None
-    dofs: int
-    seconds: float
-    history: tuple[Refinement, ...]
-    held: str
+    spread: tuple[float, float] | None = None
+    pulses: tuple[str, ...] = ()
+    nominal_pulse: str = ""
+    error: float = 0.0
+
+
+@dataclass(frozen=True)
+class PinResult:
+    """A row of the results: one pin in one case. Numbers are None for `rigid` and `failed`.
+
+    maximum: the maximum stress, with its error and verdict.
+    judgement: of that maximum against yield.
+    joint: contact with the lugs at the governing instant, if lugs support the pin.
+    limit_load: past yield, if requested.
+    landing: the results over the ranges of a landing's impulse, if it has any.
+    margins: of every check at every place and level; worst: the worst place of each that counts.
+    arms: of the bending moment, None where the formulas do not apply.
+    second_opinion: of CalculiX, if any.
+    held: the supports of the pin, in words.
+    left_out: given forces that were not applied because their band is clamped.
+    position: of the drive; position_unit: as in ReactionTable.
+    loads: at the governing instant.
+    depends_on: values within the study's ranges that change whether the maximum is permitted.
+    published_*: the publication's value, in the study's units.
+    """
+
+    maximum: Maximum
+    judgement: Judgement = field(default_factory=Judgement)
+    joint: JointResult | None = None
+    limit_load: LimitLoad | None = None
+    landing: LandingRange | None = None
+    margins: tuple[Margin, ...] = ()
+    worst: tuple[Margin, ...] = ()
+    arms: BendingArms | None = None
+    second_opinion: Opinion | None = None
+    held: str = ""
     left_out: tuple[str, ...] = ()
+    position: DrivePosition | None = None
+    position_unit: str = ""
+    loads: tuple[GoverningLoad, ...] = ()
+    depends_on: tuple[Dependence, ...] = ()
     published_max_von_mises: float | None = None
     published_safety_factor: float | None = None
-    why: str = ""
-    singular_at: tuple[SingularZone, ...] = ()
-    margins: tuple[Margin, ...] = ()
-    max_von_mises_interval: tuple[Stress, Stress] | None = None
-    safety_factor_interval: tuple[float, float | None] | None = None
-    error_parts: Mapping[str, Stress] = field(default_factory=dict)
-    loads: tuple[GoverningLoad, ...] = ()
-    position_unit: str = ""
-    joint: JointResult | None = None
-    second_opinion: Opinion | None = None
-    limit_load: LimitLoad | None = None
-    required: float | None = None
-    depends_on: tuple[Dependence, ...] = ()
-    places: Places | None = None
+
+    @property
+    def pin(self) -> str:
+        """The name of the pin."""
+        return self.maximum.pin
+
+    @property
+    def case(self) -> str:
+        """The name of the case."""
+        return self.maximum.case
+
+    @property
+    def model(self) -> str:
+        """The model that gave the maximum."""
+        return self.maximum.model
+
+    @property
+    def why(self) -> str:
+        """Which model was used, and the reason."""
+        return self.maximum.why
+
+    @property
+    def verdict(self) -> str:
+        """The verdict on the accuracy of the maximum."""
+        return self.maximum.verdict
+
+    @property
+    def note(self) -> str:
+        """A sentence on the verdict."""
+        return self.maximum.note
+
+    @property
+    def max_von_mises(self) -> float | None:
+        """The largest von Mises stress: of surface and section, outside of singular zones."""
+        return self.maximum.max_von_mises
+
+    @property
+    def error_estimate(self) -> float | None:
+        """The error of the maximum, as a stress."""
+        return self.maximum.error_estimate
+
+    @property
+    def max_von_mises_interval(self) -> tuple[float, float] | None:
+        """The maximum over half and twice the distance excluded at a singularity that governs."""
+        return self.maximum.interval
+
+    @property
+    def error_parts(self) -> dict[str, float]:
+        """The stresses of which the error is the sum, by source: mesh, time, .."""
+        return {} if self.maximum.parts is None else asdict(self.maximum.parts)
+
+    @property
+    def location(self) -> tuple[float, float, float] | None:
+        """The point (x, y, z) of the maximum in the pin's own axes."""
+        return self.maximum.location
+
+    @property
+    def time(self) -> float | None:
+        """The governing instant; None without a motion or a maximum."""
+        return self.maximum.time if self.maximum.location else None
+
+    @property
+    def singular_at(self) -> tuple[SingularZone, ...]:
+        """The singularities of stress; where one governs (`singular`), all are excluded."""
+        return self.maximum.singular_at
+
+    @property
+    def places(self) -> Places | None:
+        """The stress of surface, section and contact; None where the model has none."""
+        return self.maximum.places
+
+    @property
+    def history(self) -> tuple[Refinement, ...]:
+        """The meshes that were solved."""
+        return self.maximum.history
+
+    @property
+    def dofs(self) -> int:
+        """The unknowns of the finest mesh."""
+        return self.maximum.dofs
+
+    @property
+    def seconds(self) -> float:
+        """The solution time of all meshes, s."""
+        return self.maximum.seconds
+
+    @property
+    def safety_factor(self) -> float | None:
+        """The factor of safety against yield; None without a yield strength or a stress."""
+        return self.judgement.safety_factor
+
+    @property
+    def safety_factor_interval(self) -> tuple[float, float | None] | None:
+        """The factors over the interval of the maximum; the upper one None if it has no bound."""
+        return self.judgement.interval
+
+    @property
+    def yields(self) -> bool | None:
+        """Whether the maximum exceeds the yield strength."""
+        return self.judgement.yields
+
+    @property
+    def required(self) -> float | None:
+        """The required factor of safety, None where none is required."""
+        return self.judgement.required
+
+    @property
+    def decided(self) -> bool | None:
+        """Whether the pin as described meets the required factor, or does not yield where none is
+        required; None where the error leaves that open.
+        """
+        return self.judgement.decided
 
     @property
     def hand_checks(self) -> tuple[Margin, ...]:
@@ -236,32 +352,8 @@ class PinResult:
 
     @property
     def instead(self) -> dict[str, str]:
+        """The dimension of the position (reports.data.in_units)."""
         return shown_position(self.position_unit)
-
-
-@dataclass(frozen=True)
-class LandingRange:
-    """The results of one pin over the ranges of a landing's impulse, at P points.
-
-    impulse_time, velocity_change, force, max_von_mises: (P,). pulses: (P,).
-    safety_factor: (P,), None without a yield strength.
-    nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
-    spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
-    """
-
-    pin: str
-    case: str
-    impulse_time: Times
-    velocity_change: Velocities
-    force: Forces
-    max_von_mises: Stresses
-    safety_factor: Floats | None
-    nominal: tuple[Time, Velocity]
-    verdict: str
-    spread: tuple[float, float] | None = None
-    pulses: tuple[str, ...] = ()
-    nominal_pulse: str = ""
-    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -349,7 +441,10 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class Results:
-    """All results of a run, without the fields inside pins (those are written pin by pin)."""
+    """All results of a run, without the fields inside pins (those are written pin by pin).
+
+    pins: the rows. spectrum_margins: of checks over all cases of a pin, as fatigue.
+    """
 
     title: str
     study: str
@@ -366,13 +461,11 @@ class Results:
     motion_check: MotionCheck | None = None
     published: tuple[PublishedValue, ...] = ()
     legs: tuple[LegTable, ...] = ()
-    landing: tuple[LandingRange, ...] = ()
     drops: tuple[DropRecord, ...] = ()
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Remedy, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
-    margins: tuple[PinMargin, ...] = ()
-    arms: tuple[BendingArms, ...] = ()
+    spectrum_margins: tuple[PinMargin, ...] = ()
     histories: tuple[PointHistory, ...] = ()
     fatigue: Fatigue | None = None
     provenance: tuple[Provenance, ...] = ()
@@ -393,6 +486,22 @@ class Results:
             known_rows = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
             raise KeyError(f"no row {row!r}; there are {known_rows}")
         return matches[0]
+
+    @property
+    def margins(self) -> tuple[PinMargin, ...]:
+        """The worst place of each check of every row, and the checks over all cases."""
+        of_rows = (PinMargin(p.pin, p.case, margin) for p in self.pins for margin in p.worst)
+        return (*of_rows, *self.spectrum_margins)
+
+    @property
+    def arms(self) -> tuple[BendingArms, ...]:
+        """The arms of the bending moments of the rows that have them."""
+        return tuple(p.arms for p in self.pins if p.arms)
+
+    @property
+    def landing(self) -> tuple[LandingRange, ...]:
+        """The results over the ranges of a landing's impulse of the rows that have them."""
+        return tuple(p.landing for p in self.pins if p.landing)
 
     def in_units(self, units: Units, unit: Unit) -> Self:
         """Return the same results in other units.

@@ -33,6 +33,7 @@ from reports.text.pin_sentence import pin_sentence
 from reports.text.summary import summary
 from tests.conftest import ROOT
 from tests.support.results.judged_results import judged, row
+from tests.support.results.rows import with_values
 
 SURFACE = SurfacePlace(59000.0, 295.0, "converged", (0.0, 1.0, 2.0))
 SECTION = SectionPlace(50000.0, 250.0, "converged", 2.0, None, 0.0, 1e4, 2e4, 0.0, 0.2)
@@ -48,8 +49,8 @@ def contact(beneath: float, error: float = 1000.0) -> ContactPlace:
 
 def pin(beneath: float, error: float = 1000.0, **changes: object) -> PinResult:
     places = Places("surface", SURFACE, SECTION, contact(beneath, error))
-    made = replace(row("x", "converged", 2.0, True), places=places, **changes)  # type: ignore[arg-type]
-    return replace(made, depends_on=depends_on(made, None))
+    made = with_values(row("x", "converged", 2.0, True), places=places, **changes)
+    return replace(made, depends_on=depends_on(made))
 
 
 def only(made: PinResult) -> Results:
@@ -125,7 +126,7 @@ def test_results_json_has_the_places() -> None:
     assert found["section"]["safety_factor"] == pytest.approx(118.0 / 50.0)
     assert found["contact"]["beneath"] == 85000.0
     assert "depths" not in found["contact"]
-    bare = replace(pin(85000.0), places=Places("surface", SURFACE))
+    bare = with_values(pin(85000.0), places=Places("surface", SURFACE))
     found = to_json(only(bare))["pins"][0]
     assert not {"section", "contact"} & set(found)
 
@@ -166,13 +167,13 @@ def test_what_lies_beneath_goes_with_the_impulse() -> None:
     )  # fmt: skip
     made = pin(75000.0, 0.0)
     assert made.depends_on == ()
-    (found,) = depends_on(made, over)
+    (found,) = depends_on(replace(made, landing=over))
     assert (found.what, found.value, found.over) == ("beneath", "impulse time", "landing")
     assert found.flips_at == pytest.approx(0.15 * 75000.0 / (118000.0 / 1.5))
     assert found.factor == pytest.approx(118000.0 / 75000.0 * 0.13 / 0.15)
     text = headline(only(replace(made, depends_on=(found,))))
     assert "range of the landing (beneath contact at impulse time below 0.143 s)" in text
-    assert depends_on(pin(50000.0, 0.0), over) == ()
+    assert depends_on(pin(50000.0, 0.0, landing=over)) == ()
 
 
 def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_is() -> None:
@@ -184,8 +185,8 @@ def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_
         "converged", pulses=("rectangular",) * 2, nominal_pulse="rectangular",
     )  # fmt: skip
     for beneath, expected in ((75000.0, ["impulse time"]), (90000.0, [])):
-        failing = replace(row("x", "converged", 1.4, False), places=pin(beneath, 0.0).places)
-        assert [d.what for d in depends_on(failing, over)] == expected
+        failing = row("x", "converged", 1.4, False, places=pin(beneath, 0.0).places, landing=over)
+        assert [d.what for d in depends_on(failing)] == expected
 
 
 @pytest.mark.slow

@@ -57,8 +57,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
     }
     assert plain == {
-        "PinResult.seconds",
-        "PinResult.safety_factor",
+        "Judgement.safety_factor",
         "PinSensitivities.factor",
         "Sensitivity.factor_with_step",
         "PinResult.published_max_von_mises",  # as published, in the study's units
@@ -74,7 +73,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "LandingRange.safety_factor",
         "LandingRange.error",
         "Dependence.factor",
-        "PinResult.required",
+        "Judgement.required",
         "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
         "PointFatigue.life",
         "PointFatigue.utilisation",

@@ -27,6 +27,7 @@ from reports.text.summary import summary
 from tests.support.each import each
 from tests.support.results.judged_results import judged, row
 from tests.support.results.made_up_run import ranged
+from tests.support.results.rows import with_landing
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +49,7 @@ def found() -> Results:
     ],
 )
 def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str) -> None:
-    found = row("x", verdict, factor, meets, yields=factor < 1.0)
+    found = row("x", verdict, factor, meets)
     assert outcome(found) == expected
 
 
@@ -183,7 +184,7 @@ def test_summary_of_one_singular_row(found: Results) -> None:
 
 def test_singular_ranges_of_a_landing_can_only_miss(found: Results, tmp_path: Path) -> None:
     members = [ranged("A", "singular"), ranged("B"), ranged("C", "unconverged")]
-    some = replace(found, landing=tuple(members))
+    some = with_landing(found, *members)
     write_landing(some, tmp_path)
     landing_table(some).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))

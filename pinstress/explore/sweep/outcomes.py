@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from fea.core.peak import Maximum, meets_limit
+from assess.judgement import against_yield
+from fea.core.peak import Maximum
 from fea.support.records import JointResult
 from fea.support.support import Solution
 from pinstress.analysis.gather.gather import landing_range
@@ -50,11 +51,11 @@ def outcome_of(
 ) -> tuple[str, str]:
     """Return the outcome, and in words, in the units of a study, what it depends on."""
     strength, around = task.material.yield_strength, task.surroundings
-    peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
-    decided = None if permitted is None else meets_limit(peak, permitted)
+    peak, decided = answer.peak, against_yield(answer.peak, strength, required).decided
     outcome = in_words(decided, required)
-    if not decided or strength is None or permitted is None or not peak.max_von_mises:
+    if not decided or strength is None or not peak.max_von_mises:
         return outcome, ""
+    permitted = strength / (required or 1.0)
     judged = Judged(peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, True)
     contact = peak.places.contact if peak.places else None
     if on := dependences(judged, contact, answer.joint, answer.landing):

@@ -11,6 +11,7 @@ from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.page.paper import MAX_DIMENSIONS, PINS_PER_MATRIX, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
+from tests.support.results.rows import with_values
 
 EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
 
@@ -33,7 +34,9 @@ def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:
 
 def test_every_case_and_pin_is_in_the_matrix_with_those_that_govern(results: Results) -> None:
     pins = tuple(
-        replace(row, pin=f"{row.pin}{k}") for k in range(PINS_PER_MATRIX) for row in results.pins
+        with_values(row, pin=f"{row.pin}{k}")
+        for k in range(PINS_PER_MATRIX)
+        for row in results.pins
     )
     found = document(replace(results, pins=pins), {})["envelope"]
     shown = {
