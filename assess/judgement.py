@@ -1,10 +1,15 @@
-"""The judgement of a maximum stress against yield."""
+"""The judgement of a maximum stress against yield, and the outcomes that rows can have."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from fea.core.peak import Maximum, meets_limit
+
+SAFE, FAILS, NOT_DECIDED = "safe", "fails", "not decided"
+DEPENDS = "depends"  # safe as described, but not within a range that the study leaves open
+BELOW_YIELD, YIELDS = "below yield", "yields"  # where no factor is required
+OUTCOME_ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, DEPENDS: 2, SAFE: 3, BELOW_YIELD: 3}
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,15 @@ class Judgement:
     def yields(self) -> bool | None:
         """Whether the maximum exceeds the yield strength; None without a factor."""
         return None if self.safety_factor is None else self.safety_factor < 1.0
+
+    @property
+    def outcome(self) -> str:
+        """The outcome for a pin that is exactly as its study describes it."""
+        if self.decided is None:
+            return NOT_DECIDED
+        if self.required is None:
+            return BELOW_YIELD if self.decided else YIELDS
+        return SAFE if self.decided else FAILS
 
 
 def against_yield(peak: Maximum, strength: float | None, required: float | None) -> Judgement:

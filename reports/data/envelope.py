@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from reports.data.decision import limit, outcome, utilisation, worst_first
+from reports.data.decision import limit, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
 from reports.data.results import PinResult, Results
 
@@ -43,7 +43,7 @@ def envelope(results: Results) -> list[EnvelopeCell]:
     return [
         EnvelopeCell(
             row,
-            outcome(row),
+            row.outcome,
             None if (used := utilisation(row, required)) is None else used[1],
             governs[row.pin] == row.case,
             tuple(largest.get((row.pin, row.case), ())),

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Annotated, Literal, Self
 
 from assess.fatigue.records import PointFatigue, PointHistory
-from assess.judgement import Judgement
+from assess.judgement import BELOW_YIELD, DEPENDS, SAFE, Judgement
 from assess.margin import Margin, PinMargin
 from assess.opinion.opinions import Opinion
 from assess.opinion.records import BeamCheck
@@ -327,6 +327,17 @@ class PinResult:
         required; None where the error leaves that open.
         """
         return self.judgement.decided
+
+    @property
+    def as_described(self) -> str:
+        """The outcome for a pin that is exactly as its study describes it (assess.judgement)."""
+        return self.judgement.outcome
+
+    @property
+    def outcome(self) -> str:
+        """The outcome: whether the pin meets its required factor, or depends on what is open."""
+        described = self.as_described
+        return DEPENDS if described in (SAFE, BELOW_YIELD) and self.depends_on else described
 
     @property
     def hand_checks(self) -> tuple[Margin, ...]:

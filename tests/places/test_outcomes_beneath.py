@@ -21,7 +21,6 @@ from fea.harmonic.beneath import stairs
 from pinstress import load_study, run
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED, report_violations
 from pinstress.study.schema.units import UNIT_SYSTEMS
-from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units
 from reports.data.results import LandingRange, PinResult, Results
@@ -65,20 +64,20 @@ def test_it_is_safe_only_if_what_lies_beneath_is_with_its_error(
 ) -> None:
     """118,000 / 1.5 = 78,666.7: 78,600 is less, 78,700 is more."""
     made = pin(beneath, error)
-    assert outcome(made) == expected
+    assert made.outcome == expected
     assert made.meets_required is (expected == "safe")
 
 
 def test_nothing_beneath_changes_a_row_that_fails_or_is_open() -> None:
     for decided, expected in ((False, "fails"), (None, "not decided")):
         made = pin(85000.0, decided=decided)
-        assert outcome(made) == expected
+        assert made.outcome == expected
         assert made.depends_on == ()
 
 
 def test_without_a_required_factor_yield_is_the_limit() -> None:
-    assert outcome(pin(117500.0, 600.0, required=None)) == "depends"
-    assert outcome(pin(117500.0, 400.0, required=None)) == "below yield"
+    assert pin(117500.0, 600.0, required=None).outcome == "depends"
+    assert pin(117500.0, 400.0, required=None).outcome == "below yield"
 
 
 def test_the_depth_is_that_of_what_is_permitted() -> None:

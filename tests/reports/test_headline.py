@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.data.decision import outcome, utilisation, worst_first
+from reports.data.decision import utilisation, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.words import headline
 from reports.page.loads import loads_at, timings
@@ -25,7 +25,7 @@ def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Resu
     least = min(known, key=lambda p: p.safety_factor or 0.0)
     assert headline(results).startswith(f"Pin {least.pin} fails: FoS ")
     assert f"< 1.5 required ({least.case})" in headline(results)
-    order = [outcome(pin) for pin in worst_first(results)]
+    order = [pin.outcome for pin in worst_first(results)]
     assert order == sorted(order, key=["fails", "not decided", "safe"].index)
 
 

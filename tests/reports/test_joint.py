@@ -15,7 +15,6 @@ from rich.console import Console
 
 from fea.support.records import JointRange, JointResult, Variation
 from pinstress.study.schema.units import UNIT_SYSTEMS
-from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.in_units import in_units
 from reports.data.results import Field, Results
@@ -191,7 +190,7 @@ def test_a_result_that_the_joint_changes_is_named(
     )  # fmt: skip
     first = odd.pins[0]
     first = replace(first, depends_on=depends_on(first))
-    assert (outcome(first) == "depends") is changes
+    assert (first.outcome == "depends") is changes
     text = summary(replace(odd, pins=(first, *odd.pins[1:])))
     assert ("depends: A (joint)" in text) is changes
 

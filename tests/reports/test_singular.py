@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from assess.margin import Margin
-from reports.data.decision import outcome
 from reports.data.results import Field, PinResult, Results, SingularZone, Units
 from reports.files import write_reports
 from reports.tables.json_results import to_json
@@ -78,7 +77,7 @@ def test_a_singular_row_can_only_miss(
 ) -> None:
     """Too little outside the zones is too little; enough there says nothing of the zones."""
     pin: PinResult = with_values(singular.pins[0], safety_factor=factor, decided=meets)
-    assert outcome(pin) == expected
+    assert pin.outcome == expected
     text = summary(replace(singular, pins=(pin,)))
     assert ("fails: A" in text) == (expected == "fails")
     assert "no maximum exists" in text

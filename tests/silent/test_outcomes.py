@@ -18,7 +18,6 @@ from assess.margin import Margin, PinMargin
 from fea.support.records import JointRange, JointResult, Variation
 from pinstress import changed_study, load_study, run
 from pinstress.cli.commands import run_command_line
-from reports.data.decision import outcome
 from reports.data.dependence import depends_on
 from reports.data.headline import headline_json, worst_checks
 from reports.data.results import LandingRange, PinResult, Results
@@ -52,7 +51,7 @@ def test_safe_as_described_but_not_within_the_range_of_the_joint(clevis: Results
     assert pin.joint is not None
     assert pin.joint.range is not None
     assert 700.0 / pin.joint.range.max_von_mises[1] < 1.5
-    assert outcome(pin) == "depends"
+    assert pin.outcome == "depends"
     assert pin.meets_required is False
     assert all(d.over == "joint" and d.factor < 1.5 for d in pin.depends_on)
     assert headline(clevis).startswith("Pin P is safe as described (FoS 1.93 ≥ 1.5 required; pull)")
@@ -126,7 +125,7 @@ def test_a_pin_that_fails_may_be_safe_within_the_range() -> None:
     some = depends_on(pin)
     assert [(d.what, d.value) for d in some] == [("clearance", "none")]
     found = replace(pin, depends_on=some)
-    assert outcome(found) == "fails"
+    assert found.outcome == "fails"
     entry = to_json(only(found))["pins"][0]
     assert entry["depends_on"] == []
     assert entry["safe_within"][0]["what"] == "clearance"
@@ -278,7 +277,7 @@ def test_a_sweep_says_what_a_run_says(clevis: Results) -> None:
     (row_,) = Evaluator(contact, ()).rows(())
     results = run(contact)
     (pin,) = results.pins
-    assert row_.outcome == outcome(pin) == "depends"
+    assert row_.outcome == pin.outcome == "depends"
     assert row_.depends_on == safety_factors_table(results).records()[0]["depends_on"]
 
 

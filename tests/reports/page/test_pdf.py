@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reports.data.decision import outcome, worst_first
+from reports.data.decision import worst_first
 from reports.data.envelope import governing_cases
 from reports.data.results import Results, TitleBlock
 from reports.data.sensitivities import PinSensitivities, Sensitivity
@@ -18,7 +18,7 @@ EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
 
 def test_rows_are_those_of_the_decision_worst_first(results: Results) -> None:
     found = document(results, {})["factors"]
-    assert found["outcomes"] == [outcome(pin) for pin in worst_first(results)]
+    assert found["outcomes"] == [pin.outcome for pin in worst_first(results)]
     at = found["head"].index("pin")
     assert [row[at] for row in found["body"]] == [pin.pin for pin in worst_first(results)]
 
