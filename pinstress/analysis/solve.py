@@ -21,6 +21,7 @@ from fea.support.records import JointResult
 from fea.support.support import PinProblem, Solution
 from geometry import Pin
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
+from pinbase.records import Unit, in_units
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
 from pinstress.analysis.assessed.situations import assessed
@@ -34,7 +35,6 @@ from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_
 from pinstress.study.model.pins import shape_notes
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.in_units import Unit, in_units
 from reports.data.results import Field, PinResult
 
 # Of a dimension, m, whose effect is found.

@@ -68,7 +68,7 @@ class Entry:
 
 def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
     """Return all that the answer to a task depends on, except versions and memory, as a value that
-    pinstress.analysis.serialise packs.
+    pinbase.records packs.
 
     seconds: the time limit of an answer that lacks a limit load because of it.
     """
@@ -99,7 +99,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
 
 def shape_of(pin: PinLike) -> object:
     """Return a pin's shape, with the content of its file, as a value that
-    pinstress.analysis.serialise packs.
+    pinbase.records packs.
     """
     if isinstance(pin, Pin | CutPin):
         return pin

@@ -31,10 +31,10 @@ from pinbase.dimensions import (
     Velocities,
     Velocity,
 )
+from pinbase.records import Unit, in_units
 from reports.data.changes import Remedy
 from reports.data.drop import DropPeak, DropRecord
 from reports.data.fields import BandLoad, Field, Still, Volume
-from reports.data.in_units import Unit, in_units
 from reports.data.mechanics import (
     Dimensioned,
     DriveEffort,
@@ -363,7 +363,7 @@ class PinResult:
 
     @property
     def instead(self) -> dict[str, str]:
-        """The dimension of the position (reports.data.in_units)."""
+        """The dimension of the position (pinbase.records.in_units)."""
         return shown_position(self.position_unit)
 
 

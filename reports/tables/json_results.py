@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from assess.judgement import DEPENDS
+from pinbase.records import plain
 from reports.data.headline import headline_json
 from reports.data.results import (
     DriveTable,
@@ -17,7 +18,6 @@ from reports.data.results import (
     SingularZone,
 )
 from reports.format.numbers import finite
-from reports.format.plain import plain
 from reports.format.words import headline
 from reports.tables.column import Column, Table, fields, json_of
 from reports.tables.strength.fatigue import fatigue_json

@@ -18,11 +18,11 @@ from fea.core.places import (
     SurfacePlace,
 )
 from fea.harmonic.beneath import stairs
+from pinbase.records import in_units
 from pinstress import load_study, run
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED, report_violations
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.dependence import depends_on
-from reports.data.in_units import in_units
 from reports.data.results import LandingRange, PinResult, Results
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json

@@ -11,9 +11,9 @@ import pytest
 
 from fea.core.mesh_result import SingularIntensity
 from fea.core.peak import SingularZone
+from pinbase.records import in_units
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data import results as data
-from reports.data.in_units import in_units
 from reports.data.results import (
     Dimensioned,
     DriveEffort,

@@ -14,9 +14,9 @@ import pytest
 from rich.console import Console
 
 from fea.support.records import JointRange, JointResult, Variation
+from pinbase.records import in_units
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.dependence import depends_on
-from reports.data.in_units import in_units
 from reports.data.results import Field, Results
 from reports.files import write_reports
 from reports.format.ranges import joint_range, part_words

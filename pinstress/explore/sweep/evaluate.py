@@ -24,8 +24,8 @@ from fea.harmonic.kept_fields import EveryMesh
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
+from pinbase.records import pack
 from pinstress.analysis.plan import prepare, requirement_of
-from pinstress.analysis.serialise import pack
 from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.laws import Floats

@@ -12,12 +12,12 @@ from dataclasses import replace
 from assess.judgement import DEPENDS, against_yield
 from fea.core.peak import Maximum
 from fea.support.support import Solution
+from pinbase.records import in_units
 from pinstress.analysis.gather.gather import landing_range
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from pinstress.study.schema.units import UnitSystem
 from reports.data.dependence import depends_on
-from reports.data.in_units import in_units
 from reports.data.results import PinResult, Units
 from reports.format.words import depends_words
 

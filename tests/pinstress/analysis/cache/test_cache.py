@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from fea.core.peak import Maximum, Refinement
+from pinbase import records as packing
 from pinstress.analysis import cache as cache_module
-from pinstress.analysis import serialise as packing
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.stored import Entry, PinOutcome
 from reports.data.results import Field, PinResult
