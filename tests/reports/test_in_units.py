@@ -14,6 +14,7 @@ from fea.core.peak import SingularZone
 from pinbase.records import in_units
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data import results as data
+from reports.data import row
 from reports.data.results import (
     Dimensioned,
     DriveEffort,
@@ -51,7 +52,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
     """A new field that holds numbers cannot be left in SI by oversight."""
     plain = {
         f"{name}.{f.name}"
-        for name, kind in vars(data).items()
+        for name, kind in (vars(data) | vars(row)).items()
         if dataclasses.is_dataclass(kind)
         for f in dataclasses.fields(kind)
         if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
