@@ -48,9 +48,7 @@ class StandIns:
             rows.copy(),
         )
         some = np.flatnonzero(self.free.masked(rows))
-        point, place = np.unique(rows[some], return_inverse=True)
-        read = self.free.read(point, np.full(len(point), instant))[place, arc[some]]
-        lost = some[~read]
+        lost = some[~self.free.read_at(rows[some], instant, arc[some])]
         here, place = np.unique(rows[lost], return_inverse=True)
         # The nearest substitute that is readable at the same angle; without one the point stays.
         apart = np.linalg.norm(self._x[here][:, None] - self._x[self._may], axis=2)
