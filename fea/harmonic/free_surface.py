@@ -210,7 +210,7 @@ class ShutBy:
         first = np.searchsorted(point, np.arange(len(shuts)))
         rows[point, np.arange(len(point)) - first[point]] = row
         beside = tuple(np.flatnonzero(near[cusp.near].any(axis=0)) for cusp in cusps)
-        return cls(rows, beside, shuts.any(axis=1))
+        return cls(rows, beside, np.asarray(shuts.any(axis=1)))
 
     def table(self, pressed: PressedArcs, instant: int) -> Mask:
         """The arcs (rows, ARC_COUNT) that are shut at an instant."""

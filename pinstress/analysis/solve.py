@@ -13,13 +13,13 @@ from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
 from fea.core.requirement import Joints, Requirement
-from fea.harmonic.kept_fields import FirstMesh
 from fea.solid.evaluate import SOLID_MESHES
 from fea.solve.solve import solve
 from fea.support.foundation.variations import prescribed_ranges
 from fea.support.records import JointResult
 from fea.support.support import PinProblem, Solution
 from geometry import Pin
+from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
@@ -59,6 +59,7 @@ def solve_tasks(
     ask: Ask = _ask_none,
     jobs: int = 1,
     cache: OutcomeStore | None = None,
+    memo: Memo | None = None,
 ) -> list[PinOutcome]:
     """Return the outcome of every task of a plan, in their order.
 
@@ -71,11 +72,12 @@ def solve_tasks(
     progress: called with the current step and the completed part of the work.
     ask: gives a second opinion on a task, in the task's process, and reports its progress.
     cache: where earlier tasks are looked up, and new ones are stored.
+    memo: of flexibilities and meshes, for tasks that are solved in this process.
     """
     show = partial(_in_units, plan.study.system.factor, keep)
     order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
     work = [
-        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
+        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache, memo))
         for task in (plan.tasks[i] for i in order)
     ]
     outcomes: dict[int, PinOutcome] = {}
@@ -111,13 +113,19 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
 
 def _attempt(
-    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: OutcomeStore | None, tell: Tell
+    plan: Plan,
+    task: Task,
+    keep: Keep,
+    ask: Ask,
+    cache: OutcomeStore | None,
+    memo: Memo | None,
+    tell: Tell,
 ) -> PinOutcome:
     try:
         if cache is None:
-            solved = _solve(plan, task, keep, tell)
+            solved = _solve(plan, task, keep, memo, tell)
         else:
-            solved = _solve_once(plan, task, keep, cache, tell)
+            solved = _solve_once(plan, task, keep, cache, memo, tell)
         return _assessed(plan, task, replace(solved, opinions=ask(plan, task, solved, tell)))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
@@ -125,7 +133,9 @@ def _attempt(
         return _failed(plan, task, str(error))
 
 
-def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: Tell) -> PinOutcome:
+def _solve_once(
+    plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, memo: Memo | None, tell: Tell
+) -> PinOutcome:
     """Return a task's outcome from the cache; else solve it, and store it there.
 
     An outcome without a limit load that would take too long has a key of its own: it does not
@@ -147,7 +157,7 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: T
         keep(field)
         fields.append(field)
 
-    solved = _solve(plan, task, keep_both, tell)
+    solved = _solve(plan, task, keep_both, memo, tell)
     if independent_of_memory(plan, task, solved.peaks):
         stopped = any(limit is not None and limit.stopped for limit in solved.limits)
         cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
@@ -167,17 +177,17 @@ def _assessed(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
 
 
 def solutions(
-    study: Study, task: Task, asked: Requirement, tell: Tell, first: FirstMesh | None = None
+    study: Study, task: Task, asked: Requirement, tell: Tell, memo: Memo | None = None
 ) -> tuple[Solution, ...]:
     """Return the solutions of a task's cases.
 
-    first: earlier solutions on the first mesh of clamped pins.
+    memo: of flexibilities, meshes and unit fields, shared with other tasks.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
     problem = PinProblem(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
-        first or FirstMesh(),
+        memo,
     )  # fmt: skip
     return solve(problem, replace(asked, joints=_joints(study, task)), tell)
 
@@ -191,9 +201,9 @@ def _joints(study: Study, task: Task) -> Joints:
     return "auto" if isinstance(task.pin, Pin) and study.table.fatigue is None else "contact"
 
 
-def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
+def _solve(plan: Plan, task: Task, keep: Keep, memo: Memo | None, tell: Tell) -> PinOutcome:
     study = plan.study
-    solved = solutions(study, task, plan.asked, tell)
+    solved = solutions(study, task, plan.asked, tell, memo)
     pressures = [solution.pressure for solution in solved]
     for solution, pressure in zip(solved, pressures, strict=True):
         case = plan.loads[solution.peak.case]

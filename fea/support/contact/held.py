@@ -81,7 +81,7 @@ class ContactSupport:
             near = coarser.candidates
         progress(f"pin {problem.pin.name}, flexibility of {self.cells.rings} rings of each lug")
         profile = profile_of(problem.pin)
-        model = ContactModel(profile, problem.material, problem.lugs, self.cells)
+        model = ContactModel(profile, problem.material, problem.lugs, self.cells, problem.memo)
         progress(f"pin {problem.pin.name}, contact")
         cut = isinstance(problem.pin, CutPin)
         contact = PressedCases(model, left, problem.between, problem.also, cut=cut)

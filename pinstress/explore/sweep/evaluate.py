@@ -19,10 +19,10 @@ from typing import Generic, TypeVar
 from fea.core.material import Material
 from fea.core.peak import Maximum, Verdict
 from fea.core.requirement import Requirement
-from fea.harmonic.kept_fields import EveryMesh
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
+from pinbase.memo import Memo
 from pinstress.analysis.plan import prepare, requirement_of
 from pinstress.analysis.serialise import pack
 from pinstress.analysis.solve import solutions
@@ -107,7 +107,7 @@ class Evaluator:
     pins, cases: names; all by default.
     parameters: in the order of the values of `rows`.
     table: the (pin, case) of a design's rows, in their order.
-    meshes: solutions of pins that are not in contact.
+    memo: of meshes, unit fields and flexibilities of its pins.
     files: those that the study names, as far as the creator noted them
     (pinstress.explore.sweep.batches).
 
@@ -136,7 +136,7 @@ class Evaluator:
         self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
             MAX_REMEMBERED_LOADS * len(self._cases)
         )
-        self.meshes = EveryMesh()
+        self.memo = Memo()
         self._answers = Recent[str, tuple[DesignAnswer, ...]](MAX_REMEMBERED_PEAKS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
@@ -273,7 +273,7 @@ class Evaluator:
         key = _question(study, task, asked, [loads[x.case].range for x in task.loads])
         known = self._answers.get(key)
         if known is None:
-            solved = solutions(study, task, asked, lambda _: None, self.meshes)
+            solved = solutions(study, task, asked, lambda _: None, self.memo)
             known = self._answers.put(key, tuple(bare_answer(task, s, loads) for s in solved))
         return known
 
