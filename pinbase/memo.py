@@ -26,6 +26,7 @@ class Memo:
     def __init__(self, max_size: int = MAX_MEMO_SIZE) -> None:
         self._max_size, self._total, self.made = max_size, 0, 0
         self._values: OrderedDict[Hashable, tuple[Any, int]] = OrderedDict()
+        self._latest: Hashable = None  # the key of the value written last
 
     def get(self, key: Hashable, make: Callable[[], T]) -> T:
         """The value of a key, made now unless it is remembered.
@@ -44,18 +45,23 @@ class Memo:
         """The value of a key; None where it is not remembered."""
         if key not in self._values:
             return None
-        value, _ = self._values[key]
-        self.write(key, value)  # it may have grown by what is derived from it
-        return value
+        self._values.move_to_end(key)
+        return self._values[key][0]
 
     def write(self, key: Hashable, value: object) -> None:
         """Remember a value."""
-        self._total -= self._values.pop(key, (None, 0))[1]
-        size = size_of(value)
-        self._values[key] = value, size
-        self._total += size
+        if self._latest in self._values:  # it has grown by what was derived from it since
+            self._measure(self._latest, self._values[self._latest][0])
+        self._measure(key, value)
+        self._values.move_to_end(key)
+        self._latest = key
         while self._total > self._max_size and len(self._values) > 1:
             self._total -= self._values.popitem(last=False)[1][1]
+
+    def _measure(self, key: Hashable, value: object) -> None:
+        size = size_of(value)
+        self._total += size - self._values.get(key, (None, 0))[1]
+        self._values[key] = value, size
 
 
 def size_of(value: object) -> int:

@@ -14,7 +14,7 @@ from pinbase.processes.threads import one_thread
 from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.solve import keep_none, solve_tasks
+from pinstress.analysis.solve import solve_tasks
 from pinstress.study.reading.choices import require_count
 from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study
@@ -216,7 +216,7 @@ def solve(
     with one_thread():
         results = results_of(
             plan,
-            solve_tasks(plan, keep if fields else keep_none, jobs=most, cache=cache, memo=memo),
+            solve_tasks(plan, keep if fields else None, jobs=most, cache=cache, memo=memo),
         )
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
     return RunResults(**plain, fields=kept_fields, plan=plan)

@@ -44,17 +44,13 @@ Keep = Callable[[Field], None]
 Ask = Callable[[Plan, Task, PinOutcome, Tell], tuple[Opinion, ...]]
 
 
-def keep_none(_: Field) -> None:
-    """Keep no field. Not a lambda: it is sent to processes that are started anew."""
-
-
 def _ask_none(_: Plan, __: Task, ___: PinOutcome, ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
 def solve_tasks(
     plan: Plan,
-    keep: Keep = keep_none,
+    keep: Keep | None = None,
     progress: Progress = lambda _, __: None,
     ask: Ask = _ask_none,
     jobs: int = 1,
@@ -68,13 +64,13 @@ def solve_tasks(
     `failed`; the others continue.
 
     keep: called with every field, in the study's units, as soon as it exists, in the task's
-    process.
+    process; without it fields are not made.
     progress: called with the current step and the completed part of the work.
     ask: gives a second opinion on a task, in the task's process, and reports its progress.
     cache: where earlier tasks are looked up, and new ones are stored.
     memo: of flexibilities and meshes, for tasks that are solved in this process.
     """
-    show = partial(_in_units, plan.study.system.factor, keep)
+    show = None if keep is None else partial(_in_units, plan.study.system.factor, keep)
     order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
     work = [
         Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache, memo))
@@ -115,7 +111,7 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 def _attempt(
     plan: Plan,
     task: Task,
-    keep: Keep,
+    keep: Keep | None,
     ask: Ask,
     cache: OutcomeStore | None,
     memo: Memo | None,
@@ -134,7 +130,7 @@ def _attempt(
 
 
 def _solve_once(
-    plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, memo: Memo | None, tell: Tell
+    plan: Plan, task: Task, keep: Keep | None, cache: OutcomeStore, memo: Memo | None, tell: Tell
 ) -> PinOutcome:
     """Return a task's outcome from the cache; else solve it, and store it there.
 
@@ -148,16 +144,17 @@ def _solve_once(
         entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
         tell(f"pin {task.pin.name}, as solved before")
-        for field in entry.fields:
+        for field in entry.fields if keep else ():
             keep(field)
         return replace(entry.solved, before=True)
     fields: list[Field] = []
 
     def keep_both(field: Field) -> None:
+        assert keep is not None
         keep(field)
         fields.append(field)
 
-    solved = _solve(plan, task, keep_both, memo, tell)
+    solved = _solve(plan, task, keep_both if keep else None, memo, tell)
     if independent_of_memory(plan, task, solved.peaks):
         stopped = any(limit is not None and limit.stopped for limit in solved.limits)
         cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
@@ -201,11 +198,11 @@ def _joints(study: Study, task: Task) -> Joints:
     return "auto" if isinstance(task.pin, Pin) and study.table.fatigue is None else "contact"
 
 
-def _solve(plan: Plan, task: Task, keep: Keep, memo: Memo | None, tell: Tell) -> PinOutcome:
+def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:
     study = plan.study
     solved = solutions(study, task, plan.asked, tell, memo)
     pressures = [solution.pressure for solution in solved]
-    for solution, pressure in zip(solved, pressures, strict=True):
+    for solution, pressure in zip(solved, pressures, strict=True) if keep else ():
         case = plan.loads[solution.peak.case]
         field = gather_fields.field(task, solution, case, plan.also, pressure)
         if field is not None:
