@@ -152,7 +152,7 @@ class Evaluator:
         numbers = [float(value) for value in values]
         try:
             study = self.changed(numbers)
-            loads = self._loads_of(study, numbers)
+            loads = self.loads_of(study, numbers)
         except (InputError, MemoryError) as error:
             return [_failed(self.study, pin, case, error) for pin, case in self.table]
         rows: dict[tuple[str, str], DesignRow] = {}
@@ -196,7 +196,11 @@ class Evaluator:
             return inner[0] in free
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
-    def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+    def loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+        """Return the loads of a design by case, or why a case has none.
+
+        study: with the values (p,) of the parameters, SI.
+        """
         loads: dict[str, CaseLoads | InputError] = {}
         mechanism: Linkage | None = None
         for name in self._cases:
