@@ -50,7 +50,7 @@ class Margin:
     governs: bool = True
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         """The dimension of the demand, for the conversion of units (pinbase.records.in_units)."""
         return {"own": self.dimension}
 

@@ -3,8 +3,8 @@ to JSON, to other units, and to bytes and back.
 
 The types of their fields say what a value is. Numbers have their dimension in an annotation
 (pinbase.dimensions): a name, or several with exponents, "stress length^0.5". A class whose
-dimensions differ from object to object has a property `instead`, which maps the dimension of the
-annotation to that of the object; it holds for all that the object holds.
+dimensions differ from object to object has a property `dimension_of`, which maps the dimension of
+the annotation to that of the object; it holds for all that the object holds.
 """
 
 from __future__ import annotations
@@ -51,13 +51,13 @@ def in_units(value: T, unit: Unit) -> T:
 
     unit: returns the SI value of the unit of a dimension.
     """
-    instead: Mapping[str, str] = getattr(value, "instead", {})
+    dimension_of: Mapping[str, str] = getattr(value, "dimension_of", {})
 
     def own(dimension: str) -> float:
-        return _factor(instead.get(dimension, dimension), unit)
+        return _factor(dimension_of.get(dimension, dimension), unit)
 
     changed = {
-        name: _converted(hint, getattr(value, name), own if instead else unit)
+        name: _converted(hint, getattr(value, name), own if dimension_of else unit)
         for name, hint in _types(type(value)).items()  # type: ignore[arg-type]
         if _has_dimension(hint)
     }

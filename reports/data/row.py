@@ -65,7 +65,7 @@ class Dependence:
     reach: Length | None = None
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         return {"own": self.dimension}
 
 
@@ -278,6 +278,6 @@ class PinResult:
         return False if self.decided and self.depends_on else self.decided
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         """The dimension of the position (pinbase.records.in_units)."""
         return shown_position(self.position_unit)

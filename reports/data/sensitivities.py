@@ -27,7 +27,7 @@ class Sensitivity:
     factor_with_step: float | None
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         """The dimensions of this parameter (pinbase.records.in_units)."""
         plain = self.kind == "1"
         return {
