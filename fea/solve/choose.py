@@ -24,6 +24,7 @@ from fea.core.requirement import DECIDED_TEXT, Requirement, decided
 from fea.cut.evaluate import LocalSolids
 from fea.cut.region import RingedCutPin, corner_refusal, loaded_bands, refusal, unringed
 from fea.harmonic.evaluate import Harmonic
+from fea.harmonic.first_mesh import FirstMesh
 from fea.solid.evaluate import Solid
 from fea.solve.by_beam import by_beam
 from fea.solve.refine import refine, zones_of
@@ -83,10 +84,6 @@ class Rung:
 
 class Refused(SolveError):
     """A model does not apply, for a reason that the next step states."""
-
-    def __init__(self, reason: Reason) -> None:
-        super().__init__(reason.text, reason.codes[-1])
-        self.reason = reason
 
 
 def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
@@ -173,7 +170,7 @@ def _beam_instead(at: Attempt) -> dict[str, Solution]:
 
 def _harmonic(at: Attempt) -> dict[str, Solution]:
     pressed = any(at.held.start(case.case).pressed is not None for case in at.problem.cases)
-    return at.refined(Harmonic(at.problem.first, pressed))
+    return at.refined(Harmonic(at.problem.memo, pressed=pressed))
 
 
 def _local(at: Attempt) -> dict[str, Solution]:
@@ -183,14 +180,15 @@ def _local(at: Attempt) -> dict[str, Solution]:
 def _solid(at: Attempt) -> dict[str, Solution]:
     why = None
     if isinstance(at.failure, Refused):
-        why = at.failure.reason
+        text = f"solid: the pin is not a body of revolution, and {at.failure}"
+        why = Reason(text, ("not-axisymmetric", at.failure.code))
     elif at.failure is not None:
         text = f"solid: a local solid about the cuts failed: {at.failure}"
         why = Reason(text, ("not-axisymmetric", "local-failed"))
     return at.refined(Solid(at.held.pin.meshed), why)
 
 
-def _local_solids(at: Attempt) -> LocalSolids:
+def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
     """The model with solids about the cuts of a pin.
 
     Raises: Refused where it does not apply.
@@ -205,8 +203,8 @@ def _local_solids(at: Attempt) -> LocalSolids:
     zones = zones_of(pin, clamps, problem.material, starts, at.requirement)
     why = refusal(whole, clamps, loaded) or corner_refusal(whole, zones)
     if why is not None:
-        raise Refused(why)
-    return LocalSolids(whole, loaded_bands(whole, loaded), problem.first)
+        raise Refused(why.text, why.codes[-1])
+    return LocalSolids(whole, loaded_bands(whole, loaded), problem.memo, first)
 
 
 def _contact(at: Attempt) -> dict[str, Solution]:
@@ -220,18 +218,17 @@ def _contact(at: Attempt) -> dict[str, Solution]:
     ready = tuple(c for c in cases if held.resolved(c.case, requirement))
     if not ready:
         return {}
-    problem = replace(at.problem, cases=ready, first=held.model.first)
+    problem, first = replace(at.problem, cases=ready), held.model.first
     at = replace(at, problem=problem, requirement=held.of_meshes(requirement))
-    model: Harmonic | LocalSolids = Harmonic(problem.first, True)
+    model: Harmonic | LocalSolids = Harmonic(problem.memo, first, True)
     why = CONTACT_REASON
     if isinstance(held.pin, RingedCutPin):
         why = CUT_CONTACT_REASON
         try:
-            model = _local_solids(at)
+            model = _local_solids(at, first)
         except Refused as refused:
-            since = str(refused).removeprefix("solid: the pin is not a body of revolution, and ")
             raise SolveError(
-                f"pin {held.pin.name}: no local solid about the cuts will do, since {since}",
+                f"pin {held.pin.name}: no local solid about the cuts will do, since {refused}",
                 refused.code,
             ) from refused
     limit, solutions = _limit(problem, requirement), at.refined(model, why)

@@ -18,6 +18,7 @@ from pinstress.cli.design_commands import cluster_keys, reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
+    curve,
     import_,
     init,
     pdf_of,
@@ -369,6 +370,7 @@ def check(study: Path) -> int:
 for _command in (
     cluster_keys,
     compare_runs,
+    curve,
     import_,
     init,
     pdf_of,

@@ -101,7 +101,7 @@ def open_page(page: Path) -> None:
 COMMAND_SECTIONS = {
     "Studies": ("init", "check", "import", "schema"),
     "Analysis": ("run", "loads", "chart"),
-    "Designs": ("size", "sweep", "reliability", "cluster-keys"),
+    "Designs": ("size", "curve", "sweep", "reliability", "cluster-keys"),
     "Earlier runs": ("view", "compare", "plots", "pdf"),
 }
 

@@ -34,6 +34,7 @@ from pinstress.explore.reliability.sampling import importance_draws, plain_draws
 from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import Parameter
+from pinstress.explore.sweep.possible import drawn, require_balance
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import (
@@ -79,6 +80,7 @@ def assess(
     problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
     evaluator, elsewhere = evaluator_of(problem), None
     _require_strengths(study, evaluator)
+    require_balance(study, evaluator, drawn(study, parameters))
     if cluster is not None:
         from pinstress.explore.reliability.on_cluster import design_rows
 
