@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -113,6 +114,7 @@ def cluster_keys(directory: Path) -> None:
         "Start the cluster, on computers that have these files, and use it:\n"
         f"  {address.scheduler_command}\n"
         f"  {address.worker_command}\n"
-        f"  pinstress sweep study.toml --scheduler {address.address} --tls {directory}",
+        f"  pinstress sweep study.toml --scheduler {address.address} "
+        f"--tls {shlex.quote(str(directory))}",
         err=True,
     )

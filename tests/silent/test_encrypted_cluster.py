@@ -11,6 +11,7 @@ own programs, started as a user starts them.
 from __future__ import annotations
 
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -115,7 +116,7 @@ def test_a_worker_with_other_keys_is_none(tmp_path: Path) -> None:
     _study(tmp_path, 4)
     other = write_keys(tmp_path / "other")
     with dask_cluster(tmp_path / "cluster") as cluster:
-        cluster.worker(None, *other.dask_options.split())
+        cluster.worker(None, *shlex.split(other.dask_options))
         made = pinstress("sweep", "study.toml", "--out", "out", *cluster.options, cwd=tmp_path)
     assert made.returncode == 2
     assert "has had no worker for 30 s; start one with: dask worker tls://" in made.stderr

@@ -24,6 +24,7 @@ from pinstress.study.reading.extras import require_package
 RETRY_INTERVAL = 0.2  # s between two attempts to connect
 # Without Dask's page; what is left of it is not encrypted, and offered to the same machine only
 NO_PAGES = "--no-dashboard --dashboard-address 127.0.0.1:0"
+SAME_KEYS = f"give scheduler, workers and --tls the same three files that {COMMAND} wrote"
 ENCRYPTED_EXAMPLE = "tls://HOST:8786"
 
 
@@ -81,7 +82,7 @@ class Connection:
             plain.settimeout(timeout)
             with context.wrap_socket(plain) as encrypted:
                 if not encrypted.recv(1):  # a scheduler that refuses our certificate does so now
-                    raise ssl.SSLError(0, "alert: the connection was closed")
+                    raise self._refused("it closed the connection")
 
     def no_scheduler(self, reason: str) -> InputError:
         """Return the error that no scheduler answers.
@@ -96,6 +97,15 @@ class Connection:
             f"--scheduler: no scheduler of dask answers at {self.address} ({reason}); start one "
             f"with: {self.scheduler_command}{encrypted}",
             code="no-scheduler",
+        )
+
+    def _refused(self, reason: str) -> InputError:
+        """Return the error that the scheduler does not accept the certificate."""
+        assert self.keys is not None
+        return InputError(
+            f"--tls: the scheduler at {self.address} refuses {self.keys.certificate} ({reason}); "
+            f"{SAME_KEYS}",
+            code="refused-certificate",
         )
 
     def _socket(self, deadline: float) -> socket.socket:
@@ -113,17 +123,15 @@ class Connection:
     def _explained(self) -> Iterator[None]:
         """Explain errors of the first connection."""
         assert self.keys is not None
-        folder = self.keys.folder
-        remedy = f"give scheduler, workers and --tls the same three files that {COMMAND} wrote"
         try:
             yield
         except ssl.SSLCertVerificationError as error:
             if "expired" in error.verify_message:
                 why = f"the certificate of the scheduler at {self.address} has expired; make new "
-                why += f"keys with {COMMAND}, and {remedy}"
+                why += f"keys with {COMMAND}, and {SAME_KEYS}"
             else:
                 why = f"the scheduler at {self.address} has a certificate of another authority than"
-                why += f" {self.keys.authority} ({error.verify_message}); {remedy}"
+                why += f" {self.keys.authority} ({error.verify_message}); {SAME_KEYS}"
             raise InputError(f"--tls: {why}", code="other-authority") from None
         except ssl.SSLError as error:
             reason = (error.reason or "").replace("_", " ").lower()
@@ -133,11 +141,7 @@ class Connection:
                     f"start it with: {self.scheduler_command}",
                     code="not-encrypted",
                 ) from None
-            raise InputError(
-                f"--tls: the scheduler at {self.address} refuses {folder / 'cert.pem'} "
-                f"({reason}); {remedy}",
-                code="refused-certificate",
-            ) from None
+            raise self._refused(reason) from None
         except OSError as error:
             raise self.no_scheduler(str(error) or type(error).__name__) from None
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import datetime
 import os
 import secrets
+import shlex
 import ssl
 from contextlib import suppress
 from dataclasses import dataclass
@@ -52,8 +53,9 @@ class KeyFiles:
 
     @property
     def dask_options(self) -> str:
-        """Return the options that dask's commands need to use these files."""
-        return f"--tls-ca-file {self.authority} --tls-cert {self.certificate} --tls-key {self.key}"
+        """Return the options that dask's commands need for these files, as a shell takes them."""
+        options = ("--tls-ca-file", self.authority, "--tls-cert", self.certificate)
+        return shlex.join(map(str, (*options, "--tls-key", self.key)))
 
     def context(self) -> ssl.SSLContext:
         """Return the settings of an encrypted connection to a scheduler, those of Dask: whoever has

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 import time
@@ -106,7 +107,7 @@ def dask_cluster(folder: Path, encrypted: bool = True) -> Iterator[DaskCluster]:
 
 
 def _dask(keys: KeyFiles | None, *arguments: str) -> list[str]:
-    options = [] if keys is None else keys.dask_options.split()
+    options = [] if keys is None else shlex.split(keys.dask_options)
     return [sys.executable, "-m", "dask", *arguments, *options, "--host", "127.0.0.1",
             *NO_PAGES.split()]  # fmt: skip
 

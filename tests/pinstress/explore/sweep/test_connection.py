@@ -188,7 +188,7 @@ def test_keys_that_cannot_be_used_are_named(
 
 
 @contextmanager
-def _answering(keys: KeyFiles | None) -> Iterator[int]:
+def _answering(keys: KeyFiles | None, said: bytes = b"hello, a scheduler") -> Iterator[int]:
     """The port of a server that speaks first, as dask's do, encrypted like a scheduler's."""
     context: ssl.SSLContext | None = None
     if keys is not None:
@@ -203,8 +203,9 @@ def _answering(keys: KeyFiles | None) -> Iterator[int]:
                     accepted, _ = listener.accept()
                     with accepted, suppress(OSError):
                         answer = context.wrap_socket(accepted, True) if context else accepted
-                        answer.sendall(b"hello, a scheduler")
-                        answer.recv(1000)
+                        answer.sendall(said)
+                        if said:
+                            answer.recv(1000)
                         answer.close()
 
         thread = threading.Thread(target=serve)
@@ -235,6 +236,8 @@ def test_both_sides_need_keys_of_the_same_cluster(
             _connected(port, other)
         with pytest.raises(InputError, match=r"refuses .*mixed/cert\.pem"):
             _connected(port, mixed)
+    with _answering(KeyFiles(ours), b"") as port, pytest.raises(InputError, match="it closed the"):
+        _connected(port, ours)
     with _answering(None) as port, pytest.raises(InputError, match="does not encrypt"):
         _connected(port, ours)
     context = KeyFiles(ours).context()
