@@ -146,7 +146,7 @@ def _other_source(folder: Path) -> Path:
     for room in ("pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports"):
         shutil.copytree(ROOT / room, folder / room, ignore=shutil.ignore_patterns("__pycache__"))
     path = folder / "pinstress" / "explore" / "sweep" / "evaluate.py"
-    text, right = path.read_text("utf-8"), "peak.safety_factor(material.yield_strength),"
+    text, right = path.read_text("utf-8"), "row.safety_factor,"
     assert right in text
     path.write_text(text.replace(right, "1.0,"), "utf-8")
     return folder
