@@ -51,7 +51,7 @@ class Margin:
 
     @property
     def instead(self) -> dict[str, str]:
-        """The dimension of the demand, for the conversion of units (reports.data.in_units)."""
+        """The dimension of the demand, for the conversion of units (pinbase.records.in_units)."""
         return {"own": self.dimension}
 
     @property

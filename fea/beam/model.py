@@ -14,9 +14,10 @@ from fea.beam.maximum import harmonics, von_mises_maxima
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
-from fea.core.peak import ErrorParts, Maximum, Reason, Refinement, accuracy
+from fea.core.peak import ErrorParts, Reason, Refinement
 from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
 from fea.core.solution import Picture
+from fea.core.verdict import Evidence
 from fea.core.zone import Zone
 from fea.singular.singularities import outside
 from geometry import Pin
@@ -80,36 +81,30 @@ class BeamField:
         amounts = LoadAmounts(self.case.case, felt, len(self.case))
         return self._beam.energy.of(amounts, self.estimate.instant)
 
-    def peak(self, tolerance: float, seconds: float, note: Reason, rise: float = 0.0) -> Maximum:
-        """The peak with the beam's own error, which is the whole value where none is known.
+    def evidence(self, seconds: float, remarks: Reason, rise: float = 0.0) -> Evidence:
+        """The maximum with the beam's own error, which is the whole value where none is known.
 
         rise: how much the maximum may be higher between instants, Pa.
         """
-        estimate = self.estimate
+        estimate, doubt = self.estimate, None
         r, z = estimate.place
         whole = estimate.maximum if estimate.error is None else estimate.error
-        parts = ErrorParts(mesh=0.0, time=rise, model=whole)
-        error = parts.total
-        relative = error / estimate.maximum if estimate.maximum else 0.0
-        known = estimate.error is not None and relative <= tolerance
-        verdict_reason = accuracy(relative, tolerance, known)
         if estimate.without_factor:
             notches = ", ".join(estimate.without_factor)
-            verdict_reason = Reason(
+            doubt = Reason(
                 f"no notch factor is available for {notches}, so the stress there is not included",
                 ("no-notch-factor",),
             )
-        verdict_reason = verdict_reason + Reason(f". {estimate.leaves_out.rstrip('.')}") + note
-        return Maximum(
+        return Evidence(
             pin=self.pin.name,
             case=self.case.case,
             model="beam",
-            verdict="converged" if known else "unconverged",
-            note=verdict_reason.text,
-            max_von_mises=estimate.maximum,
-            error_estimate=error,
+            value=estimate.maximum,
+            parts=ErrorParts(mesh=0.0, time=rise, model=whole),
             location=(r * math.cos(estimate.theta), r * math.sin(estimate.theta), z),
             history=(Refinement(0, estimate.maximum, seconds, self.strain_energy),),
-            parts=parts,
-            reasons=verdict_reason.codes,
+            doubt=doubt,
+            omissions=Reason(f". {estimate.leaves_out.rstrip('.')}"),
+            remarks=remarks,
+            governing=self.case.at(np.array([estimate.instant])),
         )

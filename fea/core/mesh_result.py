@@ -28,7 +28,7 @@ class SingularIntensity:
 
     @property
     def instead(self) -> dict[str, str]:
-        """The dimension of a strength (reports.data.in_units)."""
+        """The dimension of a strength (pinbase.records.in_units)."""
         return {"strength": f"stress length^{self.exponent!r}"}
 
 

@@ -82,12 +82,12 @@ class ErrorParts:
     contact pressure; from the ends of a local solid. None includes the modelling of the joint.
     """
 
-    mesh: float
-    time: float = 0.0
-    series: float = 0.0
-    model: float = 0.0
-    cells: float = 0.0
-    truncation: float = 0.0
+    mesh: Stress
+    time: Stress = 0.0
+    series: Stress = 0.0
+    model: Stress = 0.0
+    cells: Stress = 0.0
+    truncation: Stress = 0.0
 
     @property
     def total(self) -> float:
@@ -101,7 +101,7 @@ class Maximum:
 
     max_von_mises, error_estimate: Pa, None when the pin is `rigid` or its solution `failed`.
     location: (x, y, z) in the pin's axes, m.
-    governing: the loads at the governing instant.
+    governing: the loads at the governing instant, in SI whatever the units of the rest.
     note: one sentence on the verdict, for people.
     why: the model used and the reason, for people.
     reasons: the codes of everything that note and why state.
@@ -121,18 +121,18 @@ class Maximum:
     model: str
     verdict: Verdict
     note: str
-    max_von_mises: float | None = None
-    error_estimate: float | None = None
-    location: tuple[float, float, float] | None = None
+    max_von_mises: Stress | None = None
+    error_estimate: Stress | None = None
+    location: Point | None = None
     governing: PinLoads | None = None
     history: tuple[Refinement, ...] = ()
     singular_at: tuple[SingularZone, ...] = ()
     why: str = ""
-    interval: tuple[float, float] | None = None
+    interval: tuple[Stress, Stress] | None = None
     parts: ErrorParts | None = None
     reasons: tuple[str, ...] = ()
     imbalance: tuple[float, float] | None = None
-    solids: tuple[tuple[float, float], ...] = ()
+    solids: tuple[tuple[Length, Length], ...] = ()
     places: Places | None = None
 
     @property
@@ -226,6 +226,12 @@ def discretisation_error(
     if change <= 2.0 * scatter or (values[-1] - values[-2]) * (values[-2] - values[-3]) < 0.0:
         return formal
     return 3.0 * change / math.expm1(least_order * math.log(ratio))
+
+
+def widened(interval: tuple[float, float], relative: float) -> tuple[float, float]:
+    """Both ends of an interval, Pa, with a relative error; never below zero."""
+    low, high = interval
+    return max(0.0, low * (1.0 - relative)), high * (1.0 + relative)
 
 
 def accuracy(relative: float, tolerance: float, known: bool) -> Reason:

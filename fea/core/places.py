@@ -85,7 +85,7 @@ class ContactEdge:
 
     @property
     def instead(self) -> dict[str, str]:
-        """The dimension of K, which depends on the exponent (reports.data.in_units)."""
+        """The dimension of K, which depends on the exponent (pinbase.records.in_units)."""
         return {"strength": f"stress length^{self.exponent!r}"}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from fea.core.material import Material
-from fea.core.verdict import MeshHistory
+from fea.core.mesh_history import MeshHistory
 
 Model = Literal["auto", "beam", "harmonic", "solid"]
 Goal = Literal["value", "decide"]

@@ -1,4 +1,8 @@
-"""A verdict from successive meshes: is the maximum accurate enough, and does one exist at all?"""
+"""A verdict on the maximum of a case: is it accurate enough, and does one exist at all?
+
+A model, and the support of its pin, gather evidence: a value, and all parts of its error. It is
+judged once, when nothing can be added any more; so verdict, error and note always agree.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fea.core.linear_solver import SolveError
+from fea.core.mesh_history import MeshHistory
 from fea.core.mesh_result import MeshMaximum
-from fea.core.model import MeshSequence
 from fea.core.peak import (
     NO_REASON,
     ErrorParts,
@@ -17,10 +21,11 @@ from fea.core.peak import (
     SingularZone,
     Verdict,
     accuracy,
-    discretisation_error,
+    widened,
 )
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import Zone
+from pinbase.dimensions import Point, Stress
 
 KIND_ARTICLES = {
     "sharp corner": "a", "edge of a clamp": "the", "edge of a load": "the"
@@ -28,91 +33,68 @@ KIND_ARTICLES = {
 
 
 @dataclass(frozen=True)
-class MeshHistory:
-    """The meshes of one case so far, from coarse to fine.
+class Evidence:
+    """What is known of the maximum of a case before it is judged.
 
-    seconds: solution time of each.
-    meshes: how they are refined.
-    first: how many meshes of a run are coarser than the first of these.
+    value: the maximum, Pa, outside the singular zones; parts: of its error.
+    location: (x, y, z) in the pin's axes, m.
+    zones: of unbounded stress.
+    excluded: where one of them governs, the maximum outside half and twice the excluded distance,
+    Pa, without its error.
+    doubt: why the parts do not tell the error; they then do not count as within the tolerance.
+    omissions: what the model leaves out of the surface's stress.
+    remarks: on the support and on limits, which end the note.
+    why: the reason for the model.
+    governing, history, imbalance, solids: as in Maximum.
     """
 
     pin: str
     case: str
     model: str
-    results: tuple[MeshMaximum, ...]
-    seconds: tuple[float, ...]
-    meshes: MeshSequence
-    first: int = 0
+    value: Stress
+    parts: ErrorParts
+    location: Point
+    history: tuple[Refinement, ...] = ()
+    zones: tuple[SingularZone, ...] = ()
+    excluded: tuple[Stress, Stress] | None = None
+    doubt: Reason | None = None
+    omissions: Reason = NO_REASON
+    remarks: Reason = NO_REASON
+    why: Reason = NO_REASON
+    governing: PinLoads | None = None
+    imbalance: tuple[float, float] | None = None
+    solids: tuple[tuple[float, float], ...] = ()
 
-    def appended(self, result: MeshMaximum, spent: float) -> MeshHistory:
-        """The history with the result of one more mesh, which took `spent` seconds."""
-        return replace(self, results=(*self.results, result), seconds=(*self.seconds, spent))
+    def with_parts(self, **parts: Stress) -> Evidence:
+        """The evidence with more parts of the error, Pa, by their names in ErrorParts."""
+        return replace(self, parts=replace(self.parts, **parts))
 
-    @property
-    def history(self) -> tuple[Refinement, ...]:
-        """Maxima outside the singular zones, mesh by mesh."""
-        return tuple(
-            Refinement(result.unknowns, result.maximum, spent)
-            for result, spent in zip(self.results, self.seconds, strict=True)
+    def remarked(self, remark: Reason) -> Evidence:
+        """The evidence with one more remark."""
+        return replace(self, remarks=self.remarks + remark)
+
+
+def evidence_of(
+    seen: MeshHistory, singularities: Sequence[Zone], remarks: Reason = NO_REASON
+) -> Evidence:
+    """The evidence of a sequence of meshes.
+
+    Raises: SolveError when the stress is not finite.
+    """
+    last = seen.results[-1]
+    if not last.maximum < float("inf"):
+        raise SolveError(
+            f"pin {seen.pin}, case {seen.case}: the stress is not finite", "not-finite"
         )
-
-    def under(self, loads: PinLoads) -> tuple[Refinement, ...]:
-        """The history with the strain energy of each mesh under loads of one instant."""
-        return tuple(
-            replace(step, strain_energy=result.energy.of(loads) if result.energy else None)
-            for step, result in zip(self.history, self.results, strict=True)
-        )
-
-    @property
-    def error(self) -> float:
-        """Estimated error of the last maximum, Pa."""
-        return self.parts.total
-
-    @property
-    def parts(self) -> ErrorParts:
-        """The parts of the error of the last maximum.
-
-        That of the mesh follows from the sequence of meshes, but is never less than the scatter
-        with the positions of nodes.
-        """
-        last = self.results[-1]
-        if len(self.results) == 1:
-            return ErrorParts(last.maximum)  # as large as the value
-        mesh = self._of_mesh(last)
-        return ErrorParts(mesh, last.between, last.left_out, truncation=last.truncated)
-
-    def _of_mesh(self, last: MeshMaximum) -> float:
-        finer = self.meshes.ratio ** (self.first + len(self.results) - 1)
-        scatter = max(last.scatter, self.meshes.scatter * last.maximum / finer**2)
-        return discretisation_error(self.history, self.meshes.ratio, scatter, self.meshes.min_order)
-
-    @property
-    def relative(self) -> float:
-        """The error over the maximum."""
-        largest = self.results[-1].maximum
-        return self.error / largest if largest else 0.0
-
-    @property
-    def range(self) -> tuple[float, float]:
-        """The bounds of the maximum, Pa, from its error.
-
-        Where stress is larger in an excluded zone, they are those of half and twice the excluded
-        distance, with the error, and with the change of both from the mesh before: so near to the
-        zone they are known less well than the maximum.
-        """
-        last = self.results[-1]
-        if not last.governed:
-            return last.maximum - self.error, last.maximum + self.error
-        low, high = last.interval or (last.maximum, last.maximum)
-        for before in self.results[-2:-1]:
-            if before.interval is not None:
-                low -= abs(low - before.interval[0])
-                high += abs(high - before.interval[1])
-        return max(0.0, low * (1.0 - self.relative)), high * (1.0 + self.relative)
-
-    def known(self, tolerance: float) -> bool:
-        """Return whether the error is within `tolerance`, relative."""
-        return len(self.results) >= self.meshes.min_meshes and self.relative <= tolerance
+    doubt = None
+    if len(seen.results) < seen.meshes.min_meshes:
+        meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
+        text = f"only {meshes} solved, too few to estimate the error"
+        doubt = Reason(text, ("too-few-meshes",))
+    return Evidence(
+        seen.pin, seen.case, seen.model, last.maximum, seen.parts, last.location, seen.history,
+        zones(last, singularities), seen.excluded, doubt, remarks=remarks,
+    )  # fmt: skip
 
 
 def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZone, ...]:
@@ -137,54 +119,67 @@ def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZ
 
 
 def judge(
-    seen: MeshHistory, singularities: Sequence[Zone], tolerance: float, note: Reason = NO_REASON
+    evidence: Evidence, tolerance: float, other_place: tuple[float, float] | None = None
 ) -> Maximum:
-    """The peak of a case with its verdict.
+    """The maximum of a case with its verdict.
 
-    note: appended to the note of the verdict.
-
-    Raises: SolveError when the stress is not finite.
+    tolerance: of the error, relative.
+    other_place: bounds, Pa, of the place that has less stress, by the values of both: a row is as
+    uncertain as the larger of them.
     """
-    last = seen.results[-1]
-    if not last.maximum < float("inf"):
-        raise SolveError(
-            f"pin {seen.pin}, case {seen.case}: the stress is not finite", "not-finite"
-        )
-    reported = zones(last, singularities)
-    governing = [zone for zone in reported if zone.governs]
-    known = seen.known(tolerance)
+    least, most = other_place or (0.0, 0.0)
+    own = evidence.parts.total
+    error = max(own, most - evidence.value)
+    relative, own_relative = (x / evidence.value if evidence.value else 0.0 for x in (error, own))
+    known = evidence.doubt is None and relative <= tolerance
     verdict: Verdict = "converged" if known else "unconverged"
-    verdict_reason = accuracy(seen.relative, tolerance, known)
-    if len(seen.results) < seen.meshes.min_meshes and not known:
-        meshes = "one mesh was" if len(seen.results) == 1 else f"{len(seen.results)} meshes were"
-        text = f"only {meshes} solved, too few to estimate the error"
-        verdict_reason = Reason(text, ("too-few-meshes",))
-    error, interval = seen.error, None
+    reason = evidence.doubt or accuracy(relative, tolerance, known)
+    governing, interval = [zone for zone in evidence.zones if zone.governs], None
     if governing:
         verdict = "singular"
-        worst = max(governing, key=lambda zone: zone.max_von_mises)
-        interval = seen.range
-        error = max(last.maximum - interval[0], interval[1] - last.maximum)
-        ends = " to ".join(f"{end / last.maximum - 1.0:+.0%}" for end in interval)
-        outside = "" if known else f"; outside, {verdict_reason.text}"
-        text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
-        verdict_reason = Reason(text, verdict_reason.codes)
-    verdict_reason = verdict_reason + note
+        at_surface = evidence.doubt or accuracy(own_relative, tolerance, own_relative <= tolerance)
+        low, high = widened(evidence.excluded or (evidence.value, evidence.value), own_relative)
+        reason = _unbounded(governing, evidence.value, (low, high), at_surface)
+        interval = max(low, least), max(high, most)
+        error = max(evidence.value - interval[0], interval[1] - evidence.value)
+    note = reason + evidence.omissions + evidence.remarks
     return Maximum(
-        pin=seen.pin,
-        case=seen.case,
-        model=seen.model,
+        pin=evidence.pin,
+        case=evidence.case,
+        model=evidence.model,
         verdict=verdict,
-        note=verdict_reason.text,
-        max_von_mises=last.maximum,
+        note=note.text,
+        max_von_mises=evidence.value,
         error_estimate=error,
-        location=last.location,
-        history=seen.history,
-        singular_at=reported,
+        location=evidence.location,
+        governing=evidence.governing,
+        history=evidence.history,
+        singular_at=evidence.zones,
+        why=evidence.why.text,
         interval=interval,
-        parts=seen.parts,
-        reasons=verdict_reason.codes,
+        parts=evidence.parts,
+        reasons=note.codes + evidence.why.codes,
+        imbalance=evidence.imbalance,
+        solids=evidence.solids,
     )
+
+
+def _unbounded(
+    governing: Sequence[SingularZone],
+    value: float,
+    interval: tuple[float, float],
+    at_surface: Reason,
+) -> Reason:
+    """The reason why no maximum exists, and what is known outside the zones.
+
+    interval: the bounds, Pa, by half and twice the excluded distance; at_surface: the accuracy of
+    the value.
+    """
+    worst = max(governing, key=lambda zone: zone.max_von_mises)
+    ends = " to ".join(f"{end / value - 1.0:+.0%}" for end in interval)
+    outside = "" if at_surface.codes == ("within-tolerance",) else f"; outside, {at_surface.text}"
+    text = f"{_nowhere(worst)}; half and twice the excluded distance give {ends}{outside}"
+    return Reason(text, at_surface.codes)
 
 
 def _nowhere(zone: SingularZone) -> str:

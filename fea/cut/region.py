@@ -53,7 +53,7 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
     """
     for name in (*clamps, *loaded):
         if name.removesuffix(" end") in pin.cuts:
-            return _solid(f"{name} carries load", f"{name.split()[0]}-loaded")
+            return Reason(f"{name} carries load", (f"{name.split()[0]}-loaded",))
     for cut, feature in pin.cuts.items():
         low, high = feature.opens
         for name in dict.fromkeys((*loaded, *clamps)):
@@ -63,13 +63,13 @@ def refusal(pin: CutPin, clamps: tuple[str, ...], loaded: Sequence[str]) -> Reas
                 continue
             if name in clamps:
                 text = f"{cut} lies in the clamped surface {name}"
-                return _solid(text, f"{feature.what}-in-clamped")
+                return Reason(text, (f"{feature.what}-in-clamped",))
             if name not in pin.connections:
                 text = f"{cut} lies in the loaded surface {name}"
-                return _solid(text, f"{feature.what}-in-loaded")
+                return Reason(text, (f"{feature.what}-in-loaded",))
             if crosses_end(feature, pin.profile, z0, z1):
                 text = f"{cut} lies at an end of the band {name}"
-                return _solid(text, f"{feature.what}-at-end")
+                return Reason(text, (f"{feature.what}-at-end",))
     return _joined(pin, loaded)
 
 
@@ -82,7 +82,8 @@ def _joined(pin: CutPin, loaded: Sequence[str]) -> Reason | None:
     for name, cut in pin.cuts.items():
         low, high = cut.extent
         if cut.opens != cut.extent and sum(low < b and a < high for a, b in bands) > 1:
-            return _solid(f"{name} lies under cuts in several loaded bands", "passage-under-bands")
+            text = f"{name} lies under cuts in several loaded bands"
+            return Reason(text, ("passage-under-bands",))
     return None
 
 
@@ -100,14 +101,8 @@ def corner_refusal(pin: CutPin, singularities: Sequence[Zone]) -> Reason | None:
     for cut, feature in pin.cuts.items():
         low, high = feature.opens
         if any(low <= s.z <= high for s in singularities):
-            return _solid(f"{cut} lies at a sharp corner", f"{feature.what}-at-corner")
+            return Reason(f"{cut} lies at a sharp corner", (f"{feature.what}-at-corner",))
     return None
-
-
-def _solid(why: str, code: str) -> Reason:
-    return Reason(
-        f"solid: the pin is not a body of revolution, and {why}", ("not-axisymmetric", code)
-    )
 
 
 def surface_ends(pin: CutPin, name: str) -> tuple[float, float]:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
-
-import numpy as np
 
 from fea.beam.model import BeamField
 from fea.core.over_time import rise_between, through_time
 from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.support.support import HeldPin, PinProblem, Solution
+from fea.support.support import HeldPin, PinProblem, Reading, Solution
 from geometry import Pin
 
 
@@ -29,7 +26,7 @@ def by_beam(
     """
     start, rise, pin = time.perf_counter(), 0.0, held.pin
     assert isinstance(pin, Pin)
-    note = held.notes.get(case.case, NO_REASON) + remark
+    remarks = held.notes.get(case.case, NO_REASON) + remark
     loads = held.start(case.case)
     field = BeamField(pin, problem.material, held.clamps, loads)
     if between := problem.between.get(case.case):
@@ -37,6 +34,5 @@ def by_beam(
         rise = rise_between(field, loads, between)
         field = BeamField(pin, problem.material, held.clamps, loads)
     instant, spent = field.estimate.instant, time.perf_counter() - start
-    peak = field.peak(requirement.tolerance, spent, note, rise)
-    peak = replace(peak, governing=loads.at(np.array([instant])))
-    return held.finished(Solution(peak, field, loads, instant, held), requirement)
+    reading = Reading(field.evidence(spent, remarks, rise), field, loads, instant)
+    return held.finished(reading, requirement)

@@ -84,10 +84,6 @@ class Rung:
 class Refused(SolveError):
     """A model does not apply, for a reason that the next step states."""
 
-    def __init__(self, reason: Reason) -> None:
-        super().__init__(reason.text, reason.codes[-1])
-        self.reason = reason
-
 
 def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     """The steps in their order; the last answers whatever is left.
@@ -183,7 +179,8 @@ def _local(at: Attempt) -> dict[str, Solution]:
 def _solid(at: Attempt) -> dict[str, Solution]:
     why = None
     if isinstance(at.failure, Refused):
-        why = at.failure.reason
+        text = f"solid: the pin is not a body of revolution, and {at.failure}"
+        why = Reason(text, ("not-axisymmetric", at.failure.code))
     elif at.failure is not None:
         text = f"solid: a local solid about the cuts failed: {at.failure}"
         why = Reason(text, ("not-axisymmetric", "local-failed"))
@@ -205,7 +202,7 @@ def _local_solids(at: Attempt) -> LocalSolids:
     zones = zones_of(pin, clamps, problem.material, starts, at.requirement)
     why = refusal(whole, clamps, loaded) or corner_refusal(whole, zones)
     if why is not None:
-        raise Refused(why)
+        raise Refused(why.text, why.codes[-1])
     return LocalSolids(whole, loaded_bands(whole, loaded), problem.first)
 
 
@@ -229,9 +226,8 @@ def _contact(at: Attempt) -> dict[str, Solution]:
         try:
             model = _local_solids(at)
         except Refused as refused:
-            since = str(refused).removeprefix("solid: the pin is not a body of revolution, and ")
             raise SolveError(
-                f"pin {held.pin.name}: no local solid about the cuts will do, since {since}",
+                f"pin {held.pin.name}: no local solid about the cuts will do, since {refused}",
                 refused.code,
             ) from refused
     limit, solutions = _limit(problem, requirement), at.refined(model, why)

@@ -9,9 +9,10 @@ import numpy as np
 
 from fea.core.material import Material
 from fea.core.memory import too_much
+from fea.core.mesh_history import MeshHistory
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence, MeshSolution, Model
 from fea.core.over_time import Between, rise_between, through_time, with_crest
-from fea.core.peak import NO_REASON, Maximum, Reason
+from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import (
     DECIDED_TEXT,
@@ -20,14 +21,14 @@ from fea.core.requirement import (
     below_sections,
     decided,
 )
-from fea.core.verdict import MeshHistory, judge
+from fea.core.verdict import Evidence, evidence_of
 from fea.core.zone import Zone
 from fea.cut.evaluate import LOCAL_MESHES, CutField, LocalSolids
 from fea.cut.region import unringed
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
 from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
-from fea.support.support import HeldPin, PinProblem, Progress, Solution
+from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution
 from geometry import CutPin, Pin, PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
@@ -123,9 +124,9 @@ def refine(
     for case in posed.cases:
         between = _between(held, problem, case.case)
         loads, history = _at_crest(mesh, case, seen[case.case], between)
-        peak = judge(history, mesh.zones, posed.tolerance, notes.get(case.case, NO_REASON))
-        peak = peak.with_reason(why + met(requirement, material, history))
-        out[case.case] = held.finished(_solution(peak, mesh, loads, history, held), requirement)
+        evidence = evidence_of(history, mesh.zones, notes.get(case.case, NO_REASON))
+        evidence = replace(evidence, why=why + met(requirement, material, history))
+        out[case.case] = held.finished(_reading(evidence, mesh, loads, history), requirement)
     return out
 
 
@@ -208,14 +209,12 @@ def _at_crest(
     return more, replace(seen, results=(*seen.results[:-1], last))
 
 
-def _solution(
-    peak: Maximum, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory, held: HeldPin
-) -> Solution:
-    """The solution of a case on its last mesh."""
+def _reading(evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory) -> Reading:
+    """What the last mesh says about a case."""
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
-    peak = replace(peak, governing=governing, history=seen.under(governing))
+    evidence = replace(evidence, governing=governing, history=seen.under(governing))
     if isinstance(field, CutField):
         solids = tuple((p.piece.z0, p.piece.z1) for p in field.solution.pieces)
-        peak = replace(peak, solids=solids)
-    return Solution(peak, field, loads, instant, held)
+        evidence = replace(evidence, solids=solids)
+    return Reading(evidence, field, loads, instant)

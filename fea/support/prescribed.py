@@ -12,10 +12,11 @@ from fea.core.material import Material
 from fea.core.peak import Maximum, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
+from fea.core.verdict import judge
 from fea.section.place import found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
 from geometry import Pin, PinLike
 
 MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
@@ -78,30 +79,29 @@ class HeldPrescribed:
         """The whole requirement, since the loads have no error."""
         return requirement
 
-    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
+    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
         """The solution with the largest stress of sections, where the pin is a body of
         revolution.
         """
-        peak, loads = solution.peak, solution.loads
-        case = peak.case
-        if case in self.imbalance:
-            peak = replace(peak, imbalance=self.imbalance[case])
-        if solution.answer is None or loads.pressed is not None:
-            return replace(solution, peak=peak)
-        section, material = None, self.problem.material
+        loads, instant, material = reading.loads, reading.instant, self.problem.material
+        case = loads.case
+        evidence = replace(reading.evidence, imbalance=self.imbalance.get(case))
+        if loads.pressed is not None:
+            peak = judge(evidence, requirement.tolerance)
+            return Solution(peak, reading.answer, loads, instant, self)
+        section = None
         if isinstance(self.pin, Pin):
             given = self.start(case)
             stress = SectionField(self.pin, material, self.clamps, (given,))
             between = self.problem.between.get(case)
             section = found_section(stress, given, between, requirement.tolerance)
-        peak = row_of(peak, section, material, requirement.tolerance)
-        if peak.places is None or peak.places.governs == "surface" or loads.times is None:
-            return replace(solution, peak=peak)
-        assert section is not None
-        loads = loads.merged(section.loads)
-        assert loads.times is not None
-        instant = int(np.searchsorted(loads.times, section.time or 0.0))
-        return replace(solution, peak=peak, loads=loads, instant=instant)
+        peak = row_of(evidence, section, material, requirement.tolerance)
+        in_section = peak.places is not None and peak.places.governs == "section"
+        if section is not None and in_section and loads.times is not None:
+            loads = loads.merged(section.loads)
+            assert loads.times is not None
+            instant = int(np.searchsorted(loads.times, section.time or 0.0))
+        return Solution(peak, reading.answer, loads, instant, self)
 
 
 def balanced(

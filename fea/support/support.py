@@ -12,6 +12,7 @@ from fea.core.peak import Maximum, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.solution import StressField
+from fea.core.verdict import Evidence
 from fea.harmonic.kept_fields import FirstMesh
 from fea.support.cell_pressure import CellPressure
 from fea.support.lugs.lug import Lug
@@ -97,8 +98,8 @@ class HeldPin(Protocol):
         """The requirement on the meshes, given the support's own error."""
         ...
 
-    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
-        """The solution of a case with the results of the support.
+    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
+        """The solution of a case, judged once, with the results of the support.
 
         These are its part of the error, sections, contact, and the range over the uncertain
         properties of the joint. All of them follow from the loads at one instant, which are found
@@ -126,6 +127,21 @@ class Support(Protocol):
         held.
         """
         ...
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a model has found of a case: evidence that nobody has judged yet.
+
+    answer: the stress on the last mesh.
+    loads: on the pin, with the instants added to find the maximum.
+    instant: index of the governing one.
+    """
+
+    evidence: Evidence
+    answer: StressField
+    loads: PinLoads
+    instant: int
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Literal, TypeVar
 
+from pinbase.records import pack, unpack
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import RunResults, solve
-from pinstress.analysis.serialise import pack, unpack
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.in_python import changed_study
 from reports.data.results import PinResult
@@ -41,7 +41,7 @@ class Memo:
         self._entries: OrderedDict[str, bytes] = OrderedDict()
 
     def key(self, asked: object) -> str:
-        """The name of the answer to what is asked (pinstress.analysis.serialise takes it)."""
+        """The name of the answer to what is asked (pinbase.records takes it)."""
         return hashlib.sha256(pack(asked)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:

@@ -21,6 +21,7 @@ from fea.support.records import JointResult
 from fea.support.support import PinProblem, Solution
 from geometry import Pin
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
+from pinbase.records import Unit, in_units
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
 from pinstress.analysis.assessed.situations import assessed
@@ -34,21 +35,20 @@ from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_
 from pinstress.study.model.pins import shape_notes
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.in_units import Unit, in_units
-from reports.data.results import Field
+from reports.data.results import Field, PinResult
 
 # Of a dimension, m, whose effect is found.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
 
 Keep = Callable[[Field], None]
-Ask = Callable[[Plan, Task, PinOutcome, Tell], tuple[Opinion, ...]]
+Ask = Callable[[Plan, Task, tuple[PinResult, ...], Tell], tuple[Opinion, ...]]
 
 
 def keep_none(_: Field) -> None:
     """Keep no field. Not a lambda: it is sent to processes that are started anew."""
 
 
-def _ask_none(_: Plan, __: Task, ___: PinOutcome, ____: Tell) -> tuple[Opinion, ...]:
+def _ask_none(_: Plan, __: Task, ___: tuple[PinResult, ...], ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
@@ -118,7 +118,9 @@ def _attempt(
             solved = _solve(plan, task, keep, tell)
         else:
             solved = _solve_once(plan, task, keep, cache, tell)
-        return _assessed(plan, task, replace(solved, opinions=ask(plan, task, solved, tell)))
+        opinions = {x.case: x for x in ask(plan, task, solved.rows, tell)}
+        rows = (replace(row, second_opinion=opinions.get(row.case)) for row in solved.rows)
+        return replace(solved, rows=tuple(assessed(plan.study, task, row) for row in rows))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
@@ -140,7 +142,7 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: T
         tell(f"pin {task.pin.name}, as solved before")
         for field in entry.fields:
             keep(field)
-        return replace(entry.solved, before=True)
+        return replace(entry.solved, cached=True)
     fields: list[Field] = []
 
     def keep_both(field: Field) -> None:
@@ -148,22 +150,16 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: T
         fields.append(field)
 
     solved = _solve(plan, task, keep_both, tell)
-    if independent_of_memory(plan, task, solved.peaks):
-        stopped = any(limit is not None and limit.stopped for limit in solved.limits)
+    if independent_of_memory(plan, task, [row.maximum for row in solved.rows]):
+        stopped = any(row.limit_load is not None and row.limit_load.stopped for row in solved.rows)
         cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
     return solved
 
 
 def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
     name, model = task.pin.name, plan.asked.model
-    peaks = tuple(Maximum(name, case.case, model, "failed", reason) for case in task.loads)
-    return _assessed(plan, task, PinOutcome(peaks))
-
-
-def _assessed(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
-    none = (None,) * len(solved.peaks)
-    rows = zip(solved.peaks, solved.joints or none, solved.limits or none, strict=True)
-    return replace(solved, strength=tuple(assessed(plan.study, task, *row) for row in rows))
+    peaks = (Maximum(name, case.case, model, "failed", reason) for case in task.loads)
+    return PinOutcome(tuple(assessed(plan.study, task, PinResult(peak)) for peak in peaks))
 
 
 def solutions(
@@ -201,37 +197,31 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
         if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
-    notes = shape_notes(task.pin)
-    peaks = tuple(
-        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in solved
-    )
-    ranges = (gather.landing_range(plan.loads, task, s) for s in solved)
-    landing = tuple(r for r in ranges if r is not None)
-    beam = None
+    landing = [gather.landing_range(plan.loads, task, s) for s in solved]
+    beam_check = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
-        beam = checks.beam_check(study, task)
-    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, peaks)
+        beam_check = checks.beam_check(study, task)
+    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, solved)
+    remedy = change(plan.asked, task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
     sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
     limits = limit_loads(plan, task, solved, tell)
-    return PinOutcome(
-        peaks,
-        landing,
-        beam,
-        surfaces,
-        joints=joints,
-        change=to_do,
-        histories=histories,
-        limits=limits,
-        sensitivities=sensitive,
-        no_histories=no_histories,
+    parts = zip(solved, joints, limits, landing, strict=True)
+    rows = tuple(
+        PinResult(_with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over)
+        for s, joint, limit, over in parts
     )
+    return PinOutcome(rows, surfaces, histories, no_histories, sensitive, remedy, beam_check)
+
+
+def _with_notes(task: Task, peak: Maximum) -> Maximum:
+    """Return the maximum with the notes on the pin's shape."""
+    return replace(peak, note="; ".join(filter(None, (peak.note, shape_notes(task.pin)))))
 
 
 def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
@@ -246,11 +236,11 @@ def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHis
         return (), f"{type(error).__name__}: {error}"
 
 
-def _around(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> tuple[JointResult | None, ...]:
-    """Return the range over lugs around a pin with prescribed clamps and loads."""
-    around, loads = task.surroundings, [peak.governing for peak in peaks]
+def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[JointResult | None, ...]:
+    """Return the range over lugs around a pin with prescribed clamps and loads, by case."""
+    around, loads = task.surroundings, [solution.peak.governing for solution in solved]
     if around is None:
-        return ()
+        return (None,) * len(solved)
     if around.pin is None:
         none = JointResult("prescribed", remark=around.why)
         return tuple(none if here is not None else None for here in loads)

@@ -18,6 +18,7 @@ from pinstress.cli.design_commands import reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
+    curve,
     import_,
     init,
     pdf_of,
@@ -368,6 +369,7 @@ def check(study: Path) -> int:
 
 for _command in (
     compare_runs,
+    curve,
     import_,
     init,
     pdf_of,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import click
 
@@ -276,3 +277,53 @@ def size(
         aim = require_aim(loaded, asked, require_wish(loaded, fos, metres).required, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, asked.probability)
     return size_and_write(loaded, require_wish(loaded, fos, metres), out, pins, quiet, jobs)
+
+
+@click.command(
+    "curve",
+    short_help="Plot factors of safety against one number of a study.",
+    help=example("pinstress curve studies/one_pin.toml pin.B.profile[2].diameter")
+    + "\nSolve a study at evenly spaced values of one of its numbers, KEY as in messages and "
+    "[vary], and show each pin's smallest factor of safety. Says where the required factor is "
+    "reached; writes curve.csv, curve.svg and curve.png.\n\n"
+    "Exit status: 0 done; 1 done, but no value has a factor; 2 bad input; 130 interrupted.",
+)
+@click.argument("study", type=click.Path(path_type=Path))
+@click.argument("key")
+@click.option(
+    "--from", "first", metavar="VALUE", help="First value [half of that in the study]; 2 or '2 in'."
+)
+@click.option("--to", "last", metavar="VALUE", help="Last value [twice that in the study].")
+@click.option(
+    "--points",
+    type=click.IntRange(2, 200),
+    default=9,
+    show_default=True,
+    help="Number of values, evenly spaced; the one in the study is added.",
+)
+@click.option(
+    "--pin", "--pins", "pins", callback=names, metavar="A,B",
+    help="Only these pins [that of the key, or all].",
+)  # fmt: skip
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Output folder [out/<study>-curve.KEY]."
+)
+@JOBS_OPTION
+@QUIET_OPTION
+def curve(
+    study: Path,
+    key: str,
+    first: str | None,
+    last: str | None,
+    points: int,
+    pins: list[str] | None,
+    out: Path | None,
+    jobs: int | None,
+    quiet: bool,
+) -> int:
+    loaded = read_study(study)
+    from pinstress.cli.curve import curve_and_write, number_or_text
+
+    directory = out or Path("out") / f"{loaded.name}-curve.{quote(key, safe='.[]')}"
+    ends = number_or_text(first), number_or_text(last)
+    return curve_and_write(loaded, key, ends, points, pins, directory, jobs, quiet)

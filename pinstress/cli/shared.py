@@ -77,7 +77,7 @@ def open_page(page: Path) -> None:
 COMMAND_SECTIONS = {
     "Studies": ("init", "check", "import", "schema"),
     "Analysis": ("run", "loads", "chart"),
-    "Designs": ("size", "sweep", "reliability"),
+    "Designs": ("size", "curve", "sweep", "reliability"),
     "Earlier runs": ("view", "compare", "plots", "pdf"),
 }
 

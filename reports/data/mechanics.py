@@ -355,7 +355,7 @@ class MotionCheck:
 
 @dataclass(frozen=True)
 class Dimensioned:
-    """Values of a dimension (as reports.data.in_units writes it), and the study's unit of it."""
+    """Values of a dimension (as pinbase.records.in_units writes it), and the study's unit of it."""
 
     values: Annotated[Floats, "own"]
     dimension: str

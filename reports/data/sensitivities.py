@@ -28,7 +28,7 @@ class Sensitivity:
 
     @property
     def instead(self) -> dict[str, str]:
-        """The dimensions of this parameter (reports.data.in_units)."""
+        """The dimensions of this parameter (pinbase.records.in_units)."""
         plain = self.kind == "1"
         return {
             "parameter": self.kind,

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.core.peak import ErrorParts, Maximum, accuracy
+from fea.core.peak import ErrorParts, Reason, SingularZone
 from fea.core.pin_loads import PinLoads
+from fea.core.verdict import Evidence
 from fea.section.place import FoundSection, found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
@@ -22,13 +23,17 @@ CANTILEVER = Pin("C", (Segment(0.2, D, name="shaft"), Segment(0.02, D, connectio
 BENT = PinLoads("c", ("E",), np.array([[[1e3, 0.0, 0.0]]]))
 
 
-def surface(value: float, error: float, **more: object) -> Maximum:
-    own = accuracy(error / value, 0.02, error <= 0.02 * value)
-    row = Maximum(
-        "P", "c", "harmonic", "converged", f"{own.text}; and more", value, error, (0.01, 0.0, 0.1),
-        parts=ErrorParts(error), reasons=(*own.codes, "more", "why"),
+ZONE = SingularZone(
+    (0.01, 0.0, 0.0), "the edge of a clamp", ("start", "shaft"), None, 0.3, 1e-3, True, 1e12, "none"
+)
+
+
+def surface(value: float, error: float, **more: object) -> Evidence:
+    of = Evidence(
+        "P", "c", "harmonic", value, ErrorParts(error), (0.01, 0.0, 0.1),
+        remarks=Reason("; and more", ("more",)), why=Reason("harmonic", ("why",)),
     )  # fmt: skip
-    return replace(row, **more)  # type: ignore[arg-type]
+    return replace(of, **more)  # type: ignore[arg-type]
 
 
 def section(share: float = 0.0) -> tuple[FoundSection, float]:
@@ -81,14 +86,14 @@ def test_a_row_is_as_uncertain_as_the_larger_may_be() -> None:
     assert row.reasons == ("above-tolerance", "more", "why")
     assert row.places.surface.verdict == "converged"
     sure, value = section(0.001)
-    row = row_of(surface(0.99 * value, 0.08 * value, verdict="unconverged"), sure, STEEL, 0.02)
+    row = row_of(surface(0.99 * value, 0.08 * value), sure, STEEL, 0.02)
     assert row.places is not None
     assert row.places.governs == "section"
     assert row.upper_end == pytest.approx(1.07 * value)
     assert row.verdict == "unconverged"
     assert row.note == "estimated error 7.0%, above the tolerance of 2.0%; and more"
     assert row.reasons == ("in-section", "above-tolerance", "more", "why")
-    row = row_of(surface(0.9 * value, 0.08 * value, verdict="unconverged"), sure, STEEL, 0.02)
+    row = row_of(surface(0.9 * value, 0.08 * value), sure, STEEL, 0.02)
     assert row.verdict == "converged"  # the surface is surely below
 
 
@@ -106,10 +111,7 @@ def test_a_singular_surface_stays_singular(
 ) -> None:
     found, value = section()
     own, (low, high) = surfaces
-    error = max(own - low, high - own) * value
-    singular = surface(
-        own * value, error, verdict="singular", interval=(low * value, high * value), note="no"
-    )
+    singular = surface(own * value, 0.0, zones=(ZONE,), excluded=(low * value, high * value))
     row = row_of(singular, found, STEEL, 0.02)
     assert row.verdict == "singular"
     assert row.max_von_mises == pytest.approx(max(own, 1.0) * value)
@@ -125,9 +127,7 @@ def test_a_singular_surface_stays_singular(
     assert row.places.section.verdict == "converged"
 
 
-def test_bodies_without_sections_and_rows_without_numbers() -> None:
+def test_bodies_without_sections() -> None:
     row = row_of(surface(1e8, 1e6), None, STEEL, 0.02)
     assert row.places is not None
     assert (row.places.governs, row.places.section) == ("surface", None)
-    rigid = Maximum("P", "c", "auto", "rigid", "not held")
-    assert row_of(rigid, None, STEEL, 0.02) is rigid

@@ -11,9 +11,10 @@ import pytest
 
 from fea.core.mesh_result import SingularIntensity
 from fea.core.peak import SingularZone
+from pinbase.records import in_units
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data import results as data
-from reports.data.in_units import in_units
+from reports.data import row
 from reports.data.results import (
     Dimensioned,
     DriveEffort,
@@ -51,14 +52,13 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
     """A new field that holds numbers cannot be left in SI by oversight."""
     plain = {
         f"{name}.{f.name}"
-        for name, kind in vars(data).items()
+        for name, kind in (vars(data) | vars(row)).items()
         if dataclasses.is_dataclass(kind)
         for f in dataclasses.fields(kind)
         if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
     }
     assert plain == {
-        "PinResult.seconds",
-        "PinResult.safety_factor",
+        "Judgement.safety_factor",
         "PinSensitivities.factor",
         "Sensitivity.factor_with_step",
         "PinResult.published_max_von_mises",  # as published, in the study's units
@@ -74,7 +74,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "LandingRange.safety_factor",
         "LandingRange.error",
         "Dependence.factor",
-        "PinResult.required",
+        "Judgement.required",
         "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
         "PointFatigue.life",
         "PointFatigue.utilisation",

@@ -19,18 +19,17 @@ redistribution  What presses on a mouth comes back as pressure near it, at most 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.peak import Maximum, Reason
-from fea.core.requirement import Requirement
+from fea.core.peak import Reason
+from fea.core.verdict import Evidence
 from fea.cut.evaluate import CutField
 from fea.cut.region import zone
 from fea.support.cell_pressure import CellPressure
 from fea.support.contact.bending import stations
-from fea.support.contact.error_parts import with_parts
 from fea.support.contact.solve_joint import JointContact
 from fea.support.records import Variation
 from geometry import Cut, CutPin, Pin
@@ -168,26 +167,16 @@ def _inertia(pin: Pin, z: float) -> float:
     return math.pi * (shaft**4 - bore**4) / 4.0
 
 
-def at_a_cut(peak: Maximum, of: CutField) -> bool:
-    """Return whether a maximum is about a cut."""
-    ends = [zone(piece.piece) for piece in of.solution.pieces]
-    where = peak.location
-    return where is not None and any(low <= where[2] <= high for low, high in ends)
-
-
 def with_neglected(
-    peak: Maximum,
-    left: NeglectedCuts,
-    of: CutField,
-    over: tuple[Variation, ...],
-    requirement: Requirement,
-) -> Maximum:
-    """The maximum with the neglected effects among the parts of its error, and a note about
+    evidence: Evidence, cuts: NeglectedCuts, of: CutField, over: tuple[Variation, ...]
+) -> Evidence:
+    """The evidence with the neglected effects among the parts of its error, and a remark on
     them.
     """
-    if not peak.max_von_mises or peak.parts is None:
-        return peak
-    more = left.error(peak.max_von_mises, at_a_cut(peak, of), over)
-    widened = with_parts(peak, replace(peak.parts, model=more), requirement)
-    note = left.note
-    return replace(widened, note=widened.note + note.text, reasons=widened.reasons + note.codes)
+    error = cuts.error(evidence.value, _at_a_cut(evidence.location, of), over)
+    return evidence.with_parts(model=error).remarked(cuts.note)
+
+
+def _at_a_cut(location: tuple[float, float, float], of: CutField) -> bool:
+    ends = [zone(piece.piece) for piece in of.solution.pieces]
+    return any(low <= location[2] <= high for low, high in ends)

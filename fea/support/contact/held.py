@@ -22,6 +22,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.peak import Maximum, Reason, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
+from fea.core.verdict import Evidence
 from fea.cut.evaluate import CutField
 from fea.cut.region import RingedCutPin
 from fea.harmonic.beneath import beneath
@@ -31,7 +32,6 @@ from fea.section.row import row_of, with_contact
 from fea.support.cell_pressure import CellPressure
 from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import neglected, with_neglected
-from fea.support.contact.error_parts import with_cells
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
 from fea.support.contact.variations import ResolutionComparison, compare
@@ -40,7 +40,7 @@ from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces
 from fea.support.lugs.rings import whole_names
 from fea.support.prescribed import balanced, imbalance
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
 from geometry import CutPin, Pin, PinLike
 
 # They are tried in this order, until one is fine enough.
@@ -216,46 +216,55 @@ class HeldContact:
             for case, links in self.contact.instants.items()
         }
 
-    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
+    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
         """The solution with the error of cells and of what contact neglects, sections, contact, and
         the range over the uncertain properties of the joint.
         """
-        model, material = self.model, self.problem.material
-        (case,) = (c for c in self.problem.cases if c.case == solution.peak.case)
-        answer = solution.answer
+        model, material, answer = self.model, self.problem.material, reading.answer
+        case = next(c for c in self.problem.cases if c.case == reading.loads.case)
         assert isinstance(answer, HarmonicField | CutField)
         assert self.contact.patterns is not None
-        at_surface = self.contact.joined(solution.loads.links, solution.instant)
+        at_surface = self.contact.joined(reading.loads.links, reading.instant)
         known = self.compared[case.case].near(at_surface, case, self._compared_anew(requirement))
         missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
-        peak = with_cells(
-            _named(model, solution.peak), known.surface.cells.surface + missed, requirement
-        )
-        peak = replace(peak, governing=at_surface.loads.links, imbalance=_imbalance(model, case))
-        section = None
+        surface = self._evidence(reading, at_surface, known.surface.cells.surface + missed)
+        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
+        over, section, links = known.row.range(surface.value), None, None
         if self.cut is None:
             section = self._section(case, known.section.cells.section, requirement)
-        links = None if section is None else links_at(self.problem, case, section)
-        peak = row_of(peak, section, material, requirement.tolerance, links)
-        solved = solution.loads
-        solution = self._at_row(solution, peak, case)
+            links = links_at(self.problem, case, section)
+        elif isinstance(answer, CutField):
+            cuts = neglected(self.cut, material, at_surface, _pressure(at_surface), answer)
+            surface = with_neglected(surface, cuts, answer, over.variations)
+            error += cuts.error(surface.value, False, over.variations) / (surface.value or 1.0)
+        peak = row_of(surface, section, material, requirement.tolerance, links)
+        solution = self._at_row(reading, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
-        over = known.row.range(peak.max_von_mises or 0.0)
-        (pressed,) = contact.contact
-        pressure = CellPressure(contact.bands, pressed.pressure, pressed.angle)
-        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
-        if self.cut is not None and isinstance(answer, CutField):
-            left = neglected(self.cut, material, contact, pressure, answer)
-            peak = with_neglected(peak, left, answer, over.variations, requirement)
-            peak = row_of(peak, None, material, requirement.tolerance)
-            largest = peak.max_von_mises or 1.0
-            error += left.error(largest, False, over.variations) / largest
         row = peak.max_von_mises or 0.0
-        place = contact_place(contact, material, answer, solved, requirement.required, error, row)
-        solution = replace(solution, peak=with_contact(peak, place))
+        place = contact_place(
+            contact, material, answer, reading.loads, requirement.required, error, row
+        )
         over = known.row.range(row, place.beneath)
         joint = contact_result(contact, over, solution.loads, known.row.left_out)
-        return replace(solution, joint=joint, pressure=pressure)
+        peak = with_contact(peak, place)
+        return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
+
+    def _evidence(self, reading: Reading, contact: JointContact, cells: float) -> Evidence:
+        """The evidence of the surface, with the names of the whole pin instead of its rings, and
+        the relative error of the cells.
+        """
+        names = whole_names(self.model.whole, self.model.ends)
+        of, zones = reading.evidence, []
+        for zone in reading.evidence.zones:
+            first, second = (names.get(name, name) for name in zone.between)
+            zones.append(replace(zone, between=(first, second)))
+        (case,) = (c for c in self.problem.cases if c.case == of.case)
+        return replace(
+            of.with_parts(cells=cells * of.value),
+            zones=tuple(zones),
+            governing=contact.loads.links,
+            imbalance=_imbalance(self.model, case),
+        )
 
     def _by_mesh(self, answer: HarmonicField | CutField, known: ResolutionComparison) -> float:
         """The relative difference of the stress beneath contact from that on the first mesh."""
@@ -284,17 +293,22 @@ class HeldContact:
             cells,
         )
 
-    def _at_row(self, solution: Solution, peak: Maximum, case: PinLoads) -> Solution:
+    def _at_row(self, reading: Reading, peak: Maximum, case: PinLoads) -> Solution:
         """The solution with the loads at all samples of a case, at the instant of its row."""
-        loads, links = solution.loads, self.contact.press(case)
-        if loads.times is None:
-            return replace(solution, peak=peak)
-        assert peak.governing is not None
-        assert peak.time is not None
-        loads = links.merged(loads).merged(self.contact.press(peak.governing))
-        assert loads.times is not None
-        instant = int(np.searchsorted(loads.times, peak.time))
-        return replace(solution, peak=peak, loads=loads, instant=instant)
+        loads, links, instant = reading.loads, self.contact.press(case), reading.instant
+        if loads.times is not None:
+            assert peak.governing is not None
+            assert peak.time is not None
+            loads = links.merged(loads).merged(self.contact.press(peak.governing))
+            assert loads.times is not None
+            instant = int(np.searchsorted(loads.times, peak.time))
+        return Solution(peak, reading.answer, loads, instant, self)
+
+
+def _pressure(contact: JointContact) -> CellPressure:
+    """The pressure on the cells at the single instant of a contact."""
+    (pressed,) = contact.contact
+    return CellPressure(contact.bands, pressed.pressure, pressed.angle)
 
 
 def links_at(problem: PinProblem, case: PinLoads, section: FoundSection) -> PinLoads:
@@ -305,16 +319,6 @@ def links_at(problem: PinProblem, case: PinLoads, section: FoundSection) -> PinL
     if between is not None:
         return between(np.array([time]))
     return case.at(np.flatnonzero(case.times == time)[:1])
-
-
-def _named(model: ContactModel, peak: Maximum) -> Maximum:
-    """The maximum with the names of the whole pin's surfaces, instead of those of its rings."""
-    names, note, zones = whole_names(model.whole, model.ends), peak.note, []
-    for zone in peak.singular_at:
-        first, second = (names.get(name, name) for name in zone.between)
-        note = note.replace(" / ".join(zone.between), f"{first} / {second}")
-        zones.append(replace(zone, between=(first, second)))
-    return replace(peak, note=note, singular_at=tuple(zones))
 
 
 def _imbalance(model: ContactModel, case: PinLoads) -> tuple[float, float] | None:

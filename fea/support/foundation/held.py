@@ -20,11 +20,12 @@ from fea.beam.maximum import VonMisesMaxima
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
-from fea.core.peak import ErrorParts, Maximum, Reason, Refinement, accuracy
+from fea.core.peak import ErrorParts, Maximum, Reason, Refinement
 from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
 from fea.core.requirement import Requirement
 from fea.core.solution import Picture
+from fea.core.verdict import Evidence, judge
 from fea.section.place import FoundSection
 from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import find_singularities
@@ -40,7 +41,7 @@ from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.records import BandContact, JointRange, JointResult
-from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
+from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
 from geometry import Pin, PinLike
 
 FOUNDATION_OMISSIONS = (
@@ -115,9 +116,10 @@ class HeldFoundation:
         """The whole requirement, since there are no meshes."""
         return requirement
 
-    def finished(self, solution: Solution, requirement: Requirement) -> Solution:
-        """Return the solution unchanged: it has all that a foundation can tell."""
-        return solution
+    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
+        """The solution of a beam on the loads of the links, to which a foundation adds nothing."""
+        peak = judge(reading.evidence, requirement.tolerance)
+        return Solution(peak, reading.answer, reading.loads, reading.instant, self)
 
     def solution(self, case: PinLoads, requirement: Requirement) -> Solution:
         """The stress of a case, its error, sections and joint."""
@@ -138,9 +140,9 @@ class HeldFoundation:
         places = FoundPlaces.of(stress, every)
         row = places.row
         here = case.at(np.array([row.instant]))
-        peak = _peak(over, case.case, row, rise, requirement)
         history = (Refinement(0, row.maximum, time.perf_counter() - start),)
-        peak = replace(peak, governing=here, history=history)
+        evidence = replace(_evidence(self.pin, case.case, row, rise), history=history)
+        peak = judge(replace(evidence, governing=here), tolerance)
         peak = replace(peak, places=places.said(peak, case, self.problem.material, tolerance))
         whole, remark = over.at(here)
         joint = _joint(stress.model.solve(here), stress.model, whole, remark)
@@ -287,34 +289,23 @@ def _time(case: PinLoads, instant: int) -> float | None:
     return None if case.times is None else float(case.times[instant])
 
 
-def _peak(
-    over: FoundationRange,
-    case: str,
-    bounds: StressBounds,
-    rise: float,
-    requirement: Requirement,
-) -> Maximum:
-    """The maximum of a case, with an error of the whole value where none is known."""
-    parts = ErrorParts(0.0, rise, model=bounds.maximum if bounds.error is None else bounds.error)
-    relative = parts.total / bounds.maximum if bounds.maximum else 0.0
-    known = bounds.error is not None and relative <= requirement.tolerance
-    verdict_reason = accuracy(relative, requirement.tolerance, known)
+def _evidence(pin: PinLike, case: str, bounds: StressBounds, rise: float) -> Evidence:
+    """The maximum of a case, with an error of the whole value where none is known.
+
+    rise: how much the maximum may be higher between instants, Pa.
+    """
+    doubt = None
     if bounds.error is None:
-        verdict_reason = Reason(f"no error is known: {bounds.why}", ("no-error-known",))
-    verdict_reason = verdict_reason + Reason(
-        f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",)
-    )
-    return Maximum(
-        pin=over.own.model.given.name,
+        doubt = Reason(f"no error is known: {bounds.why}", ("no-error-known",))
+    return Evidence(
+        pin=pin.name,
         case=case,
         model="foundation",
-        verdict="converged" if known else "unconverged",
-        note=verdict_reason.text,
-        max_von_mises=bounds.maximum,
-        error_estimate=parts.total,
+        value=bounds.maximum,
+        parts=ErrorParts(0.0, rise, model=bounds.maximum if bounds.error is None else bounds.error),
         location=point_of(bounds),
-        parts=parts,
-        reasons=verdict_reason.codes,
+        doubt=doubt,
+        omissions=Reason(f". {FOUNDATION_OMISSIONS.rstrip('.')}", ("model-form",)),
     )
 
 

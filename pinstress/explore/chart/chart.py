@@ -7,9 +7,9 @@ from __future__ import annotations
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
+from fea.core.mesh_history import MeshHistory
 from fea.core.peak import Maximum
 from fea.core.requirement import Requirement
-from fea.core.verdict import MeshHistory
 from fea.solve.refine import LOCAL_MODEL
 from fea.solve.single_mesh import ModelMesh, Problem
 from fea.solve.solve import solve_in_lugs, solve_pin

@@ -9,8 +9,8 @@ import math
 from assess.opinion.calculix_in_lugs import HALF_MODEL_MESHES
 from assess.opinion.calculix_joint_mesh import Fineness
 from fea.core.linear_solver import SolveError
+from fea.core.mesh_history import MeshHistory
 from fea.core.peak import Maximum
-from fea.core.verdict import MeshHistory
 from fea.support.contact.held import MAX_CELLS
 from fea.support.contact.solve_joint import Resolution
 from fea.support.lugs.rings import ring_ends

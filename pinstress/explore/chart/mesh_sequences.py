@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from fea.core.linear_solver import SolveError
+from fea.core.mesh_history import MeshHistory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.requirement import Requirement, accurate_enough
-from fea.core.verdict import MeshHistory
 from fea.cut.evaluate import LOCAL_MESHES
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, sequence_of

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pinbase.errors import ArgumentError
-from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study
 from pinstress.study.reading.in_python import key_parts
 from pinstress.study.schema.shown import as_text, nearest
@@ -70,19 +69,20 @@ class Number:
 def number_at(study: Study, key: str) -> Number:
     """Return the number with a key, or the one that several keys have in common.
 
-    Raises: InputError for a key that names no number, or different ones.
+    Raises: ArgumentError for a key that names no number, or different ones; InputError for a text
+    that is no key.
     """
     match = INDEX_RANGE_PATTERN.search(key)
     if match is None:
         return _single(study, key)
     first, last = (int(end) for end in match.groups())
     if not 0 < first < last:
-        raise _no_number(study, key, f"[{first}-{last}] is no range; the smaller element first")
+        raise _no_number(f"[{first}-{last}] is no range; the smaller element first")
     keys = [key[: match.start()] + f"[{i}]" + key[match.end() :] for i in range(first, last + 1)]
     numbers = [number_at(study, one) for one in keys]
     for one, number in zip(keys, numbers, strict=True):
         if (number.nominal, number.dimension) != (numbers[0].nominal, numbers[0].dimension):
-            raise _no_number(study, key, f"{keys[0]} and {one} differ; only equal ones vary as one")
+            raise _no_number(f"{keys[0]} and {one} differ; only equal ones vary as one")
     paths = tuple(dict.fromkeys(path for number in numbers for path in number.paths))
     return replace(numbers[0], key=key, path=paths[0], others=paths[1:])
 
@@ -94,11 +94,23 @@ def _single(study: Study, key: str) -> Number:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = "a table" if isinstance(value, Mapping) else "a list"
         what = "true or false" if isinstance(value, bool) else what
-        raise _no_number(study, key, f"is {what}, not a number")
-    try:
-        return _number(study, raw, key, path, value)
-    except ArgumentError as error:
-        raise study.error(f"{key}: {error}", code=error.code) from None
+        raise _no_number(f"is {what}, not a number")
+    return _number(study, raw, key, path, value)
+
+
+def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
+    """Return another value of a number in SI: a number in the study's units, or a text with a unit.
+
+    Raises: ArgumentError for one of another dimension.
+    """
+    if number.dimension:
+        return to_si(value, number.dimension, system)
+    if isinstance(value, str):
+        raise ArgumentError(
+            f"{as_text(value)}: the number has no unit in the study; give a number without quotes",
+            "not-a-number",
+        )
+    return float(value)
 
 
 def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
@@ -117,13 +129,13 @@ def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any)
     if not dimension and isinstance(value, str):
         parts = split(value)
         if parts is None or not parts[1]:
-            raise _no_number(study, key, f"is the text {as_text(value)}, not a number")
+            raise _no_number(f"is the text {as_text(value)}, not a number")
         dimension = _dimension_of_unit(parts[1])
         if not dimension:
-            raise _no_number(study, key, f"is {as_text(value)}, whose unit has no known dimension")
+            raise _no_number(f"is {as_text(value)}, whose unit has no known dimension")
     if not dimension:
         if isinstance(value, int) and _whole(study, raw, path):
-            raise _no_number(study, key, "is a whole number, which cannot vary continuously")
+            raise _no_number("is a whole number, which cannot vary continuously")
         return Number(key, path, "", float(value))
     nominal = to_si(value, dimension, study.system)
     if dimension in ANGLE_UNITS:
@@ -196,11 +208,11 @@ def _path(study: Study, raw: Any, key: str) -> Path:
         value = here[part] if _has(here, part) else None
         if value is None or (not path and part == "vary"):
             if part == -1:
-                raise _no_number(study, key, "has the index 0; elements are counted from 1")
+                raise _no_number("has the index 0; elements are counted from 1")
             said = f"[{part + 1}]" if isinstance(part, int) else as_text(part)
             meant = nearest(part, here) if isinstance(here, Mapping) else None
             hint = f"did you mean {meant!r}?" if meant else "write it in the study"
-            raise _no_number(study, key, f"the study has no {said} there; {hint}")
+            raise _no_number(f"the study has no {said} there; {hint}")
         path.append(part)
         here = value
     return tuple(path)
@@ -218,5 +230,5 @@ def _at(raw: Any, path: Path) -> Any:
     return raw
 
 
-def _no_number(study: Study, key: str, why: str) -> InputError:
-    return study.error(f"vary.parameters.{key}: {why}", code="not-a-varying-number")
+def _no_number(why: str) -> ArgumentError:
+    return ArgumentError(why, "not-a-varying-number")

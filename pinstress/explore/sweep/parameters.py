@@ -19,11 +19,11 @@ from pinstress.explore.sweep.laws import (
     cut_off,
     of_tolerance,
 )
-from pinstress.explore.sweep.number import Number, Path, number_at
+from pinstress.explore.sweep.number import Number, Path, number_at, si_value
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import as_text
-from pinstress.study.schema.units import UnitSystem, to_si
+from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import ParameterTable
 
 MIN_PROBABILITY_WITHIN_LIMITS = 1e-6  # of the probability: a law must not be cut off so far
@@ -164,8 +164,8 @@ def _example(study: Study) -> str:
 
 
 def _parameter(study: Study, key: str, table: ParameterTable) -> Parameter:
-    number = number_at(study, key)
     try:
+        number = number_at(study, key)
         law = _law(study.system, number, table)
     except ArgumentError as error:
         raise study.error(f"vary.parameters.{key}: {error}", code=error.code) from None
@@ -228,14 +228,6 @@ def _bell(si: Any, table: ParameterTable) -> Law:
 
 def _si(system: UnitSystem, number: Number, name: str, value: float | str) -> float:
     try:
-        if number.dimension:
-            return to_si(value, number.dimension, system)
-        if isinstance(value, str):
-            raise ArgumentError(
-                f"{as_text(value)}: the number has no unit in the study; give a number without "
-                "quotes",
-                "not-a-number",
-            )
+        return si_value(system, number, value)
     except ArgumentError as error:
         raise ArgumentError(f"{name}: {error}", error.code) from None
-    return float(value)

@@ -7,10 +7,11 @@ import pytest
 
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
+from fea.core.mesh_history import MeshHistory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.core.verdict import MeshHistory, judge
+from fea.core.verdict import evidence_of
 from fea.solid.evaluate import SOLID_MESHES
 from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.solve.solve import solve_pin
@@ -98,4 +99,4 @@ def test_a_pin_that_is_no_body_of_revolution_finds_its_edges_on_any_element(
 def test_stress_that_is_not_finite_has_no_verdict() -> None:
     result = MeshMaximum(900, float("nan"), 0, (0.0, 0.0, 0.0))
     with raises(SolveError, "not-finite", "pin P, case up"):
-        judge(MeshHistory("P", "up", "solid", (result,), (0.1,), SOLID_MESHES), (), 0.02)
+        evidence_of(MeshHistory("P", "up", "solid", (result,), (0.1,), SOLID_MESHES), ())

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
+from fea.core.mesh_history import MeshHistory
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement, accurate_enough
-from fea.core.verdict import MeshHistory, judge
+from fea.core.verdict import evidence_of, judge
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import met
@@ -117,8 +118,9 @@ def test_when_cells_are_fine_enough(
 
 def test_two_meshes_may_be_too_few() -> None:
     last = mesh(100.0, 90.0)
-    peak = judge(seen(last, last), (CLAMP,), 0.02)
+    peak = judge(evidence_of(seen(last, last), (CLAMP,)), 0.02)
     assert peak.verdict == "unconverged"
     assert "too-few-meshes" in peak.reasons
     assert "only 2 meshes were solved" in peak.note
-    assert judge(seen(last, last, fewest=2), (CLAMP,), 0.02).verdict == "converged"
+    enough = evidence_of(seen(last, last, fewest=2), (CLAMP,))
+    assert judge(enough, 0.02).verdict == "converged"

@@ -12,25 +12,33 @@ import numpy as np
 import pytest
 
 from fea.core.peak import Maximum, Refinement
+from pinbase import records as packing
 from pinstress.analysis import cache as cache_module
-from pinstress.analysis import serialise as packing
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.stored import Entry, PinOutcome
-from reports.data.results import Field
+from reports.data.results import Field, PinResult
 from tests.support.each import each
 from tests.support.programs.folder_contents import contents, flipped
 
 
+def rigid(note: str = "why") -> PinOutcome:
+    """The outcome of a pin in one case, without a number."""
+    return PinOutcome((PinResult(Maximum("P", "c", "beam", "rigid", note)),))
+
+
 def large(size: int) -> PinOutcome:
     """An entry of about so many bytes."""
-    return PinOutcome((Maximum("P", "c", "beam", "rigid", "w" * size),))
+    return rigid("w" * size)
 
 
 @each("damage", [flipped, lambda d: d[:-1], lambda d: d[:40], lambda _: b"", lambda d: d + b"\0"])
 def test_a_damaged_entry_is_none_and_is_replaced(
     tmp_path: Path, damage: Callable[[bytes], bytes]
 ) -> None:
-    cache, value = Cache(tmp_path, ""), PinOutcome((Maximum("P", "c", "beam", "rigid", "why"),))
+    cache, value = (
+        Cache(tmp_path, ""),
+        rigid(),
+    )
     key = cache.key("question")
     cache.write(key, value)
     assert cache.read(key, PinOutcome) == value
@@ -117,7 +125,7 @@ def test_packing_keeps_every_bit() -> None:
     numbers = np.array([[0.1, -0.0, np.nan], [np.inf, 5e-324, 1 / 3]], order="F")
     field = Field("P ü", "c", numbers, np.arange(8).reshape(2, 4), numbers, numbers, numbers[0],
                   numbers[1], "quad", None, (0.1 + 0.2, (1.0, -0.0, 1e300)))  # fmt: skip
-    entry = Entry(PinOutcome((Maximum("P", "c", "beam", "rigid", "why"),)), (field,))
+    entry = Entry(rigid(), (field,))
     data = packing.pack(entry)
     back = packing.unpack(Entry, data)
     assert packing.pack(back) == data

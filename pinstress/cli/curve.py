@@ -1,0 +1,62 @@
+"""The `curve` command: factors against one number, as a table and a picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from pinbase.processes.pool import processes
+from pinstress.cli.output_folder import replacing, require_replaceable
+from pinstress.cli.run import console, progress_bar
+from pinstress.cli.streams import unneeded
+from pinstress.explore.curve import Ends, curve
+from pinstress.study.reading.file import Study
+from reports.data.curve import CURVE_NAME
+from reports.plots.curve import curve_plot
+from reports.plots.draw import draw
+from reports.tables.curve import curve_table
+from reports.text.curve import print_curve
+
+CURVE_CSV = f"{CURVE_NAME}.csv"
+
+
+def curve_and_write(
+    study: Study,
+    key: str,
+    ends: Ends,
+    points: int,
+    pins: list[str] | None,
+    out: Path,
+    jobs: int | None,
+    quiet: bool,
+) -> int:
+    """Write curve.csv, curve.svg and curve.png into a folder; return the exit status, 1 where no
+    value has a factor.
+
+    Raises: InputError.
+    """
+    require_replaceable(out, CURVE_CSV)
+    with replacing(out, CURVE_CSV) as staging:
+        with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
+            result = curve(study, key, ends, points, pins, processes(jobs), progress)
+        curve_table(result).write(staging)
+        draw([curve_plot(result)], staging)
+    with unneeded(out):
+        print_curve(result, console())
+    if not quiet:
+        click.echo(f"Curve: {out / CURVE_NAME}.svg", err=True)
+    if not any(point.safety_factor for point in result.points):
+        click.echo("Not decided: no value has a factor of safety.", err=True)
+        return 1
+    return 0
+
+
+def number_or_text(value: str | None) -> float | str | None:
+    """Return what an option gives: a number, in the study's units, or a text with a unit."""
+    if value is None:
+        return None
+    try:
+        return float(value)
+    except ValueError:
+        return value

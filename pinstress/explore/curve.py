@@ -1,0 +1,112 @@
+"""Factors of safety against one number of a study, each design solved as a sweep solves it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import partial
+
+import numpy as np
+
+from pinbase.errors import ArgumentError
+from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
+from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
+from pinstress.explore.sweep.number import Number, number_at, si_value
+from pinstress.study.reading.file import Study
+from reports.data.curve import Curve, CurvePoint
+
+USUAL_RANGE = 0.5, 2.0  # times the number in the study
+STRESS = "stress"
+
+Ends = tuple[float | str | None, float | str | None]
+
+
+def curve(
+    study: Study,
+    key: str,
+    ends: Ends = (None, None),
+    points: int = 9,
+    pins: Sequence[str] | None = None,
+    jobs: int = 1,
+    progress: Progress = lambda _, __: None,
+) -> Curve:
+    """Solve a study at evenly spaced values of one of its numbers, and at the one that it has.
+
+    key: as in messages and [vary], "pin.E.profile[2].diameter".
+    ends: the first and the last value, in the study's units or as texts with a unit; by default
+    half and twice the number in the study.
+    pins: names; by default the pin that the key belongs to, else all.
+    jobs: number of processes.
+
+    A design that cannot be built or solved is a point without numbers, with its reason.
+    Raises: InputError for a key that is no number of the study, and for a range without extent.
+    """
+    number = _number(study, key)
+    low, high = _range(study, number, ends)
+    if pins is None and number.path[0] == "pin":
+        pins = [str(number.path[1])]
+    evaluator = Evaluator(study, [number], pins)
+    values = np.linspace(low, high, points)
+    if low < number.nominal < high:
+        values = np.union1d(values, number.nominal)
+    # Neighbours have most in common, so each process takes one part of the range.
+    parts = np.array_split(values, min(jobs, len(values)))
+    work = [Job(f"{key}", partial(_solved, evaluator, part)) for part in parts]
+    outcomes = in_parallel(work, jobs, progress)
+    solved: list[CurvePoint] = []
+    for part, rows in zip(parts, outcomes, strict=True):
+        if isinstance(rows, ProcessDied):
+            failed = [DesignRow(*row, None, None, None, "failed", reason=rows.reason)
+                      for row in evaluator.table]  # fmt: skip
+            rows = [failed for _ in part]
+        for value, design in zip(part, rows, strict=True):
+            solved += [_point(study, number, float(value), row) for row in design]
+    required = study.table.analysis.required_safety_factor
+    return Curve(
+        study.name, key, number.unit, number.nominal / number.factor, required,
+        study.system.stress, tuple(solved),
+    )  # fmt: skip
+
+
+def _number(study: Study, key: str) -> Number:
+    try:
+        return number_at(study, key)
+    except ArgumentError as error:
+        raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _range(study: Study, number: Number, ends: Ends) -> tuple[float, float]:
+    usual = sorted(share * number.nominal for share in USUAL_RANGE)
+    values = []
+    for name, end, default in zip(("--from", "--to"), ends, usual, strict=True):
+        try:
+            values.append(default if end is None else si_value(study.system, number, end))
+        except ArgumentError as error:
+            raise study.error(f"{name}: {error}", at=number.key, code=error.code) from None
+    low, high = values
+    if low < high:
+        return low, high
+    if number.nominal == 0.0 and None in ends:
+        text = "is 0 in the study, so there is no usual range: give --from and --to"
+    else:
+        shown = [f"{x / number.factor:.6g} {number.unit}".rstrip() for x in values]
+        text = f"the range from {shown[0]} to {shown[1]} is empty: --to must exceed --from"
+    raise study.error(f"{number.key}: {text}", code="limits-out-of-order")
+
+
+def _solved(evaluator: Evaluator, values: Iterable[float], tell: Tell) -> list[list[DesignRow]]:
+    number, designs = evaluator.numbers[0], []
+    for value in values:
+        tell(f"{number.key} = {value / number.factor:.6g} {number.unit}".rstrip())
+        designs.append(evaluator.rows([value]))
+    return designs
+
+
+def _point(study: Study, number: Number, value: float, row: DesignRow) -> CurvePoint:
+    unit = study.system.factor(STRESS)
+    stress, error = (
+        None if x is None else x / unit for x in (row.max_von_mises, row.error_estimate)
+    )
+    return CurvePoint(
+        value / number.factor, row.pin, row.case, stress, error, row.safety_factor, row.outcome,
+        row.depends_on, row.verdict, row.reason,
+    )  # fmt: skip

@@ -1,0 +1,115 @@
+"""The curve of factors of safety against one number of a study, as plain data."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+CURVE_NAME = "curve"
+
+
+@dataclass(frozen=True)
+class CurvePoint:
+    """One pin in one case at one value of the number, in the curve's units.
+
+    error_estimate: of max_von_mises; both None where the design could not be solved, for `reason`.
+    safety_factor: None without a maximum or a yield strength.
+    outcome, depends_on: as in the results of a run.
+    """
+
+    value: float
+    pin: str
+    case: str
+    max_von_mises: float | None
+    error_estimate: float | None
+    safety_factor: float | None
+    outcome: str
+    depends_on: str = ""
+    verdict: str = ""
+    reason: str = ""
+
+    @property
+    def factor_ends(self) -> tuple[float, float] | None:
+        """The factor at the upper and at the lower end of the maximum's error; None without a
+        factor.
+        """
+        factor, stress = self.safety_factor, self.max_von_mises
+        if factor is None or not stress:
+            return None
+        error = min(self.error_estimate or 0.0, stress)
+        return factor * stress / (stress + error), factor * stress / max(stress - error, 1e-3)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Where a pin's factor passes the required one: between two values next to each other, and by
+    interpolation.
+
+    rising: whether the factor is reached above that value, or below it.
+    """
+
+    pin: str
+    between: tuple[float, float]
+    value: float
+    rising: bool
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Factors of safety of pins against one number.
+
+    key, unit: of the number; nominal: its value in the study.
+    required: the factor to reach, if any.
+    stress_unit: of the points' stresses.
+    points: by rising value.
+    """
+
+    study: str
+    key: str
+    unit: str
+    nominal: float
+    required: float | None
+    stress_unit: str
+    points: tuple[CurvePoint, ...]
+
+    @property
+    def pins(self) -> tuple[str, ...]:
+        """The pins in their order."""
+        return tuple(dict.fromkeys(point.pin for point in self.points))
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The values of the number, rising."""
+        return tuple(dict.fromkeys(point.value for point in self.points))
+
+    def least(self, pin: str) -> tuple[CurvePoint, ...]:
+        """At every value the pin's case with the smallest factor; first those without a factor,
+        since nothing is known of them.
+        """
+        by_value: dict[float, list[CurvePoint]] = {}
+        for point in self.points:
+            if point.pin == pin:
+                by_value.setdefault(point.value, []).append(point)
+        return tuple(
+            min(points, key=lambda p: p.safety_factor or 0.0) for points in by_value.values()
+        )
+
+    @property
+    def reached(self) -> tuple[Reach, ...]:
+        """Where the pins pass the required factor, by the straight line between the logarithms of
+        neighbouring factors.
+        """
+        out = []
+        for pin in self.pins if self.required else ():
+            for left, right in pairwise(self.least(pin)):
+                ends = left.safety_factor, right.safety_factor
+                if not all(ends):
+                    continue
+                low, high = (math.log((f or 1.0) / (self.required or 1.0)) for f in ends)
+                if (low < 0.0) == (high < 0.0):
+                    continue
+                share = low / (low - high)
+                value = left.value + share * (right.value - left.value)
+                out.append(Reach(pin, (left.value, right.value), value, high > low))
+        return tuple(out)

@@ -1,0 +1,51 @@
+"""The factor of safety of pins against one number of the study."""
+
+from __future__ import annotations
+
+from reports.data.curve import CURVE_NAME, Curve, CurvePoint
+from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, clipped, headed, instant, level, rows
+
+MIN_FACTOR_SHARE = 1e-3  # of a factor: the lower end of an error bar on the logarithmic axis
+
+
+def curve_plot(curve: Curve) -> Plot:
+    """Return a line for each pin, by the case with its smallest factor, with the error as bars."""
+    data = [_row(point) for pin in curve.pins for point in curve.least(pin)]
+    unit = f" [{curve.unit}]" if curve.unit else ""
+    x = {"field": "x", "type": "quantitative", "title": f"{clipped(curve.key, 60)}{unit}",
+         "scale": {"nice": False, "zero": False, "padding": 12}}  # fmt: skip
+    y = {"field": "factor", "type": "quantitative", "title": "factor of safety",
+         "scale": {"type": "log", "nice": False, "padding": 12}}  # fmt: skip
+    key = {"field": "pin", "type": "nominal", "title": None,
+           "scale": {"domain": [f"pin {clipped(pin)}" for pin in curve.pins]}}  # fmt: skip
+    tooltip = [{"field": name, "title": title, "format": NUMBER_FORMAT}
+               for name, title in (("x", "value"), ("factor", "factor"))]  # fmt: skip
+    tooltip += [{"field": name, "title": name} for name in ("pin", "case", "outcome")]
+    bars = {"mark": {"type": "rule", "size": 2},
+            "encoding": {"y": {**y, "field": "low"}, "y2": {"field": "high"},
+                         "color": key}}  # fmt: skip
+    lines = {"mark": {"type": "line", "point": {"size": 40, "filled": True}},
+             "encoding": {"y": y, "color": key, "tooltip": tooltip}}  # fmt: skip
+    levels = [] if curve.required is None else [level(curve.required, "required")]
+    spec: Spec = {
+        "title": headed(f"factor of safety against {clipped(curve.key, 60)}"),
+        "usermeta": {"columns": [f"{curve.key}{unit}", "factor of safety"]},
+        "data": rows(data),
+        "width": 420,
+        "height": 260,
+        "encoding": {"x": x},
+        "layer": [*levels, instant(curve.nominal, "study"), bars, lines],
+    }
+    caption = f"Factor of safety against {curve.key}; bars: numerical error."
+    return Plot(CURVE_NAME, caption, spec)
+
+
+def _row(point: CurvePoint) -> Spec:
+    """Return a point; one without a factor breaks the line."""
+    ends, factor = point.factor_ends, point.safety_factor
+    row: Spec = {"x": point.value, "factor": factor, "pin": f"pin {clipped(point.pin)}",
+                 "case": point.case, "outcome": point.outcome}  # fmt: skip
+    if factor is None or ends is None:
+        return row
+    low, high = ends
+    return {**row, "low": max(low, MIN_FACTOR_SHARE * factor), "high": min(high, 1e3 * factor)}

@@ -1,0 +1,62 @@
+"""The curve of factors against one number on the terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from reports.data.curve import Curve, Reach
+from reports.format.numbers import engineering
+from reports.tables.curve import least_table
+from reports.text.fitted_table import fitted_table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+
+def print_curve(curve: Curve, console: Console) -> None:
+    """Print the table, where the required factor is reached, and why designs have no factor."""
+    from rich.text import Text
+
+    console.print(fitted_table(least_table(curve), None, console.width))
+    here = "* as in the study. " if curve.nominal in curve.values else ""
+    console.print(Text(f"{here}A row has the case with the pin's smallest factor."))
+    for line in (*reached_lines(curve), *_failures(curve)):
+        console.print(Text(line))
+
+
+def reached_lines(curve: Curve) -> list[str]:
+    """Say for every pin where its factor passes the required one."""
+    if curve.required is None:
+        return []
+    lines, where = [], {pin: [r for r in curve.reached if r.pin == pin] for pin in curve.pins}
+    for pin, reached in where.items():
+        factors = [p.safety_factor for p in curve.least(pin) if p.safety_factor]
+        if reached:
+            lines += [_reached(curve, reach) for reach in reached]
+        elif factors:
+            all_above = min(factors) >= curve.required
+            state = "throughout" if all_above else "nowhere in this range"
+            lines.append(f"Pin {pin} reaches the required factor {curve.required:g} {state}.")
+    return lines
+
+
+def _reached(curve: Curve, reach: Reach) -> str:
+    unit = f" {curve.unit}" if curve.unit else ""
+    ends = " and ".join(f"{engineering(x)}" for x in reach.between)
+    side = "from" if reach.rising else "up to"
+    return (
+        f"Pin {reach.pin} reaches the required factor {curve.required:g} {side} about "
+        f"{engineering(reach.value, 3)}{unit} (interpolated between {ends})."
+    )
+
+
+def _failures(curve: Curve) -> list[str]:
+    reasons: dict[str, list[float]] = {}
+    for point in curve.points:
+        if point.reason and point.max_von_mises is None:
+            values = reasons.setdefault(point.reason, [])
+            values += [] if point.value in values else [point.value]
+    return [
+        f"No factor at {', '.join(engineering(v) for v in values)}: {reason}."
+        for reason, values in reasons.items()
+    ]

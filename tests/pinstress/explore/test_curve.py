@@ -1,0 +1,121 @@
+"""The curve of factors against one number: points are those of runs, crossings are right."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+
+import pinstress
+from pinstress.cli.commands import run_command_line
+from pinstress.explore.curve import curve
+from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.in_python import changed_study
+from reports.data.curve import Curve, CurvePoint
+from reports.data.decision import outcome
+from tests.support.each import each
+from tests.support.programs.command_line import ONE_PIN
+
+DIAMETER = "pin.B.profile[2].diameter"
+
+
+def point(value: float, factor: float | None, pin: str = "P", case: str = "c") -> CurvePoint:
+    stress = None if factor is None else 100.0 / factor
+    return CurvePoint(value, pin, case, stress, 0.0, factor, "safe")
+
+
+def of(*points: CurvePoint, required: float = 10.0) -> Curve:
+    return Curve("s", "k", "mm", 1.0, required, "MPa", points)
+
+
+@each(
+    ("factors", "expected"),
+    [
+        ((5.0, 20.0), [(1.5, True)]),  # half way between the logarithms
+        ((40.0, 2.5), [(1.5, False)]),
+        ((5.0, 20.0, 20.0, 5.0), [(1.5, True), (3.5, False)]),
+        ((11.0, 12.0), []),
+        ((5.0, None, 20.0), []),  # nothing is known between
+        ((10.0, 5.0), [(1.0, False)]),
+    ],
+)
+def test_where_the_required_factor_is_reached(
+    factors: tuple[float | None, ...], expected: list[tuple[float, bool]]
+) -> None:
+    points = [point(1.0 + k, factor) for k, factor in enumerate(factors)]
+    reached = [(r.value, r.rising) for r in of(*points).reached]
+    assert [rising for _, rising in reached] == [rising for _, rising in expected]
+    assert [value for value, _ in reached] == pytest.approx([value for value, _ in expected])
+
+
+def test_the_case_that_counts_is_the_worst_or_one_of_which_nothing_is_known() -> None:
+    worst = of(point(1.0, 3.0, case="a"), point(1.0, 2.0, case="b"), point(2.0, 4.0, case="a"),
+               point(2.0, None, case="b"))  # fmt: skip
+    assert [p.case for p in worst.least("P")] == ["b", "b"]
+
+
+def test_points_are_those_of_runs(tmp_path: Path) -> None:
+    """Each is what `run` says about the study with that number; the one in the study is added."""
+    study = pinstress.load_study(_study(tmp_path))
+    points = curve(study, DIAMETER, ("1.6 in", 2.4), points=2).points
+    assert [p.value for p in points] == pytest.approx([1.6, 2.0, 2.4])
+    for p in points:
+        (row,) = pinstress.run(changed_study(study, {DIAMETER: p.value})).pins
+        assert p.max_von_mises == pytest.approx(row.max_von_mises, rel=1e-9)
+        assert p.error_estimate == pytest.approx(row.error_estimate, rel=1e-9)
+        assert p.safety_factor == pytest.approx(row.safety_factor, rel=1e-9)
+        assert (p.outcome, p.verdict) == (outcome(row), row.verdict)
+
+
+def test_the_command_writes_table_and_picture_and_says_where_the_factor_is_reached(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    study, out = _study(tmp_path), tmp_path / "out"
+    key = "case.landing.forces.B[2]"
+    options = ["--from", "-2000", "--to", "-20000 lbf", "--points", "3", "--jobs", "2"]
+    assert run_command_line(["curve", str(study), key, *options, "--out", str(out)]) == 2
+    assert "--to must exceed --from" in capsys.readouterr().err
+    options = ["--from", "-20000", "--to", "-2000 lbf", "--points", "3", "--jobs", "2"]
+    assert run_command_line(["curve", str(study), key, *options, "--out", str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert "Pin B reaches the required factor 10 from about −12,100 lbf" in printed
+    with (out / "curve.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["value"]) for row in rows] == [-20000.0, -11000.0, -2000.0]
+    factors = [float(row["safety_factor"]) for row in rows]
+    assert factors[0] * 20000.0 == pytest.approx(factors[2] * 2000.0, rel=1e-6)
+    assert {path.name for path in out.iterdir()} >= {"curve.csv", "curve.svg", "curve.png"}
+
+
+def test_designs_that_cannot_be_built_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["curve", str(_study(tmp_path)), DIAMETER, "--from", "3.3", "--to", "3.6"]
+    assert run_command_line([*arguments, "--points", "2", "--out", str(tmp_path / "o")]) == 1
+    said = capsys.readouterr()
+    assert "No factor at 3.300: pin B: the fillet between segments 1 and 2" in said.out
+    assert "Not decided: no value has a factor of safety." in said.err
+
+
+@each(
+    ("key", "message"),
+    [
+        ("pin.B.profile[3].diameter", "the study has no [3] there"),
+        ("pin.B.profil[1].diameter", "did you mean 'profile'?"),
+        ("pin.B", "is a table, not a number"),
+        ("case.landing.forces.B[1]", "is 0 in the study, so there is no usual range"),
+        ("title", "is the text 'One pin', not a number"),
+    ],
+)
+def test_keys_that_are_no_numbers_are_refused(tmp_path: Path, key: str, message: str) -> None:
+    with pytest.raises(InputError) as caught:
+        curve(pinstress.load_study(_study(tmp_path)), key)
+    assert f"{key}: " in str(caught.value)
+    assert message in str(caught.value)
+
+
+def _study(folder: Path) -> Path:
+    path = folder / "one_pin.toml"
+    path.write_text(ONE_PIN)
+    return path
