@@ -20,13 +20,14 @@ from fea.core.pressed import ARC_COUNT, PressedArcs
 from fea.cut.evaluate import CutField
 from fea.cut.free_points import FreePoints, relieved
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints
+from fea.harmonic.stress_at import Stress
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
 # Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
 AXIAL_DISTANCE_WEIGHT = 0.1
-
-Stress = Callable[[Ints, Floats, Ints], Floats]
+# Substitutes that are tried first; more change the time, never the result. Chosen by judgement.
+NEAREST_SUBSTITUTES = 24
 
 
 class StandIns:
@@ -39,6 +40,7 @@ class StandIns:
         ]
         amid = np.flatnonzero(of.relieved >= 0)
         self._may = np.setdiff1d(np.concatenate([outline, amid]), of.fields.unread)
+        self._order = np.full((len(self._x), len(self._may)), -1)
         self._known: dict[int, Mask] = {}
 
     def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
@@ -48,18 +50,26 @@ class StandIns:
             rows.copy(),
         )
         some = np.flatnonzero(self.free.masked(rows))
-        point, place = np.unique(rows[some], return_inverse=True)
-        read = self.free.read(point, np.full(len(point), instant))[place, arc[some]]
-        lost = some[~read]
-        here, place = np.unique(rows[lost], return_inverse=True)
+        lost = some[~self.free.read_at(rows[some], instant, arc[some])]
         # The nearest substitute that is readable at the same angle; without one the point stays.
-        apart = np.linalg.norm(self._x[here][:, None] - self._x[self._may], axis=2)
-        order = np.argsort(apart, axis=1, kind="stable")[place]
-        readable = self._readable(instant)[order, arc[lost][:, None]]
-        first = order[np.arange(len(lost)), readable.argmax(axis=1)]
-        known = readable.any(axis=1)
-        out[lost[known]] = self._may[first[known]]
+        # Mostly that is among the first.
+        for count in (NEAREST_SUBSTITUTES, len(self._may)):
+            nearest, readable = self._nearest(rows[lost], count), self._readable(instant)
+            can = readable[nearest, arc[lost][:, None]]
+            known = can.any(axis=1)
+            first = nearest[np.arange(len(lost)), can.argmax(axis=1)]
+            out[lost[known]] = self._may[first[known]]
+            lost = lost[~known]
         return out
+
+    def _nearest(self, rows: Ints, count: int) -> Ints:
+        """The possible substitutes (J, count), the nearest first, of points (J,)."""
+        here, place = np.unique(rows, return_inverse=True)
+        new = here[self._order[here, 0] < 0]
+        if len(new):
+            apart = np.linalg.norm(self._x[new][:, None] - self._x[self._may], axis=2)
+            self._order[new] = np.argsort(apart, axis=1, kind="stable")
+        return self._order[here, :count][place]
 
     def _readable(self, instant: int) -> Mask:
         """The arcs (M, ARC_COUNT) on which possible substitutes are read at an instant."""

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from assess.fatigue.pressed_points import CutStandIns, StandIns, Stress, replaced
+from assess.fatigue.pressed_points import CutStandIns, StandIns, replaced
 from fea.beam.model import BeamField
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import StressField
 from fea.harmonic.evaluate import HarmonicField
-from fea.harmonic.fields import MeridianFields
-from fea.harmonic.five_numbers import COSINE_COMPONENTS
 from fea.harmonic.free_surface import surface_points
+from fea.harmonic.stress_at import Stress, stress_at
 from pinbase.arrays import Floats, Ints, Mask
 
 if TYPE_CHECKING:
@@ -66,38 +65,16 @@ def _harmonic(answer: HarmonicField, loads: PinLoads) -> StressPoints:
         fields = answer.fields
         surface = fields.outside(answer.singularities)
         surface[fields.skin :] = False
-        at = _of_fields(fields, loads)
+        at = stress_at(fields, loads)
         return StressPoints(_at_zero(fields.points), surface, True, len(loads), at)
     of = surface_points(answer.fields, loads.pressed.rings, answer.solution.nu)
     stands, plain = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
-    at = replaced(_of_fields(of.fields, loads), stands.rows)
+    at = replaced(stress_at(of.fields, loads), stands.rows)
     surface = of.fields.outside(answer.singularities)[plain]
     return StressPoints(
         _at_zero(of.fields.points[plain]), surface, True, len(loads),
         lambda rows, angles, instants: at(plain[rows], angles, instants),
     )  # fmt: skip
-
-
-def _of_fields(fields: MeridianFields, loads: PinLoads) -> Stress:
-    """A function that gives the stress of unit fields under loads."""
-    acting = loads.coefficients()
-    units = [k for k, load in enumerate(fields.loads) if load in acting]
-    n = np.array([fields.loads[k].n for k in units])
-    amounts = np.zeros((len(loads), len(units), 2))
-    for i, k in enumerate(units):
-        amounts[:, i] = acting[fields.loads[k]]
-    even = COSINE_COMPONENTS[:, None]
-
-    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
-        # Cosine and sine parts by phase, as psi = n theta - p pi / 2 has them.
-        turns = np.outer(angles, n)[:, None, :]
-        c, s = np.cos(turns), np.sin(turns)
-        unit, now = fields.stress[rows][:, :, units], amounts[instants]
-        first = (unit * np.where(even, c, s)) @ now[..., 0].T
-        second = (unit * np.where(even, s, -c)) @ now[..., 1].T
-        return np.asarray((first + second).swapaxes(1, 2))
-
-    return at
 
 
 def _cut(answer: CutField, loads: PinLoads) -> StressPoints:

@@ -16,8 +16,8 @@ from fea.core.solution import Picture
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.beneath import just_beneath
 from fea.harmonic.fields import MeridianFields
+from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.free_surface import reader
-from fea.harmonic.kept_fields import FirstMesh
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.near_singularities import CORNER_ELEMENT_SIZES, felt_beyond, inside, interval
 from fea.harmonic.quiet_corners import low_stress_fillets, numerous_fillets
@@ -30,6 +30,7 @@ from geometry import ArgumentError, Pin
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats, Mask
+from pinbase.memo import Memo
 
 FIRST_MESH_SIZE = SectionSize()  # of the first mesh
 BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
@@ -81,8 +82,9 @@ class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases.
 
     singularities: those of any of the cases.
-    first: where the first mesh is kept for other loads.
+    first: the first mesh under contact pressures.
     besides: additional unit loads to be solved.
+    memo: of meshes and unit fields, shared with other problems.
     """
 
     pin: Pin
@@ -92,6 +94,7 @@ class SectionProblem:
     singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
     besides: tuple[UnitLoad, ...] = ()
+    memo: Memo | None = None
 
 
 def harmonic_solution(
@@ -145,7 +148,16 @@ def harmonic_solution(
         elastic = material.youngs_modulus, material.poisson_ratio, material.density
         mesh = size, tuple(places), tuple(grades), quiet, read.tobytes(), ends
         key = pin, elastic, problem.clamps, *mesh
-        return (problem.first or FirstMesh()).fields(level, model, key, (loads, read, ends))
+        if not level and problem.first is not None:
+            return problem.first.fields(model, key, (loads, read, ends))
+        memo = problem.memo or Memo()
+
+        def fields() -> MeridianFields:
+            # Patterns of pressure change with any load, the mesh on which they act does not.
+            solved_before = memo.get(("model", *key), model) if rings else model()
+            return solved_before.solve(loads, read, ends)
+
+        return memo.get(("fields", loads, *key), fields)
 
     quiet = numerous_fillets(pin)
     if quiet:
@@ -299,26 +311,30 @@ class HarmonicMesh:
 class Harmonic:
     """The harmonic model of any body of revolution (fea.core.model.Model).
 
-    first: the solution on the first mesh of an earlier run.
-    pressed: whether contact pressures act.
+    memo: of meshes and unit fields, shared with other problems.
+    first: the first mesh, if contact pressures act.
     """
 
     name = "harmonic"
 
-    def __init__(self, first: FirstMesh | None = None, pressed: bool = False) -> None:
+    def __init__(
+        self, memo: Memo | None = None, first: FirstMesh | None = None, pressed: bool = False
+    ) -> None:
         self.meshes = PRESSED_SECTION_MESHES if pressed else SECTION_MESHES
-        self._first = first or FirstMesh()
+        self._memo, self._first = memo, first
 
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> HarmonicMesh:
         """Solve one mesh, as every model does."""
-        posed = section_problem(problem, self._first)
+        posed = section_problem(problem, self._memo, self._first)
         results = () if before is None else before.results
         return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
 
 
-def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> SectionProblem:
+def section_problem(
+    problem: MeshProblem, memo: Memo | None = None, first: FirstMesh | None = None
+) -> SectionProblem:
     """The problem of a pin's section.
 
     Raises: ArgumentError for a pin that is not a body of revolution.
@@ -327,7 +343,7 @@ def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> Sec
     if not isinstance(pin, Pin):
         raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
     return SectionProblem(
-        pin, problem.material, problem.clamps, problem.cases, problem.zones, first
+        pin, problem.material, problem.clamps, problem.cases, problem.zones, first, memo=memo
     )
 
 

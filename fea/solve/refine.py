@@ -25,7 +25,7 @@ from fea.core.verdict import Evidence, evidence_of
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
-from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading
 from geometry import CutPin, Pin, PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
@@ -215,7 +215,9 @@ def _at_crest(
     return more, replace(seen, results=(*seen.results[:-1], last))
 
 
-def _reading(evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory) -> Reading:
+def _reading(
+    evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory
+) -> StressReading:
     """What the last mesh says about a case."""
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
@@ -226,4 +228,4 @@ def _reading(evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: Mesh
         assert isinstance(field, CutField)
         solids = tuple((p.piece.z0, p.piece.z1) for p in field.solution.pieces)
         evidence = replace(evidence, solids=solids)
-    return Reading(evidence, field, loads, instant)
+    return StressReading(evidence, field, loads, instant)

@@ -15,6 +15,7 @@ from fea.core.peak import Maximum
 from fea.core.requirement import Joints, Requirement
 from fea.support.records import JointResult
 from geometry import Pin
+from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinbase.records import Unit, in_units
 from pinstress.analysis import checks
@@ -29,7 +30,6 @@ from pinstress.study.reading.file import Study
 from reports.data.results import Field, PinResult
 
 if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
-    from fea.harmonic.kept_fields import FirstMesh
     from fea.support.support import Solution
 
 # Of a dimension, m, whose effect is found.
@@ -39,21 +39,18 @@ Keep = Callable[[Field], None]
 Ask = Callable[[Plan, Task, tuple[PinResult, ...], Tell], tuple[Opinion, ...]]
 
 
-def keep_none(_: Field) -> None:
-    """Keep no field. Not a lambda: it is sent to processes that are started anew."""
-
-
 def _ask_none(_: Plan, __: Task, ___: tuple[PinResult, ...], ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
 def solve_tasks(
     plan: Plan,
-    keep: Keep = keep_none,
+    keep: Keep | None = None,
     progress: Progress = lambda _, __: None,
     ask: Ask = _ask_none,
     jobs: int = 1,
     cache: OutcomeStore | None = None,
+    memo: Memo | None = None,
 ) -> list[PinOutcome]:
     """Return the outcome of every task of a plan, in their order.
 
@@ -62,15 +59,16 @@ def solve_tasks(
     `failed`; the others continue.
 
     keep: called with every field, in the study's units, as soon as it exists, in the task's
-    process.
+    process; without it fields are not made.
     progress: called with the current step and the completed part of the work.
     ask: gives a second opinion on a task, in the task's process, and reports its progress.
     cache: where earlier tasks are looked up, and new ones are stored.
+    memo: of flexibilities and meshes, for tasks that are solved in this process.
     """
-    show = partial(_in_units, plan.study.system.factor, keep)
+    show = None if keep is None else partial(_in_units, plan.study.system.factor, keep)
     order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
     work = [
-        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
+        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache, memo))
         for task in (plan.tasks[i] for i in order)
     ]
     outcomes: dict[int, PinOutcome] = {}
@@ -108,13 +106,19 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
 
 def _attempt(
-    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: OutcomeStore | None, tell: Tell
+    plan: Plan,
+    task: Task,
+    keep: Keep | None,
+    ask: Ask,
+    cache: OutcomeStore | None,
+    memo: Memo | None,
+    tell: Tell,
 ) -> PinOutcome:
     try:
         if cache is None:
-            solved = _solve(plan, task, keep, tell)
+            solved = _solve(plan, task, keep, memo, tell)
         else:
-            solved = _solve_once(plan, task, keep, cache, tell)
+            solved = _solve_once(plan, task, keep, cache, memo, tell)
         opinions = {x.case: x for x in ask(plan, task, solved.rows, tell)}
         rows = (replace(row, second_opinion=opinions.get(row.case)) for row in solved.rows)
         return replace(solved, rows=tuple(assessed(plan.study, task, row) for row in rows))
@@ -124,7 +128,9 @@ def _attempt(
         return _failed(plan, task, str(error))
 
 
-def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: Tell) -> PinOutcome:
+def _solve_once(
+    plan: Plan, task: Task, keep: Keep | None, cache: OutcomeStore, memo: Memo | None, tell: Tell
+) -> PinOutcome:
     """Return a task's outcome from the cache; else solve it, and store it there."""
     key, lacking = entry_keys(plan, task, cache)
     entry = cache.read(key, Entry)
@@ -132,16 +138,18 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: T
         entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
         tell(f"pin {task.pin.name}, as solved before")
-        for field in entry.fields:
-            keep(field)
+        if keep is not None:
+            for field in entry.fields:
+                keep(field)
         return replace(entry.solved, cached=True)
     fields: list[Field] = []
 
     def keep_both(field: Field) -> None:
+        assert keep is not None
         keep(field)
         fields.append(field)
 
-    solved = _solve(plan, task, keep_both, tell)
+    solved = _solve(plan, task, keep_both if keep else None, memo, tell)
     if independent_of_memory(plan, task, [row.maximum for row in solved.rows]):
         stopped = any(row.limit_load is not None and row.limit_load.stopped for row in solved.rows)
         cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
@@ -165,21 +173,20 @@ def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
 
 
 def solutions(
-    study: Study, task: Task, asked: Requirement, tell: Tell, first: FirstMesh | None = None
+    study: Study, task: Task, asked: Requirement, tell: Tell, memo: Memo | None = None
 ) -> tuple[Solution, ...]:
     """Return the solutions of a task's cases.
 
-    first: earlier solutions on the first mesh of clamped pins.
+    memo: of flexibilities, meshes and unit fields, shared with other tasks.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
-    from fea.harmonic.kept_fields import FirstMesh
     from fea.solve.solve import solve
     from fea.support.support import PinProblem
 
     problem = PinProblem(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
-        first or FirstMesh(),
+        memo,
     )  # fmt: skip
     return solve(problem, replace(asked, joints=_joints(study, task)), tell)
 
@@ -193,7 +200,7 @@ def _joints(study: Study, task: Task) -> Joints:
     return "auto" if isinstance(task.pin, Pin) and study.table.fatigue is None else "contact"
 
 
-def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
+def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:
     from pinstress.analysis import gather_fields
     from pinstress.analysis.gather.gather_landing import landing_range
     from pinstress.analysis.gather.gather_surface import surfaces_of
@@ -201,14 +208,15 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     from pinstress.analysis.remedies.sensitivities import sensitivities
 
     study = plan.study
-    solved = solutions(study, task, plan.asked, tell)
+    solved = solutions(study, task, plan.asked, tell, memo)
     pressures = [solution.pressure for solution in solved]
-    for solution, pressure in zip(solved, pressures, strict=True):
-        case = plan.loads[solution.peak.case]
-        field = gather_fields.field(task, solution, case, plan.also, pressure)
-        if field is not None:
-            tell(f"pin {task.pin.name}, pictures")
-            keep(field)
+    if keep is not None:
+        for solution, pressure in zip(solved, pressures, strict=True):
+            case = plan.loads[solution.peak.case]
+            field = gather_fields.field(task, solution, case, plan.also, pressure)
+            if field is not None:
+                tell(f"pin {task.pin.name}, pictures")
+                keep(field)
     landing = [landing_range(plan.loads, task, s) for s in solved]
     beam_check = None
     if task is plan.checked and study.table.beam_check is not None:

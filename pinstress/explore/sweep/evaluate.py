@@ -20,10 +20,10 @@ from assess.judgement import NOT_DECIDED
 from fea.core.material import Material
 from fea.core.peak import Maximum, Verdict
 from fea.core.requirement import Requirement
-from fea.harmonic.kept_fields import EveryMesh
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
+from pinbase.memo import Memo
 from pinbase.records import pack
 from pinstress.analysis.plan import prepare, requirement_of
 from pinstress.analysis.solve import solutions
@@ -108,7 +108,7 @@ class Evaluator:
     pins, cases: names; all by default.
     parameters: in the order of the values of `rows`.
     table: the (pin, case) of a design's rows, in their order.
-    meshes: solutions of pins that are not in contact.
+    memo: of meshes, unit fields and flexibilities of its pins.
     files: those that the study names, as far as the creator noted them
     (pinstress.explore.sweep.batches).
 
@@ -137,7 +137,7 @@ class Evaluator:
         self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
             MAX_REMEMBERED_LOADS * len(self._cases)
         )
-        self.meshes = EveryMesh()
+        self.memo = Memo()
         self._rows = Recent[str, tuple[PinResult, ...]](MAX_REMEMBERED_ROWS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
@@ -152,7 +152,7 @@ class Evaluator:
         numbers = [float(value) for value in values]
         try:
             study = self.changed(numbers)
-            loads = self._loads_of(study, numbers)
+            loads = self.loads_of(study, numbers)
         except (InputError, MemoryError) as error:
             return [_failed(self.study, pin, case, error) for pin, case in self.table]
         rows: dict[tuple[str, str], DesignRow] = {}
@@ -196,7 +196,11 @@ class Evaluator:
             return inner[0] in free
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
-    def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+    def loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+        """Return the loads of a design by case, or why a case has none.
+
+        study: with the values (p,) of the parameters, SI.
+        """
         loads: dict[str, CaseLoads | InputError] = {}
         mechanism: Linkage | None = None
         for name in self._cases:
@@ -274,7 +278,7 @@ class Evaluator:
         key = _question(study, task, asked, [loads[x.case].range for x in task.loads])
         known = self._rows.get(key)
         if known is None:
-            solved = solutions(study, task, asked, lambda _: None, self.meshes)
+            solved = solutions(study, task, asked, lambda _: None, self.memo)
             known = self._rows.put(key, tuple(bare_row(task, s, loads) for s in solved))
         return known
 
