@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressR
 from geometry import CutPin, Pin, PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
-LOCAL_MODEL = "harmonic+local"
+LOCAL_MODEL: Final = "harmonic+local"
 NO_MESHES = MeshSequence(MESH_RATIO, 0.0, 1, 0, 0.0)  # of a model without any
 
 

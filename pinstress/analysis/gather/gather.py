@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
 from geometry import Cut, CutPin, Flat, Hole, Passage, Slot
@@ -60,7 +61,8 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     ]
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     results = _results(study, plan.loads, rows, plan.published, plan.asked.tolerance)
-    fatigue, fatigue_margins = None, []
+    fatigue: plain.Fatigue | None = None
+    fatigue_margins: list[PinMargin] = []
     if study.table.fatigue is not None:
         from pinstress.analysis.gather.gather_fatigue import fatigue_of  # imports SciPy
 
