@@ -12,17 +12,19 @@ included.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import KDTree
 
 from fea.core.pressed import ARC_COUNT, PressedArcs
-from fea.cut.evaluate import CutField
-from fea.cut.free_points import FreePoints, relieved
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints
 from fea.harmonic.stress_at import Stress
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
+
+if TYPE_CHECKING:
+    from fea.cut.evaluate import CutField
 
 # Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
 AXIAL_DISTANCE_WEIGHT = 0.1
@@ -83,6 +85,8 @@ class CutStandIns:
     """Points of the surface of a pin with cuts that replace others where these are not read."""
 
     def __init__(self, answer: CutField, pressed: PressedArcs) -> None:
+        from fea.cut.free_points import FreePoints, relieved
+
         cut, pieces = answer.surface, answer.solution.pieces
         on_outline = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
         first = len(cut.points) - sum(len(x) for x in on_outline)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +11,13 @@ from assess.fatigue.pressed_points import CutStandIns, StandIns, replaced
 from fea.beam.model import BeamField
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import StressField
-from fea.cut.evaluate import CutField
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.free_surface import surface_points
 from fea.harmonic.stress_at import Stress, stress_at
-from fea.solid.evaluate import SolidField
-from fea.support.foundation.held import FoundationField
 from pinbase.arrays import Floats, Ints, Mask
+
+if TYPE_CHECKING:
+    from fea.cut.evaluate import CutField
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,13 @@ def stress_points(answer: StressField | None, loads: PinLoads) -> StressPoints |
     """The stress points of a solution in its case; None where nothing was solved."""
     if isinstance(answer, HarmonicField):
         return _harmonic(answer, loads)
+    if answer is None:
+        return None
+    # Imported for pins that are not solved by the harmonic model alone.
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+    from fea.support.foundation.held import FoundationField
+
     if isinstance(answer, BeamField | FoundationField):
         return _beam(answer.points, answer.harmonics(loads), len(loads))
     if isinstance(answer, CutField):

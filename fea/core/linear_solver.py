@@ -9,14 +9,17 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 
 from geometry import CodedError
 from geometry.mesh.gmsh_session import GMSH_LOCK
 from pinbase.arrays import Floats, Ints
 from pinbase.platform import offered
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 Solve = Callable[[Floats], Floats]
 
@@ -208,6 +211,7 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     if not has_metis():
         return None
     import pymetis
+    import scipy.sparse as sp
 
     n = len(node)
     _, node = np.unique(node, return_inverse=True)
