@@ -20,7 +20,7 @@ from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.pressure_edge import unread
-from fea.harmonic.stress_recovery import NO_POINTS, reading
+from fea.harmonic.stress_recovery import NO_POINTS, Reading, reading
 from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
 from pinbase.arrays import Floats, Ints
@@ -199,6 +199,7 @@ class HarmonicModel(HarmonicBody):
     ) -> None:
         super().__init__(pin, Section(section), material, clamps, pivot)
         self.material = material
+        self._readings: dict[tuple[bytes, tuple[tuple[float, float], ...]], Reading] = {}
 
     def solve(
         self,
@@ -232,7 +233,12 @@ class HarmonicModel(HarmonicBody):
         self, moved: Moved, extra: Floats, ends: Iterable[tuple[float, float]]
     ) -> MeridianFields:
         """The unit fields, read at the points of this mesh."""
-        read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
+        key = extra.tobytes(), tuple(ends)
+        if key not in self._readings:  # the first mesh is read again for other loads
+            self._readings[key] = reading(
+                self.space, self.outline, self.material, self.clamps, extra, key[1]
+            )
+        read = self._readings[key]
         displacement, stress = read.of(moved.harmonics, moved.u, moved.tractions)
         return MeridianFields(
             read.points,
