@@ -60,7 +60,8 @@ def at_angles(n: Ints, back: Floats, forth: Floats, angles: Floats) -> Floats:
     both, out = np.concatenate([back, forth], axis=2), np.empty((len(back), len(angles)))
     for k in range(0, len(both), CACHED_BATCH):
         part = both[k : k + CACHED_BATCH]
-        five = (part.reshape(-1, len(waves)) @ waves).reshape(*part.shape[:2], -1)
+        rows = part.reshape(part.shape[0] * part.shape[1], len(waves))
+        five = (rows @ waves).reshape(*part.shape[:2], len(angles))
         np.square(five, out=five).sum(axis=1, out=out[k : k + CACHED_BATCH])
     return out
 

@@ -437,7 +437,7 @@ class Circumference:
         parts = []
         for part, signed in ((COS, (c, s)), (SIN, (s, -c))):
             five = np.ascontiguousarray(self._five[points, part].swapaxes(0, 1))
-            five = five.reshape(-1, five.shape[2])
+            five = five.reshape(five.shape[0] * five.shape[1], five.shape[2])
             amounts = [
                 (five[:, wave] @ phase[wave]).ravel()
                 for phase in (self._first.T, self._second.T)
