@@ -84,7 +84,11 @@ def _cut(answer: CutField, loads: PinLoads) -> StressPoints:
         return _solid(cut.points, cut.stress, cut.read, amounts)
     stands = CutStandIns(answer, loads.pressed)
     every = _solid(stands.points, stands.stress, cut.read, amounts)
-    at = replaced(every.at, lambda rows, _, t: stands.rows(rows, t))
+
+    def substitutes(rows: Ints, _: Floats, instants: Ints) -> Ints:
+        return np.stack([stands.rows(rows, t) for t in instants.tolist()], axis=1)
+
+    at = replaced(every.at, substitutes)
     return StressPoints(cut.points, cut.read, False, len(amounts), at)
 
 
