@@ -40,6 +40,7 @@ from benchmarks.pins import (
 )
 from benchmarks.record import record
 from benchmarks.runs import (
+    cluster,
     designs_page,
     gear,
     least_weight,
@@ -96,6 +97,7 @@ TIMES = {
     "models": models.models,
     "shoulders": shoulders.shoulders,
     "sweep": sweep.sweep,
+    "cluster": cluster.cluster,
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,
