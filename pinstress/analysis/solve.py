@@ -201,37 +201,53 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
         if field is not None:
             tell(f"pin {task.pin.name}, pictures")
             keep(field)
+    beam = None
+    if task is plan.checked and study.table.beam_check is not None:
+        tell(f"pin {task.pin.name}, beam check")
+        beam = checks.beam_check(study, task)
+    surfaces = surfaces_of(plan.loads, task, solved, pressures)
+    tell(f"pin {task.pin.name}, what to change")
+    to_do = change(plan.asked, task, solved)
+    tell(f"pin {task.pin.name}, sensitivities")
+    step = DIMENSION_STEPS[study.table.units]
+    sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
+    histories, no_histories = _histories(task, solved)
+    return replace(
+        _rows(plan, task, solved, tell),
+        beam=beam,
+        surfaces=surfaces,
+        change=to_do,
+        histories=histories,
+        sensitivities=sensitive,
+        no_histories=no_histories,
+    )
+
+
+def _rows(plan: Plan, task: Task, solved: tuple[Solution, ...], tell: Tell) -> PinOutcome:
+    """Return the rows of a task with their joints, ranges and limit loads."""
     notes = shape_notes(task.pin)
     peaks = tuple(
         replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in solved
     )
     ranges = (gather.landing_range(plan.loads, task, s) for s in solved)
     landing = tuple(r for r in ranges if r is not None)
-    beam = None
-    if task is plan.checked and study.table.beam_check is not None:
-        tell(f"pin {task.pin.name}, beam check")
-        beam = checks.beam_check(study, task)
     joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, peaks)
-    surfaces = surfaces_of(plan.loads, task, solved, pressures)
-    histories, no_histories = _histories(task, solved)
-    tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, solved)
-    tell(f"pin {task.pin.name}, sensitivities")
-    step = DIMENSION_STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
     limits = limit_loads(plan, task, solved, tell)
-    return PinOutcome(
-        peaks,
-        landing,
-        beam,
-        surfaces,
-        joints=joints,
-        change=to_do,
-        histories=histories,
-        limits=limits,
-        sensitivities=sensitive,
-        no_histories=no_histories,
-    )
+    return PinOutcome(peaks, landing, joints=joints, limits=limits)
+
+
+def judged(plan: Plan, task: Task, tell: Tell) -> PinOutcome:
+    """Return the outcome of a task with all that its rows are judged by, and without what only
+    explains them: pictures, surfaces, remedies, sensitivities.
+
+    Raises: ArgumentError, MeshError, SolveError.
+    """
+    solved = solutions(plan.study, task, plan.asked, tell)
+    outcome = _rows(plan, task, solved, tell)
+    if plan.study.table.fatigue is not None:
+        histories, no_histories = _histories(task, solved)
+        outcome = replace(outcome, histories=histories, no_histories=no_histories)
+    return _assessed(plan, task, outcome)
 
 
 def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
