@@ -202,7 +202,6 @@ def _joints(study: Study, task: Task) -> Joints:
 
 def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:
     from pinstress.analysis import gather_fields
-    from pinstress.analysis.gather.gather_landing import landing_range
     from pinstress.analysis.gather.gather_surface import surfaces_of
     from pinstress.analysis.remedies.changes import change
     from pinstress.analysis.remedies.sensitivities import sensitivities
@@ -217,12 +216,10 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
             if field is not None:
                 tell(f"pin {task.pin.name}, pictures")
                 keep(field)
-    landing = [landing_range(plan.loads, task, s) for s in solved]
     beam_check = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
         beam_check = checks.beam_check(study, task)
-    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
@@ -230,13 +227,38 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
     sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
+    rows = _rows(plan, task, solved, tell)
+    return PinOutcome(rows, surfaces, histories, no_histories, sensitive, remedy, beam_check)
+
+
+def _rows(
+    plan: Plan, task: Task, solved: tuple[Solution, ...], tell: Tell
+) -> tuple[PinResult, ...]:
+    """Return the rows of a task with their joints, ranges and limit loads."""
+    from pinstress.analysis.gather.gather_landing import landing_range
+
+    landing = [landing_range(plan.loads, task, s) for s in solved]
+    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     parts = zip(solved, joints, limits, landing, strict=True)
-    rows = tuple(
+    return tuple(
         PinResult(_with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over)
         for s, joint, limit, over in parts
     )
-    return PinOutcome(rows, surfaces, histories, no_histories, sensitive, remedy, beam_check)
+
+
+def judged(plan: Plan, task: Task, tell: Tell, memo: Memo | None = None) -> PinOutcome:
+    """Return the outcome of a task with all that its rows are judged by, and without what only
+    explains them: pictures, surfaces, remedies, sensitivities.
+
+    Raises: ArgumentError, MeshError, SolveError.
+    """
+    solved = solutions(plan.study, task, plan.asked, tell, memo)
+    rows = (assessed(plan.study, task, row) for row in _rows(plan, task, solved, tell))
+    if plan.study.table.fatigue is None:
+        return PinOutcome(tuple(rows))
+    histories, no_histories = _histories(task, solved)
+    return PinOutcome(tuple(rows), histories=histories, no_histories=no_histories)
 
 
 def _with_notes(task: Task, peak: Maximum) -> Maximum:
