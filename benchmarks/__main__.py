@@ -44,6 +44,7 @@ from benchmarks.runs import (
     designs_page,
     gear,
     least_weight,
+    linkages,
     page,
     reliability,
     speed,
@@ -75,6 +76,7 @@ ACCURACY = {
 TIMES = {
     "motion": speed.motion,
     "scissor": scissor.scissor,
+    "linkages": linkages.linkages,
     "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
     "solvers": linear_solvers.linear_solvers,

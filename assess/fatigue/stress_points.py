@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,13 +11,13 @@ from assess.fatigue.pressed_points import CutStandIns, StandIns, replaced
 from fea.beam.model import BeamField
 from fea.core.pin_loads import PinLoads
 from fea.core.solution import StressField
-from fea.cut.evaluate import CutField
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.free_surface import surface_points
 from fea.harmonic.stress_at import Stress, stress_at
-from fea.solid.evaluate import SolidField
-from fea.support.foundation.held import FoundationField
 from pinbase.arrays import Floats, Ints, Mask
+
+if TYPE_CHECKING:
+    from fea.cut.evaluate import CutField
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,13 @@ def stress_points(answer: StressField | None, loads: PinLoads) -> StressPoints |
     """The stress points of a solution in its case; None where nothing was solved."""
     if isinstance(answer, HarmonicField):
         return _harmonic(answer, loads)
+    if answer is None:
+        return None
+    # Imported for pins that are not solved by the harmonic model alone.
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+    from fea.support.foundation.held import FoundationField
+
     if isinstance(answer, BeamField | FoundationField):
         return _beam(answer.points, answer.harmonics(loads), len(loads))
     if isinstance(answer, CutField):
@@ -76,7 +84,11 @@ def _cut(answer: CutField, loads: PinLoads) -> StressPoints:
         return _solid(cut.points, cut.stress, cut.read, amounts)
     stands = CutStandIns(answer, loads.pressed)
     every = _solid(stands.points, stands.stress, cut.read, amounts)
-    at = replaced(every.at, lambda rows, _, t: stands.rows(rows, t))
+
+    def substitutes(rows: Ints, _: Floats, instants: Ints) -> Ints:
+        return np.stack([stands.rows(rows, t) for t in instants.tolist()], axis=1)
+
+    at = replaced(every.at, substitutes)
     return StressPoints(cut.points, cut.read, False, len(amounts), at)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -25,7 +26,7 @@ def stress_at(fields: MeridianFields, loads: Loads) -> Stress:
     units = [k for k, load in enumerate(fields.loads) if load in acting]
     units.sort(key=lambda k: fields.loads[k].n)
     n, first = np.unique([fields.loads[k].n for k in units], return_index=True)
-    waves = [slice(*ends) for ends in zip(first, [*first[1:], len(units)], strict=True)]
+    waves = [slice(*ends) for ends in itertools.pairwise([*first, len(units)])]
     amounts = np.zeros((len(units), 2, len(loads)))
     for i, k in enumerate(units):
         amounts[i] = acting[fields.loads[k]].T

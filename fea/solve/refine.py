@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -23,24 +24,28 @@ from fea.core.requirement import (
 )
 from fea.core.verdict import Evidence, evidence_of
 from fea.core.zone import Zone
-from fea.cut.evaluate import LOCAL_MESHES, CutField, LocalSolids
-from fea.cut.region import unringed
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
-from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading
 from geometry import CutPin, Pin, PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
-LOCAL_MODEL = LocalSolids.name
+LOCAL_MODEL: Final = "harmonic+local"
 NO_MESHES = MeshSequence(MESH_RATIO, 0.0, 1, 0, 0.0)  # of a model without any
 
 
 def sequence_of(pin: PinLike, model: str) -> MeshSequence:
     """The sequence of meshes by which a model, given by its name, refines a pin."""
-    solid = GIVEN_SOLID_MESHES if pin.meshed else SOLID_MESHES
-    sequences = {"harmonic": SECTION_MESHES, LOCAL_MODEL: LOCAL_MESHES, "solid": solid}
-    return sequences.get(model, NO_MESHES)
+    # Models are imported where they are used: a plain pin does not wait for those of others.
+    if model == "solid":
+        from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
+
+        return GIVEN_SOLID_MESHES if pin.meshed else SOLID_MESHES
+    if model == LOCAL_MODEL:
+        from fea.cut.evaluate import LOCAL_MESHES
+
+        return LOCAL_MESHES
+    return SECTION_MESHES if model == "harmonic" else NO_MESHES
 
 
 def count_loads(cases: tuple[PinLoads, ...]) -> int:
@@ -63,6 +68,8 @@ def zones_of(
     # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
     turned, openings = pin, tuple[tuple[float, float], ...]()
     if isinstance(pin, CutPin) and not pin.revolved:
+        from fea.cut.region import unringed
+
         turned, openings = pin.profile, tuple(c.opens for c in unringed(pin).cuts.values())
     profile_zones = singularities_of(turned, material, clamps, cases, requirement.distance)
     return tuple(
@@ -216,7 +223,10 @@ def _reading(
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
     evidence = replace(evidence, governing=governing, history=seen.under(governing))
-    if isinstance(field, CutField):
+    if seen.model == LOCAL_MODEL:
+        from fea.cut.evaluate import CutField
+
+        assert isinstance(field, CutField)
         solids = tuple((p.piece.z0, p.piece.z1) for p in field.solution.pieces)
         evidence = replace(evidence, solids=solids)
     return StressReading(evidence, field, loads, instant)

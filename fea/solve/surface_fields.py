@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import ARC_COUNT
 from fea.core.solution import StressField
-from fea.cut.evaluate import CutField
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.five_numbers import EVEN_COUNT, VON_MISES_ROOT
 from fea.singular.singularities import outside
-from fea.solid.boundary import QUARTER_TRIANGLES, SurfaceMesh
-from fea.solid.evaluate import SolidField
 from pinbase.arrays import Floats, Ints, Mask
+
+if TYPE_CHECKING:
+    from fea.solid.boundary import SurfaceMesh
 
 MAX_SHOWN_NODES = 6000  # of a surface of quadratic triangles, to show their middle nodes, too
 _EVEN_COMPONENTS = (True,) * EVEN_COUNT + (False,) * (5 - EVEN_COUNT) + (True, False, True)
@@ -66,6 +67,10 @@ def unit_surface(answer: StressField) -> UnitSurface | None:
             stress=VON_MISES_ROOT @ fields.stress[: fields.skin],
             displacement=fields.displacement[: fields.skin],
         )
+    # Models of other pins are imported where there are any.
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+
     if isinstance(answer, CutField):
         cut = answer.surface
         return UnitSurface(
@@ -92,26 +97,32 @@ def unit_surface(answer: StressField) -> UnitSurface | None:
 
 def amounts(answer: StressField, loads: PinLoads) -> Floats:
     """The amount of each unit load of the surface at each instant, by phase: (T, K, 2)."""
-    if isinstance(answer, SolidField | CutField):
-        known = answer.solution.fields if isinstance(answer, SolidField) else answer
-        one = known.coefficients(loads)
-        return np.stack([one, np.zeros_like(one)], axis=2)
-    assert isinstance(answer, HarmonicField)
-    acting = loads.coefficients()
-    none = np.zeros((len(loads), 2))
-    return np.stack([acting.get(load, none) for load in answer.fields.loads], axis=1)
+    if isinstance(answer, HarmonicField):
+        acting = loads.coefficients()
+        none = np.zeros((len(loads), 2))
+        return np.stack([acting.get(load, none) for load in answer.fields.loads], axis=1)
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+
+    assert isinstance(answer, SolidField | CutField)
+    known = answer.solution.fields if isinstance(answer, SolidField) else answer
+    one = known.coefficients(loads)
+    return np.stack([one, np.zeros_like(one)], axis=2)
 
 
 def excluded(answer: StressField) -> Mask:
     """A mask (P,) of the points of the surface in a singularity, where the maximum is not read."""
+    if isinstance(answer, HarmonicField):
+        return ~outside(answer.singularities, *answer.fields.points[: answer.fields.skin].T)
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+
     if isinstance(answer, CutField):
         return ~answer.surface.read
-    if isinstance(answer, SolidField):
-        surface = answer.solution.fields.surface
-        inside = ~answer.solution.outside[: len(surface.nodes)]
-        return np.asarray(inside[np.searchsorted(surface.nodes, _shown(surface)[0])])
-    assert isinstance(answer, HarmonicField)
-    return ~outside(answer.singularities, *answer.fields.points[: answer.fields.skin].T)
+    assert isinstance(answer, SolidField)
+    surface = answer.solution.fields.surface
+    inside = ~answer.solution.outside[: len(surface.nodes)]
+    return np.asarray(inside[np.searchsorted(surface.nodes, _shown(surface)[0])])
 
 
 def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
@@ -120,17 +131,20 @@ def largest_there(answer: StressField, loads: PinLoads, instant: int) -> Floats:
     On a meridian it is the largest about the axis where it is read (fea.harmonic.free_surface), 0
     where it is not.
     """
-    if isinstance(answer, SolidField | CutField):
-        if isinstance(answer, CutField):
-            stress = VON_MISES_ROOT @ answer.surface.stress
-        else:
-            fields = answer.solution.fields
-            stress = VON_MISES_ROOT @ fields.stress[_shown(fields.surface)[0]]
-        return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
-    assert isinstance(answer, HarmonicField)
-    skin = np.arange(answer.fields.skin)
-    largest, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
-    return largest
+    if isinstance(answer, HarmonicField):
+        skin = np.arange(answer.fields.skin)
+        largest, _ = answer.reader(loads).round(skin, np.full(len(skin), instant))
+        return largest
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+
+    if isinstance(answer, CutField):
+        stress = VON_MISES_ROOT @ answer.surface.stress
+    else:
+        assert isinstance(answer, SolidField)
+        fields = answer.solution.fields
+        stress = VON_MISES_ROOT @ fields.stress[_shown(fields.surface)[0]]
+    return np.asarray(np.linalg.norm(stress @ amounts(answer, loads)[instant, :, 0], axis=1))
 
 
 def largest_at(
@@ -171,6 +185,8 @@ def _shown(surface: SurfaceMesh) -> tuple[Ints, Ints]:
     """The nodes (P,), sorted, and the plane triangles (M, 3) of a surface; of a fine mesh the
     corners alone.
     """
+    from fea.solid.boundary import QUARTER_TRIANGLES
+
     corners = surface.corners
     if len(surface.nodes) > MAX_SHOWN_NODES:
         corners = corners[:, :3]

@@ -114,6 +114,7 @@ def in_parallel(
     progress: Progress = lambda _, __: None,
     anew: bool = False,
     watch: Watch | None = None,
+    done: Callable[[int, T | ProcessDied], None] = lambda _, __: None,
 ) -> list[T | ProcessDied]:
     """Run jobs, which start in their order, and return their results in that order.
 
@@ -121,13 +122,18 @@ def in_parallel(
     progress: called with the jobs that are running and the part of the jobs that is done.
     anew: whether processes are started anew on Linux too.
     watch: as in `served`.
+    done: called with the number of each job and its result as soon as there is one, in this
+    process.
 
     Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
     """
-    if most == 1:
-        return [job.work(_teller(progress, i / len(jobs))) for i, job in enumerate(jobs)]
-    waiting = list(reversed(range(len(jobs))))
     results: dict[int, T | ProcessDied] = {}
+    if most == 1:
+        for i, job in enumerate(jobs):
+            results[i] = job.work(_teller(progress, i / len(jobs)))
+            done(i, results[i])
+        return list(results.values())
+    waiting = list(reversed(range(len(jobs))))
     sends = anew or portable()
 
     def take() -> tuple[str, int | tuple[int, Job[T]]] | None:
@@ -142,6 +148,7 @@ def in_parallel(
         if isinstance(value, ProcessDied) and limits and (limit := passed(value.status, limits)):
             value = ProcessDied(limit, value.status, limited=True)
         results[number] = value
+        done(number, value)
 
     serve: Serve[Any, T] = _sent_job if sends else partial(_numbered_job, jobs)
 

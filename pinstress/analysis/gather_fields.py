@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -15,11 +14,11 @@ from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.revolve import revolve_solid
 from fea.support.cell_pressure import CellPressure
 from fea.support.support import Solution
+from pinstress.analysis.plan import ExtraFields
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data import results as plain
 
-ExtraFields = Literal["motion", "solid"] | None
 MAX_STILLS = 50  # of a motion, besides the governing instant
 
 

@@ -12,10 +12,11 @@ import click
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
-from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of, why_missed
+from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
 from pinstress.explore.size.counted import low_factor
+from pinstress.explore.size.judged_pin import why_missed
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
 from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions

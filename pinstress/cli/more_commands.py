@@ -195,9 +195,11 @@ def completion(context: click.Context, shell: str) -> None:
     help=example("pinstress size studies/one_pin.toml --fos 10 --step 0.125")
     + example("pinstress size studies/grenier2008.toml --least-weight")
     + "\nFind the smallest diameters with which every pin reaches a safety factor in all cases; "
-    "write a new study with them. Lengths do not change; diameters, bores and fillets are scaled "
-    "together, or with --least-weight independently, so that the pin is as light as it can be. "
-    "The new study is run before it is written.\n\n"
+    "write a new study with them, each pin as soon as it is sized. Lengths and the weights of "
+    "links do not change; diameters, bores and fillets are scaled together, or with --least-weight "
+    "independently, so that the pin is as light as it can be. Limits and standard diameters are "
+    "stated in [size] of the study. Every size is confirmed as a run solves it.\n\n"
+    "A size that was interrupted goes on with --resume.\n\n"
     "Exit status: 0 done; 1 done, but a pin is not shown to reach the factor; 2 bad input; "
     "3 the solution failed; 130 interrupted.",
 )
@@ -211,7 +213,8 @@ def completion(context: click.Context, shell: str) -> None:
 @click.option(
     "--step",
     metavar="LENGTH",
-    help='Round diameters up to multiples of this, in study units or with a unit ("1 mm").',
+    help="Round diameters up to multiples of this, in study units or with a unit "
+    '("1 mm"), instead of the series in [size].',
 )
 @click.option(
     "--out",
@@ -221,6 +224,7 @@ def completion(context: click.Context, shell: str) -> None:
 )
 @QUIET_OPTION
 @JOBS_OPTION
+@click.option("--resume", is_flag=True, help="Resume a size that did not end.")
 @click.option(
     "--least-weight",
     is_flag=True,
@@ -255,6 +259,7 @@ def size(
     out: Path | None,
     quiet: bool,
     jobs: int | None,
+    resume: bool,
     least_weight: bool,
     **wishes: Any,
 ) -> int:
@@ -268,15 +273,18 @@ def size(
     if metres is not None and metres <= 0.0:
         raise InputError("--step: must be positive", code="not-positive")
     from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
-    from pinstress.cli.size import require_wish, size_and_write
+    from pinstress.cli.size import SizeOptions, require_wish, size_and_write
 
     asked = Wishes(**wishes)
     if asked.given and not least_weight:
         raise InputError(f"{asked.given[0]} needs --least-weight", code="needs-least-weight")
+    if least_weight and resume:
+        raise InputError("--resume is not for --least-weight", code="contradiction")
     if least_weight:
         aim = require_aim(loaded, asked, require_wish(loaded, fos, metres).required, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, asked.probability)
-    return size_and_write(loaded, require_wish(loaded, fos, metres), out, pins, quiet, jobs)
+    options = SizeOptions(out, pins, jobs, resume, quiet)
+    return size_and_write(loaded, require_wish(loaded, fos, metres), options)
 
 
 @click.command(

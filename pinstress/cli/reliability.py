@@ -13,7 +13,7 @@ from assess.judgement import DEPENDS, NOT_DECIDED
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.run import RUN_MODULES, console, progress_bar
+from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
@@ -61,7 +61,7 @@ def reliability_and_write(
         require_cluster(connection)
     with replacing(directory, RELIABILITY_JSON) as staging:
         with progress_bar(alone=most == 1, quiet=quiet) as progress:
-            preload(*RUN_MODULES)
+            preload(*RUN_LIBRARIES, *RUN_MODELS)
             progress("the study as it is", 0.0)
             nominal = run(study, pins=pins, cases=cases, jobs=most)
             with _cluster(connection) as cluster:

@@ -1,81 +1,162 @@
-"""The `size` command: size every pin, run the new study, write it."""
+"""The `size` command: size every pin and write the new study, each pin as soon as it is sized."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
-from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload, processes
-from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
-from pinstress.analysis.results import run
-from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.run import RUN_MODULES, console, progress_bar
+from pinbase.processes import interrupts
+from pinbase.processes.interrupts import Unfinished
+from pinbase.processes.pool import preload, processes
+from pinstress.analysis.plan import prepare
+from pinstress.cli.new_file import require_new
+from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.streams import unneeded
-from pinstress.explore.size.counted import beneath_factor
-from pinstress.explore.size.scaled_study import moved, resized_study
-from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
+from pinstress.explore.size.scaled_study import moved
+from pinstress.explore.size.size_pin import SizingGoal, SizingResult
+from pinstress.explore.size.size_pins import new_study, size_pins
+from pinstress.explore.size.size_state import SizeState, identity, replace_file
+from pinstress.explore.size.standard_diameters import standard_diameters
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import slenderness, weight
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from reports.data.decision import factor_ends
-from reports.data.dependence import BENEATH_CONTACT
-from reports.data.headline import worst_checks
-from reports.data.results import PinResult, Results
-from reports.format.numbers import DASH, engineering, short
-from reports.format.ranges import factor_range
-from reports.format.words import over_words
+from reports.data.results import Units
+from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
-MAX_SIZING_PASSES = 4
 OTHER_FILE_REMEDY = "choose another file with --out"
 
 
-def size_and_write(
-    study: Study,
-    wish: SizingGoal,
-    out: Path | None,
-    pins: list[str] | None,
-    quiet: bool = False,
-    jobs: int | None = None,
-) -> int:
+@dataclass(frozen=True)
+class SizeOptions:
+    """Options of the command.
+
+    out: the new study, by default next to the study.
+    pins: their names, by default all.
+    jobs: number of pins sized in parallel, by default the number of cores.
+    resume: whether a size that did not end is resumed.
+    """
+
+    out: Path | None = None
+    pins: list[str] | None = None
+    jobs: int | None = None
+    resume: bool = False
+    quiet: bool = False
+
+
+def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     """Size pins and write the new study, unless nothing in it is new.
 
     Returns the exit status: 1 if any pin is not shown to reach the factor.
 
-    jobs: number of pins sized in parallel, by default the number of cores.
-
     Raises: InputError.
     """
-    target = target_of(study, out)
-    with progress_bar(alone=processes(jobs) == 1, quiet=quiet) as progress:
-        new, sized, results = _sized(study, wish, pins, processes(jobs), progress)
-    rows = [_row(study, new, s, results) for s in sized]
-    if changed := any(s.scale is not None for s in sized) and new.text != study.text:
-        text = moved(new.text, study.path.parent, target.parent)
-        write_new(target, text.encode(), OTHER_FILE_REMEDY)
+    target = target_of(study, options.out, options.resume)
+    plan = prepare(study, pins=options.pins)
+    state = SizeState(target, identity(study, goal, {task.pin.name for task in plan.tasks}))
+    sizing = _Sizing(study, goal, target, state)
+    sizing.start(options.resume)
+    jobs = processes(options.jobs)
+    try:
+        with progress_bar(alone=jobs == 1, quiet=options.quiet) as progress:
+            if jobs > 1:
+                preload(*RUN_LIBRARIES, *RUN_MODELS)
+            sized = size_pins(plan, goal, sizing.pins, sizing.finish, jobs, progress)
+        new = sizing.write(sized)
+    except BaseException as error:
+        kept = sizing.stop()
+        if kept and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
+            raise Unfinished(kept) from None
+        if kept and isinstance(error, InputError):
+            raise InputError(f"{error}\n{kept}", code=error.code) from None
+        raise
+    state.end()
+    rows = [_row(study, new, result) for result in sized]
+    s = study.system
     with unneeded(target):
-        print_sizes(rows, wish.required, results.units, console())
-    if not quiet:
-        close(study, new, target if changed else None)
+        print_sizes(rows, goal.required, Units(s.length, s.force, s.stress, s.time), console())
+    if not options.quiet:
+        close(study, new, target if sizing.written else None)
     missed = [row for row in rows if row.why]
     for row in missed:
-        click.echo(f"Not decided: pin {row.pin}: {row.why}.", err=True)
+        click.echo(f"{row.result.capitalize()}: pin {row.pin}: {row.why}.", err=True)
     return int(bool(missed))
 
 
+class _Sizing:
+    """A size that is going on: finished pins in the new study and in the file of its state."""
+
+    def __init__(self, study: Study, goal: SizingGoal, target: Path, state: SizeState) -> None:
+        self._study, self._goal, self._target, self._state = study, goal, target, state
+        self._pins: dict[str, SizingResult] = {}
+        self.written = False
+
+    @property
+    def pins(self) -> list[SizingResult]:
+        return list(self._pins.values())
+
+    def start(self, resume: bool) -> None:
+        """Begin, or read what an earlier size has finished.
+
+        Raises: InputError, also where the new study is not the one that was written.
+        """
+        if not resume:
+            self._state.begin()
+            return
+        self._pins = {result.pin: result for result in self._state.read()}
+        if not self._target.exists():
+            return
+        stages = [self._text(self.pins), self._text(self.pins[:-1])]
+        if self._target.read_bytes() not in stages:
+            raise InputError(
+                f"--resume: {self._target} has changed since it was written; move it, and go on "
+                "with --resume",
+                code="changed-since",
+            )
+        self.written = True
+
+    def finish(self, result: SizingResult) -> None:
+        """Keep a pin that is sized."""
+        self._pins.pop(result.pin, None)  # the last one stays last
+        self._pins[result.pin] = result
+        self._state.write(tuple(self.pins))
+        self.write(self.pins)
+
+    def write(self, sized: list[SizingResult]) -> Study:
+        """Write the new study, unless nothing in it is new, and return it."""
+        new = new_study(self._study, self._goal, sized)
+        if self.written or (
+            any(result.scale is not None for result in sized) and new.text != self._study.text
+        ):
+            if not self.written:
+                require_new(self._target, OTHER_FILE_REMEDY)
+            replace_file(self._target, self._text(sized))
+            self.written = True
+        return new
+
+    def stop(self) -> str:
+        """Return how to go on; where no pin is finished, nothing is left."""
+        if not self._pins:
+            self._state.end()
+            return ""
+        count = len(self._pins)
+        many = "1 pin is" if count == 1 else f"{count} pins are"
+        return f"{many} kept: the same command with --resume goes on"
+
+    def _text(self, sized: list[SizingResult]) -> bytes:
+        text = new_study(self._study, self._goal, sized).text
+        return moved(text, self._study.path.parent, self._target.parent).encode()
+
+
 def require_wish(study: Study, fos: float | None, step: float | None) -> SizingGoal:
-    """Return the factor to reach.
+    """Return the factor to reach and the diameters to choose from.
 
     fos: the factor, or None for that of the study.
-    step: step of diameters, m.
+    step: step of diameters, m, instead of the study's series.
 
     Raises: InputError.
     """
@@ -86,75 +167,19 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> SizingG
             "required_safety_factor in [analysis]",
             code="no-required-factor",
         )
-    return SizingGoal(required, step)
+    return SizingGoal(required, standard_diameters(study.table.size, step))
 
 
-def _sized(
-    study: Study, wish: SizingGoal, pins: list[str] | None, jobs: int, progress: Progress
-) -> tuple[Study, list[SizingResult], Results]:
-    """Size all pins and return the new study, the sizes and the new study's run.
-
-    The weights of pins change the loads of others, so all are sized again until the run confirms
-    them.
-    """
-    plan = prepare(study, pins=pins)
-    scales: dict[str, float] = {}
-    before: dict[str, float | None] = {}
-    for _ in range(MAX_SIZING_PASSES):
-        sized = _all(plan, wish, scales, jobs, progress)
-        scales = {s.pin: s.scale for s in sized if s.scale is not None}
-        before = {s.pin: s.before for s in sized} | before
-        progress("run of the new study", 0.9)
-        new = resized_study(study, scales, wish.step, wish.required)
-        results = run(new, pins=[s.pin for s in sized], jobs=jobs)
-        if _agree(sized, results, wish.required):
-            break
-    return new, [replace(s, before=before[s.pin]) for s in sized], results
-
-
-def _agree(sized: list[SizingResult], results: Results, required: float) -> bool:
-    """Return whether the run confirms that every size reaches the factor, with little excess."""
-    for pin in sized:
-        factor = min(_factors(results, pin.pin), default=None)
-        if pin.factor is None or factor is None:
-            continue
-        if factor < required or factor > pin.factor * (1.0 + FACTOR_TOLERANCE):
-            return False
-    return True
-
-
-def _factors(results: Results, pin: str) -> list[float]:
-    """Return a pin's factors as size_pin counts them: with the error, but for singular rows."""
-    return [
-        min(p.safety_factor if p.verdict == "singular" else factor_ends(p)[0], beneath_factor(p))
-        for p in results.pins
-        if p.pin == pin and p.safety_factor is not None
-    ]
-
-
-def _all(
-    plan: Plan, wish: SizingGoal, scales: Mapping[str, float], jobs: int, progress: Progress
-) -> list[SizingResult]:
-    names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
-    if jobs > 1:
-        preload(*RUN_MODULES)
-    work = [Job(f"pin {name}", partial(size_pin, plan, name, wish, scales)) for name in names]
-    sizings = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
-    return [
-        SizingResult(name, None, None, None, None, sizing.reason)
-        if isinstance(sizing, ProcessDied)
-        else sizing
-        for name, sizing in zip(names, sizings, strict=True)
-    ]
-
-
-def target_of(study: Study, out: Path | None) -> Path:
+def target_of(study: Study, out: Path | None, resume: bool = False) -> Path:
     """Return the path of the file to be written.
+
+    resume: whether it may exist.
 
     Raises: InputError where it cannot be written.
     """
     target = out or study.path.with_name(f"{study.name}_sized.toml")
-    require_new(target, OTHER_FILE_REMEDY)
+    if not resume and not SizeState(target, "").path.exists():
+        require_new(target, OTHER_FILE_REMEDY)
     if not target.parent.is_dir():
         raise InputError(f"--out: there is no folder {target.parent}", code="no-folder")
     return target
@@ -176,10 +201,9 @@ def close(study: Study, new: Study, target: Path | None) -> None:
     click.echo(f"Written: {target}" if target else "Nothing is new; no study is written.", err=True)
 
 
-def _row(study: Study, new: Study, sized: SizingResult, results: Results) -> SizeRow:
-    """Return a pin's row, with the results of the run of the new study only."""
-    rows = [p for p in results.pins if p.pin == sized.pin and p.safety_factor is not None]
-    worst = min(rows, key=lambda p: p.safety_factor or 0.0) if rows else None
+def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
+    """Return a pin's row."""
+    judged = sized.judged
     unit = study.system.factor("length")
     before, after = (
         tuple(d / unit for d in x.table.pin[sized.pin].diameters) for x in (study, new)
@@ -189,12 +213,13 @@ def _row(study: Study, new: Study, sized: SizingResult, results: Results) -> Siz
         before=tuple(dict.fromkeys(before)),
         after=tuple(dict.fromkeys(after)) if sized.scale is not None else None,
         factor_before=sized.before,
-        factor=DASH if worst is None else factor_range(worst, "–"),
-        governs=DASH if worst is None else worst.case,
-        stricter="" if worst is None else _stricter(worst),
+        factor=DASH if judged is None else judged.factor,
+        governs=DASH if judged is None else judged.governs,
+        stricter="" if judged is None else judged.stricter,
         weights=(_weight(study, sized.pin), _weight(new, sized.pin)),
         slenderness=slenderness(pin_of(new, sized.pin)),
-        why=sized.why if sized.scale is None else why_missed(results, sized.pin),
+        why=sized.why or (judged.why if judged else ""),
+        limited=sized.limited,
     )
 
 
@@ -203,50 +228,3 @@ def _weight(study: Study, name: str) -> float | None:
     density = study.table.material[study.table.pin[name].material].density
     heavy = weight(pin_of(study, name), density) if density else None
     return None if heavy is None else heavy / study.system.factor("force")
-
-
-def _stricter(worst: PinResult) -> str:
-    """Describe a hand check with a smaller factor than that of the largest stress, if any."""
-    checks = [c for c in worst.hand_checks if c.safety_factor is not None and c.governs]
-    least = min(checks, key=lambda c: c.safety_factor or 0.0, default=None)
-    if least is None or (least.safety_factor or 0.0) >= (worst.safety_factor or 0.0):
-        return ""
-    return f"{least.method} at {least.at}: {engineering(least.safety_factor)}"
-
-
-def why_missed(results: Results, pin: str) -> str:
-    """Explain why the factor is not shown to be reached, from the run of the new study; empty if it
-    is.
-    """
-    rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
-    singular = [p.case for p in rows if p.verdict == "singular"]
-    if not rows:
-        return "the run of the new study gives no safety factor"
-    missing = [p.case for p in rows if p.outcome == FAILS]
-    depends = [p.case for p in rows if p.outcome == DEPENDS]
-    loose = [p.case for p in rows if p.verdict != "singular" and p.outcome == NOT_DECIDED]
-    if missing:
-        return f"it fails in the run of the new study, case {', '.join(missing)}"
-    if singular:
-        zones = [
-            z.kind for p in rows if p.verdict == "singular" for z in p.singular_at if z.governs
-        ]
-        where = " and ".join(dict.fromkeys(zones))
-        return (
-            f"the factor is reached only outside the excluded zones; in {', '.join(singular)} the "
-            f"stress is singular at {where}, whatever the size; singular_zones.csv of a run lists "
-            "remedies"
-        )
-    if loose:
-        return f"in {', '.join(loose)} the error of the stress leaves it open"
-    check = worst_checks(results)[pin]
-    if check.row is None and check.outcome == FAILS:
-        return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g} in that run"
-    if depends:
-        every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
-        ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
-        places = ["beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
-        places += [f"within the range of the {ranges}"] * bool(ranges)
-        cases = ", ".join(depends)
-        return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"
-    return ""

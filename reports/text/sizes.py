@@ -22,10 +22,11 @@ class SizeRow:
     """The result of sizing a pin.
 
     before, after: its distinct diameters (None: not sized).
-    factor_before, factor: the lowest factor before, and in the run of the new study, as text.
-    governs: the governing case of that run. weights: before and after (None without a density).
+    factor_before, factor: the lowest factor before, roughly, and in the new study, as text.
+    governs: the governing case of that. weights: before and after (None without a density).
     slenderness: length over largest diameter under a link.
     why: the reason why the required factor is not reached, if it is not.
+    limited: whether limits of the study forbid it.
     stricter: a hand check with a smaller factor, if any.
     """
 
@@ -39,10 +40,13 @@ class SizeRow:
     slenderness: float
     why: str = ""
     stricter: str = ""
+    limited: bool = False
 
     @property
     def result(self) -> str:
         """The outcome in words."""
+        if self.limited:
+            return "not reached"
         return "not decided" if self.why else "safe"
 
 
@@ -56,8 +60,9 @@ def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console:
     console.print(
         Text(
             f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
-            f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in a run "
-            "of the new study. Lengths are unchanged; check that the lugs take the new diameters."
+            f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in the "
+            "new study. Lengths and the weights of links are unchanged; check that the links have "
+            "room for the new diameters."
         )
     )
     for line in _remarks(rows):
@@ -82,7 +87,7 @@ def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
         read_only("FoS", lambda row: row.factor),
         read_only("new", lambda row: _joined(row.after) or "unchanged", "length", numeric=False),
         read_only("before", lambda row: _joined(row.before), "length", rank=4, numeric=False),
-        read_only("FoS before", lambda row: row.factor_before, rank=5),
+        read_only("FoS before", lambda row: engineering(row.factor_before, 2), rank=5),
         read_only("weight", lambda row: " → ".join(map(_heavy, row.weights)), "force", rank=2),
         read_only("L/d", lambda row: engineering(row.slenderness, 2), rank=1),
         read_only("governs", lambda row: row.governs, rank=3, numeric=False),

@@ -18,9 +18,10 @@ from pinstress.analysis.results import run
 from pinstress.analysis.solve import solutions
 from pinstress.explore.size.counted import beneath, low_factor, surface_and_section
 from pinstress.explore.size.lightest_pin import WeightGoal, problem_of
+from pinstress.explore.size.pin_answers import design_stress
 from pinstress.explore.size.pin_stress import PinStress
 from pinstress.explore.size.scaled_study import resized_study
-from pinstress.explore.size.size_pin import SizingGoal, design_stress, size_pin
+from pinstress.explore.size.size_pin import SizingGoal, size_pin
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.file import Study, parse_study

@@ -8,12 +8,12 @@ from math import atan2
 
 import numpy as np
 
+from fea.beam.model import BeamField
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.solution import StressField
-from fea.cut.evaluate import CutField
+from fea.core.zone import Zone
 from fea.harmonic.evaluate import HarmonicField
 from fea.harmonic.half_section import MeridianPlane
-from fea.solid.evaluate import SolidField
 from fea.solve.surface_fields import (
     amounts,
     excluded,
@@ -53,11 +53,16 @@ def surfaces_of(
 
 def _unit_fields(answer: StressField | None) -> object:
     """Return the object that answers from one mesh share."""
-    if isinstance(answer, SolidField):
-        return answer.solution.fields
+    if isinstance(answer, HarmonicField):
+        return answer.fields
+    if answer is None or isinstance(answer, BeamField):
+        return None
+    from fea.cut.evaluate import CutField
+    from fea.solid.evaluate import SolidField
+
     if isinstance(answer, CutField):
         return answer.solution
-    return answer.fields if isinstance(answer, HarmonicField) else None
+    return answer.solution.fields if isinstance(answer, SolidField) else None
 
 
 def _surface(
@@ -144,7 +149,14 @@ def _unread(
 
 
 def _zones(answer: StressField) -> Floats:
-    singularities = answer.singularities if isinstance(answer, HarmonicField | CutField) else ()
+    singularities: tuple[Zone, ...] = ()
+    if isinstance(answer, HarmonicField):
+        singularities = answer.singularities
+    else:
+        from fea.cut.evaluate import CutField
+
+        if isinstance(answer, CutField):
+            singularities = answer.singularities
     return np.array([(p.r, p.z, p.radius) for p in singularities]).reshape(-1, 3)
 
 

@@ -134,7 +134,7 @@ def _all(
 def _written(study: Study, aim: WeightGoal, pins: list[Lightest]) -> Study:
     pins = [pin for pin in pins if not pin.kept]
     scales = {pin.pin: pin.scale for pin in pins if pin.scale is not None}
-    scaled = resized_study(study, scales, aim.step, aim.required)
+    scaled = resized_study(study, scales, aim.standard, aim.required)
     values = {pin.pin: pin.values for pin in pins if pin.values is not None}
     shapes = {}
     for name in values:

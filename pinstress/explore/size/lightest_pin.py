@@ -45,6 +45,7 @@ from pinstress.explore.size.pin_stress import (
 )
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.singular_places import decided
+from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.explore.size.written_dimensions import (
     LIMIT_ROUNDING_TOLERANCE,
     MAX_ROUNDING_STEPS,
@@ -94,6 +95,11 @@ class WeightGoal:
     limits: Proportions = field(default_factory=Proportions)
     step: float | None = None
     more: Mapping[tuple[str, str], float] | None = None
+
+    @property
+    def standard(self) -> StandardDiameters | None:
+        """The diameters that are multiples of the step, if there is one."""
+        return None if self.step is None else StandardDiameters(self.step)
 
     def of_pin(self, pin: str) -> dict[str, float]:
         """Return the multiples of the factor that a pin needs, by case."""
@@ -226,7 +232,7 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
     stress.watched = start.decided or frozenset()
 
     def factor_at(scale: float) -> float:
-        solution = stress.of(resized_study(problem.study, {problem.name: scale}, aim.step))
+        solution = stress.of(resized_study(problem.study, {problem.name: scale}, aim.standard))
         if not factors and start.decided is None:
             stress.watched = decided(solution.peaks)
         factors[scale] = problem.required * float(np.exp(-solution.worst))

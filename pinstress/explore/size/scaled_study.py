@@ -11,13 +11,12 @@ from typing import Any
 
 import tomlkit
 
+from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import Study, parse_study
 from pinstress.study.schema.units import UnitSystem, to_si
 
 LENGTH_DIGITS = 4  # of a length that is not rounded to a step
-# Outer diameter over the bore below which an eye that was wider grows with its pin
-MIN_EYE_RATIO = 1.5
 LEADING_NUMBER_PATTERN = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
 # Keys of lengths across the axis; 1 where rounding up is on the safe side.
 TRANSVERSE_LENGTH_KEYS = {
@@ -34,18 +33,18 @@ PUBLISHED_TABLE_KEYS = ("peaks", "reactions", "motion", "values")  # that [publi
 def resized_study(
     study: Study,
     scales: Mapping[str, float],
-    step: float | None = None,
+    standard: StandardDiameters | None = None,
     required: float | None = None,
 ) -> Study:
     """Return the study with pins as `resized` makes them, and with all that depends on them.
 
     Stated weights of floating pins change as their shapes' weights do, and eyes that became
-    narrower than MIN_EYE_RATIO of their bores grow.
+    narrower than [size] eye_ratio of their bores grow.
 
     Raises: InputError for a shape that cannot be.
     """
     return with_what_follows(
-        study, resized(study.text, scales, study.system, step, required), scales
+        study, resized(study.text, scales, study.system, standard, required), scales
     )
 
 
@@ -70,38 +69,38 @@ def resized(
     text: str,
     scales: Mapping[str, float],
     system: UnitSystem,
-    step: float | None = None,
+    standard: StandardDiameters | None = None,
     required: float | None = None,
 ) -> str:
     """Return a study's text with pins (by name) scaled across their axis.
 
     Diameters, bores, fillets, the distances of flats and offsets of passages change; lengths, holes
-    and slots stay. Diameters are rounded up, to a step (m) or to four digits, bores and fillets
-    down; scale 1 without a step changes nothing. Provenance that no longer holds is replaced.
+    and slots stay. Diameters are rounded up, to a standard one or to four digits, bores and fillets
+    down; scale 1 without standard diameters changes nothing. Provenance that no longer holds is
+    replaced.
 
     required: the study's new required factor of safety, if any.
     """
     study = tomlkit.parse(text)
     for name, scale in scales.items():
-        if scale == 1.0 and step is None:
+        if scale == 1.0 and standard is None:
             continue
         table_of_pin: Any = study["pin"][name]
         parts = (*_plain(table_of_pin.get("profile", [])), *_plain(table_of_pin.get("flat", [])))
         for table in (table_of_pin, *parts):
             for key, up in TRANSVERSE_LENGTH_KEYS.items():
                 if key in table:
-                    rounding = step if key == "diameter" else None
+                    diameter = 1.0 if key == "diameter" else None
                     for here, at in _numbers(table, key):
-                        _scale(here, at, scale, system, rounding, up)
+                        _scale(here, at, scale, system, up, standard, diameter)
         for table in _plain(table_of_pin.get("passage", [])):
             for here, at in _numbers(table, "offset"):
-                _scale(here, at, scale, system, None, -1)
+                _scale(here, at, scale, system, -1)
         for key, up in (("meridian", 1), ("bore_meridian", -1)):
             for corner in map(value_of, _plain(table_of_pin.get(key, []))):
-                radius = step / 2.0 if step is not None and up > 0 else None
-                _scale(corner, 1, scale, system, radius, up)
+                _scale(corner, 1, scale, system, up, standard, 0.5 if up > 0 else None)
                 if corner[2:]:
-                    _scale(corner, 2, scale, system, None, -1)
+                    _scale(corner, 2, scale, system, -1)
     require(study, required)
     return tomlkit.dumps(study)
 
@@ -181,14 +180,14 @@ def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
 
 def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
     """Return the outer diameters, m, that eyes about a pin need, by connection, for those that are
-    given and have become too narrow.
+    given, have become too narrow and may grow.
     """
-    out = {}
+    out, allowed = {}, new.table.size
     for at, lug in new.table.pin[name].lug.items():
-        if lug.outer_diameter is None:
+        if lug.outer_diameter is None or not allowed.scale_lugs:
             continue
         before, after = (hole_in_eye(x, name, at) for x in (old, new))
-        least = min(MIN_EYE_RATIO, lug.outer_diameter / before) * after
+        least = min(allowed.eye_ratio, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
             out[at] = least
     return out
@@ -210,11 +209,27 @@ def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:
 
 
 def _scale(
-    table: Any, key: Any, scale: float, system: UnitSystem, step: float | None, up: int
+    table: Any,
+    key: Any,
+    scale: float,
+    system: UnitSystem,
+    up: int,
+    standard: StandardDiameters | None = None,
+    of_diameter: float | None = None,
 ) -> None:
+    """Scale a number of a table.
+
+    up: whether it is rounded up (1) or down (-1).
+    standard: what diameters may be.
+    of_diameter: 1 for a diameter, 0.5 for its half, None for any other length.
+    """
     old = value_of(table[key])
     size, one = to_si(old, "length", system), unit_of(old, "length", system)[1]
-    number = rounded(size / one * scale, None if step is None else step / one, up)
+    if standard is None or of_diameter is None or not size:
+        number = rounded(size / one * scale, None, up)
+    else:
+        diameter = standard.up(size * scale / of_diameter, one)
+        number = float(f"{diameter * of_diameter / one:.12g}")
     if not math.isclose(number * one, size, rel_tol=1e-12):
         replace_number(table, key, number, unit_of(old, "length", system)[0])
 

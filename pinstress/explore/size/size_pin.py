@@ -1,29 +1,56 @@
 """The smallest diameters of every pin that reach a factor of safety.
 
-A pin keeps its lengths, which the links set, and its proportions across the axis. Every trial is a
-study of its own, with the loads that follow from its weights, and solved as any other, so that a
-run of it gives the same result.
+A pin keeps its lengths, which the links set, and its proportions across the axis. The search starts
+from the law of its section and is corrected by secants on quick solutions; the result is solved as
+a run solves it, at most MAX_FULL times.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from fea.core.peak import Maximum, Verdict
 from geometry import ArgumentError
-from pinstress.analysis.plan import Plan, all_loads
-from pinstress.analysis.remedies.secant import NoSizeError, smallest
-from pinstress.analysis.solve import solutions
+from pinstress.analysis.plan import Plan
+from pinstress.analysis.remedies.secant import (
+    FACTOR_TOLERANCE,
+    MAX_SCALE,
+    MAX_SCALE_STEP,
+    MIN_SCALE,
+    MIN_SCALE_RATIO,
+    MIN_SLOPE,
+    NoSizeError,
+)
 from pinstress.explore.size.counted import beneath
-from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.judged_pin import JudgedPin, judged_pin
+from pinstress.explore.size.pin_answers import PinAnswer, SizedStudy, row_stress
+from pinstress.explore.size.section_law import (
+    Accuracy,
+    PinTrial,
+    governing_place,
+    needed_scale,
+    slope,
+)
+from pinstress.explore.size.size_limits import SizeLimit, largest_scale, too_small
+from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import material as material_of
-from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-MAX_SIZING_STEPS = 8  # of diameters rounded to steps, until the factor is reached
+MAX_QUICK, MAX_FULL = 6, 3  # solutions of a pin
+# How much more than the required factor, with its error, is close enough: of pins in contact with
+# lugs, where a full solution takes ten times as long as a quick one, which tells it to 2 %; and of
+# others, half of what counts as close elsewhere, since their error is often as large
+CONTACT_FACTOR_TOLERANCE = 0.02
+PLAIN_FACTOR_TOLERANCE = 0.5 * FACTOR_TOLERANCE
+AIM_SHARE = 0.25  # of that tolerance above the required factor, for only what is not below will do
+QUICK_STEP = 0.03  # of the scale, which is not worth another quick solution
+# Of the factor, by which quick and full solutions may differ: 6 % on the pins of
+# studies/landing_gear.toml
+QUICK_ERROR = 0.07
+NEXT_DIAMETER = 1e-6  # relative, beyond a standard diameter
 
 Tell = Callable[[str], None]
 
@@ -33,8 +60,12 @@ class SizingResult:
     """The size of a pin.
 
     scale: scale at which it reaches the factor, None where it does not, for the reason `why`.
-    before, factor: its factor in the first trial, and then, in the case that governs.
+    before, factor: its factor before, by a rough solution, and then, in the case that governs.
     verdict: verdict of that case.
+    limited: whether limits of the study forbid the factor.
+    judged: its rows in the full solution.
+    others: scales of the other pins in that solution.
+    trials, full: number of solutions, and of full ones among them.
     """
 
     pin: str
@@ -43,129 +74,224 @@ class SizingResult:
     factor: float | None
     verdict: Verdict | None
     why: str = ""
+    limited: bool = False
+    judged: JudgedPin | None = None
+    others: tuple[tuple[str, float], ...] = ()
+    trials: int = 0
+    full: int = 0
 
 
 @dataclass(frozen=True)
 class SizingGoal:
-    """The factor to reach, and the step to which diameters are rounded up, m, if any."""
+    """The factor to reach, and the diameters that pins may have, if not any."""
 
     required: float
-    step: float | None = None
+    standard: StandardDiameters | None = None
+
+
+@dataclass
+class _Search:
+    """The solutions of a pin so far."""
+
+    sized: SizedStudy
+    tell: Tell
+    label: str
+    answers: list[PinAnswer] = field(default_factory=list)
+
+    @property
+    def trials(self) -> list[PinTrial]:
+        return [answer.trial for answer in self.answers]
+
+    @property
+    def full(self) -> list[PinAnswer]:
+        return [answer for answer in self.answers if answer.results is not None]
+
+    def solve(self, scale: float, accuracy: Accuracy) -> PinAnswer:
+        """Solve the pin at a scale."""
+        said = f"{self.label}, trial {len(self.answers) + 1}"
+        how = "full solution" if accuracy == "full" else f"{accuracy} solution"
+        self.tell(f"{said} (pin {self.sized.pin}, {scale:.3f} times its diameters, {how})")
+
+        def tell(doing: str) -> None:
+            self.tell(f"{said}: {doing}")
+
+        counting = self.answers[0].counting if self.answers else None
+        if accuracy == "full":
+            answer = self.sized.full(scale, counting or (), tell)
+        else:
+            answer = self.sized.quick(scale, accuracy, counting, tell)
+        self.answers.append(answer)
+        return answer
 
 
 def size_pin(
     plan: Plan,
     pin: str,
-    wish: SizingGoal,
+    goal: SizingGoal,
     others: Mapping[str, float],
     tell: Tell = lambda _: None,
+    label: str = "",
 ) -> SizingResult:
     """Size one pin for all cases of a plan.
 
     others: scales of the pins so far, also of this one, from which its search begins.
+    label: what progress begins with, "pin 2 of 5".
 
     Failures are reported in the answer.
     """
-    study = plan.study
-    problem = _problem(study, pin)
-    if problem:
+    if problem := _problem(plan.study, pin):
         return SizingResult(pin, None, None, None, None, problem)
-    peaks: dict[float, Maximum] = {}
-    factors: dict[float, float] = {}
-
-    def factor_at(scale: float, rounding: float | None = None) -> float:
-        if rounding is None and scale in factors:
-            return factors[scale]
-        tell(f"pin {pin}, {scale:.3f} times its diameters")
-        trial = resized_study(study, {**others, pin: scale}, rounding)
-        peaks[scale] = governing(plan, trial, pin, tell)
-        factors[scale] = _factor(study, peaks[scale])
-        return factors[scale]
-
-    before: float | None = None
-    start = others.get(pin, 1.0)
+    sized = SizedStudy(plan, pin, goal.required, others, goal.standard)
+    search = _Search(sized, tell, label or f"pin {pin}")
+    result = SizingResult(pin, None, None, None, None)
     try:
-        factor_at(start)
-        before = _nominal(study, peaks[start])
-        best = smallest(factor_at, wish.required, start)
-        scale, factor = best.scale, best.factor
-        if wish.step is not None:
-            least = min(study.table.pin[pin].diameters)
-            scale, factor = _stepped(factor_at, scale, wish.step, least, wish.required)
+        first = search.solve(others.get(pin, 1.0), "rough")
+        result = replace(result, before=_nominal(plan.study, first.worst))
+        result = _verified(search, _quickly(search), result)
     except NoSizeError as error:
-        return SizingResult(pin, None, before, None, None, str(error) + _where(peaks))
+        result = replace(result, why=str(error) + _where(search.answers))
     except (InputError, ArithmeticError, ArgumentError) as error:
-        tried = ", ".join(f"{factor:.4g} at {s:.3g}" for s, factor in factors.items()) or "none"
+        tried = ", ".join(f"{x.factor:.4g} at {x.scale:.3g}" for x in search.trials) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
-        return SizingResult(pin, None, before, None, None, why)
-    return SizingResult(pin, scale, before, factor, peaks[scale].verdict)
+        result = replace(result, why=why)
+    return replace(result, trials=len(search.answers), full=len(search.full))
 
 
-def _where(peaks: Mapping[float, Maximum]) -> str:
+def _close(sized: SizedStudy) -> float:
+    return CONTACT_FACTOR_TOLERANCE if sized.in_lugs else PLAIN_FACTOR_TOLERANCE
+
+
+def _quickly(search: _Search) -> float:
+    """Return the scale that quick solutions need.
+
+    Raises: NoSizeError where no scale will do.
+    """
+    sized = search.sized
+    required, close = sized.required, _close(sized)
+    start = search.trials[0]
+    if sized.standard is None and required <= start.factor <= required * (1.0 + close):
+        return start.scale  # as it is
+    aim, limit = required * (1.0 + AIM_SHARE * close), largest_scale(sized)
+    if limit.scale < MIN_SCALE:
+        raise NoSizeError(f"[size] {limit.reason} leaves no room for it")
+    for _ in range(MAX_QUICK):
+        last = search.trials[-1]
+        scale = _next(search.trials, aim)
+        if last.scale >= limit.scale and scale > limit.scale:
+            break
+        near = abs(scale / last.scale - 1.0) <= QUICK_STEP
+        if near and last.accuracy == "quick":
+            break
+        search.solve(min(scale, limit.scale), "quick")
+    return _next(search.trials, aim)
+
+
+def _next(trials: list[PinTrial], aim: float) -> float:
+    """Return the scale of the next trial.
+
+    Raises: NoSizeError where larger pins hardly help, or there are none.
+    """
+    last, where = trials[-1], governing_place(trials, aim)
+    scale = min(needed_scale(trials, aim), MAX_SCALE_STEP * last.scale)
+    enlarged = len(trials) > 1 and last.scale > MIN_SCALE_RATIO * trials[-2].scale
+    if last.factor < aim and enlarged and slope(trials, where) < MIN_SLOPE:
+        raise NoSizeError(
+            f"with {last.scale:.3g} times its diameters its factor is {last.factor:.4g} and hardly "
+            "grows with them: its bands must be longer, its material stronger or its loads smaller"
+        )
+    if not MIN_SCALE < scale < MAX_SCALE:
+        raise NoSizeError(
+            f"even with {last.scale:.3g} times its diameters its factor is {last.factor:.4g}"
+        )
+    return scale
+
+
+def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResult:
+    """Return the smallest size at which a full solution reaches the factor.
+
+    It is corrected by the ratio of factors, or to the next standard diameter.
+
+    Raises: NoSizeError where none of MAX_FULL full solutions does.
+    """
+    sized, limit = search.sized, largest_scale(search.sized)
+    required, close = sized.required, _close(sized)
+    aim = required * (1.0 + AIM_SHARE * close)
+    for _ in range(MAX_FULL):
+        if scale > limit.scale:
+            last = search.answers[-1]
+            if last.trial.factor < required * (1.0 - QUICK_ERROR):
+                return _limited(search, limit, result)
+            scale = limit.scale
+        answer = search.solve(scale, "full")
+        factor = answer.trial.factor
+        if factor >= required and (sized.standard or factor <= required * (1.0 + close)):
+            break
+        if factor < required and scale == limit.scale:
+            return _limited(search, limit, result)
+        known = [x.trial for x in search.full if (x.trial.factor >= required)]
+        if sized.standard is not None:
+            scale = _next_standard(sized, scale)
+        else:
+            scale = _next(search.trials, aim)
+            # between what is known, where scatter of the error would lead out of it
+            most = min((x.scale for x in known), default=math.inf)
+            least = max((x.trial.scale for x in search.full if x.trial not in known), default=0.0)
+            if not least < scale < most:
+                if known:
+                    break
+                scale = least * (aim / factor)
+    return _reached(search, result)
+
+
+def _reached(search: _Search, result: SizingResult) -> SizingResult:
+    """Return the smallest size that reached the factor.
+
+    Raises: NoSizeError where none did.
+    """
+    sized = search.sized
+    good = [x for x in search.full if x.trial.factor >= sized.required]
+    if not good:
+        last = search.trials[-1]
+        raise NoSizeError(
+            f"the factor is not reached in {MAX_FULL} full solutions: with {last.scale:.4g} times "
+            f"its diameters it is {last.factor:.4g}"
+        )
+    best = min(good, key=lambda answer: answer.trial.scale)
+    assert best.results is not None
+    others = tuple((name, x) for name, x in sized.others.items() if name != sized.pin)
+    return replace(
+        result,
+        scale=best.trial.scale,
+        factor=best.trial.factor,
+        verdict=best.worst.verdict,
+        judged=judged_pin(best.results, sized.pin),
+        others=others,
+    )
+
+
+def _limited(search: _Search, limit: SizeLimit, result: SizingResult) -> SizingResult:
+    last = search.answers[-1]
+    why = too_small(search.sized, limit, last.trial, last.worst)
+    return replace(result, factor=last.trial.factor, why=why, limited=True)
+
+
+def _next_standard(sized: SizedStudy, scale: float) -> float:
+    """Return the scale at which the smallest diameter is the next standard one."""
+    study = sized.plan.study
+    least = min(study.table.pin[sized.pin].diameters)
+    assert sized.standard is not None
+    unit = study.system.factor("length")
+    return sized.standard.up(scale * least, unit) * (1.0 + NEXT_DIAMETER) / least
+
+
+def _where(answers: list[PinAnswer]) -> str:
     """Name the place of the factor where that is not the row's own number, for a pin that was
     solved.
     """
-    if not peaks:
+    if not answers or beneath(answers[-1].worst) < row_stress(answers[-1].worst):
         return ""
-    last = list(peaks.values())[-1]
-    if beneath(last) < design_stress(last):
-        return ""
-    return f"; it is by what lies beneath the contact with its lugs in case {last.case}"
-
-
-def _stepped(
-    factor_at: Callable[[float, float | None], float],
-    scale: float,
-    step: float,
-    diameter: float,
-    required: float,
-) -> tuple[float, float]:
-    """Return a scale at which the factor is reached with diameters rounded up to a step, and the
-    factor.
-    """
-    for _ in range(MAX_SIZING_STEPS):
-        factor = factor_at(scale, step)
-        if factor >= required:
-            return scale, factor
-        scale += step / diameter  # rounding changes proportions, so notches may be sharper
-    raise NoSizeError(f"the factor is not reached within {MAX_SIZING_STEPS} steps of the diameter")
-
-
-def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -> Maximum:
-    """Return the peak with the lowest factor, as it counts, of a pin of `study` in the plan's
-    cases.
-
-    Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
-    """
-    loads = all_loads(study, list(plan.loads))
-    asked = replace(plan.asked, goal="value")
-    peaks: list[Maximum] = []
-    for task in tasks(study, [pin_of(study, pin)], loads):
-        peaks += [solution.peak for solution in solutions(study, task, asked, tell)]
-    for peak in peaks:
-        if peak.verdict == "rigid":
-            raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
-        if peak.verdict == "failed":
-            raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
-    acting = [peak for peak in peaks if peak.max_von_mises]
-    if not acting:
-        raise NoSizeError("no case loads it")
-    return max(acting, key=design_stress)
-
-
-def design_stress(peak: Maximum) -> float:
-    """Return the stress that decides, Pa: the larger of the maximum and that beneath contact, each
-    with its error.
-
-    A singular maximum decides nothing; it is replaced by that outside the excluded zones.
-    """
-    stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end
-    return max(stress or 0.0, beneath(peak))
-
-
-def _factor(study: Study, peak: Maximum) -> float:
-    """Return the factor of that stress."""
-    return _nominal(study, peak) * (peak.max_von_mises or 0.0) / design_stress(peak)
+    case = answers[-1].worst.case
+    return f"; it is by what lies beneath the contact with its lugs in case {case}"
 
 
 def _nominal(study: Study, peak: Maximum) -> float:

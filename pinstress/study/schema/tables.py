@@ -14,6 +14,7 @@ from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import MaterialTable, PinTable
 from pinstress.study.schema.sequence import SequenceTable
 from pinstress.study.schema.shown import as_text
+from pinstress.study.schema.size import SizeTable
 from pinstress.study.schema.types import (
     ANY_CASE,
     CaseName,
@@ -179,6 +180,8 @@ class StudyTable(StrictTable):
     """What `pinstress sweep` varies; `run` ignores it."""
     reliability: ReliabilityTable = ReliabilityTable()
     """What `pinstress reliability` finds; `run` ignores it."""
+    size: SizeTable = SizeTable()
+    """What `pinstress size` may do; `run` ignores it."""
     report: ReportTable = ReportTable()
     """The title block of the report."""
     assumptions: list[str] = []

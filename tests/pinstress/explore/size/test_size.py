@@ -17,6 +17,7 @@ from pinstress.analysis.results import run
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.scaled_study import moved, resized, resized_study
+from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import load_study, parse_study
 from pinstress.study.schema.units import UNIT_SYSTEMS
@@ -91,7 +92,7 @@ profile = [
 flat = [{ z = [0.0, 1.0], distance = 1.23456 }]
 hole = [{ z = 1.0, diameter = 0.5 }]
 """
-    step = 5e-3  # 5 mm
+    step = StandardDiameters(step=5e-3)
     pin = tomllib.loads(resized(text, {"B": 1.11}, UNIT_SYSTEMS["in-lbf-s"], step, 4.0))
     first, second = pin["pin"]["B"]["profile"]
     assert first["diameter"] == {

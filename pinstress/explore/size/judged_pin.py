@@ -1,0 +1,99 @@
+"""What a solution of a new study says of one of its pins: its factor, and why it is not safe."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
+from pinstress.explore.size.counted import beneath_factor, low_factor
+from reports.data.dependence import BENEATH_CONTACT
+from reports.data.headline import worst_checks
+from reports.data.results import PinResult, Results
+from reports.format.numbers import DASH, engineering
+from reports.format.ranges import factor_range
+from reports.format.words import over_words
+
+
+@dataclass(frozen=True)
+class JudgedPin:
+    """A pin in a solution.
+
+    factor: the lowest factor, as text.
+    governs: its case.
+    stricter: a hand check with a smaller factor, if any.
+    why: the reason why the factor is not shown to be reached, empty if it is.
+    cases: the factor that counts in each case, with its error.
+    """
+
+    factor: str
+    governs: str
+    stricter: str
+    why: str
+    cases: tuple[tuple[str, float], ...]
+
+
+def judged_pin(results: Results, pin: str) -> JudgedPin:
+    """Return what results say of a pin."""
+    rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
+    worst = min(rows, key=lambda p: p.safety_factor or 0.0) if rows else None
+    return JudgedPin(
+        DASH if worst is None else factor_range(worst, "–"),
+        DASH if worst is None else worst.case,
+        "" if worst is None else _stricter(worst),
+        why_missed(results, pin),
+        tuple((p.case, factor) for p in rows if (factor := _counted(p)) is not None),
+    )
+
+
+def _counted(row: PinResult) -> float | None:
+    """Return the factor of a row as a size counts it; a singular row without its interval."""
+    if row.verdict == "singular" and row.safety_factor is not None:
+        return min(row.safety_factor, beneath_factor(row))
+    return low_factor(row)
+
+
+def _stricter(worst: PinResult) -> str:
+    """Describe a hand check with a smaller factor than that of the largest stress, if any."""
+    checks = [c for c in worst.hand_checks if c.safety_factor is not None and c.governs]
+    least = min(checks, key=lambda c: c.safety_factor or 0.0, default=None)
+    if least is None or (least.safety_factor or 0.0) >= (worst.safety_factor or 0.0):
+        return ""
+    return f"{least.method} at {least.at}: {engineering(least.safety_factor)}"
+
+
+def why_missed(results: Results, pin: str) -> str:
+    """Explain why the factor is not shown to be reached, from a solution of the new study; empty
+    if it is.
+    """
+    rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
+    singular = [p.case for p in rows if p.verdict == "singular"]
+    if not rows:
+        return "the new study gives no safety factor"
+    missing = [p.case for p in rows if p.outcome == FAILS]
+    depends = [p.case for p in rows if p.outcome == DEPENDS]
+    loose = [p.case for p in rows if p.verdict != "singular" and p.outcome == NOT_DECIDED]
+    if missing:
+        return f"it fails in the new study, case {', '.join(missing)}"
+    if singular:
+        zones = [
+            z.kind for p in rows if p.verdict == "singular" for z in p.singular_at if z.governs
+        ]
+        where = " and ".join(dict.fromkeys(zones))
+        return (
+            f"the factor is reached only outside the excluded zones; in {', '.join(singular)} the "
+            f"stress is singular at {where}, whatever the size; singular_zones.csv of a run lists "
+            "remedies"
+        )
+    if loose:
+        return f"in {', '.join(loose)} the error of the stress leaves it open"
+    check = worst_checks(results)[pin]
+    if check.row is None and check.outcome == FAILS:
+        return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g}"
+    if depends:
+        every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
+        ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
+        places = ["beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
+        places += [f"within the range of the {ranges}"] * bool(ranges)
+        cases = ", ".join(depends)
+        return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"
+    return ""

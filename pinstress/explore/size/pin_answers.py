@@ -1,0 +1,202 @@
+"""A pin of a trial study, solved roughly, quickly or as a run solves it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+from fea.core.peak import Maximum
+from pinbase.memo import Memo
+from pinstress.analysis.engine import QUICK_TOLERANCE
+from pinstress.analysis.gather.gather import results_of
+from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.remedies.secant import NoSizeError
+from pinstress.analysis.solve import judged, solutions
+from pinstress.explore.size.counted import beneath
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.section_law import Accuracy, PinTrial, section_exponent
+from pinstress.explore.size.standard_diameters import StandardDiameters
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from reports.data.results import Results
+
+# Of the largest stress: cases with less are solved until it is decided that they reach the factor
+COUNTING_SHARE = 0.5
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class PinAnswer:
+    """What a solution says of a pin.
+
+    trial: its factors.
+    worst: the maximum that decides the factor.
+    counting: the cases whose stress comes near the largest.
+    results: the rows, of a full solution only.
+    """
+
+    trial: PinTrial
+    worst: Maximum
+    counting: tuple[str, ...]
+    results: Results | None = None
+
+
+@dataclass(frozen=True)
+class SizedStudy:
+    """The study in which a pin is tried.
+
+    plan: of the study as it is.
+    others: scales of the pins so far.
+    required: the factor to reach.
+    memo: of flexibilities and meshes that trials have in common.
+    """
+
+    plan: Plan
+    pin: str
+    required: float
+    others: Mapping[str, float]
+    standard: StandardDiameters | None = None
+    memo: Memo = field(default_factory=Memo)
+
+    def at(self, scale: float, rounded: bool = False) -> Study:
+        """Return the study with the pin at a scale.
+
+        rounded: to standard diameters, if there are any.
+
+        Raises: InputError for a shape that cannot be, NoSizeError for want of a standard diameter.
+        """
+        standard = self.standard if rounded else None
+        scales = {**self.others, self.pin: scale}
+        return resized_study(self.plan.study, scales, standard, self.required)
+
+    @property
+    def in_lugs(self) -> bool:
+        """Whether the pin is in contact with lugs in any case."""
+        return any(task.lugs for task in self.plan.tasks if task.pin.name == self.pin)
+
+    def quick(
+        self, scale: float, accuracy: Accuracy, cases: tuple[str, ...] | None, tell: Tell
+    ) -> PinAnswer:
+        """Solve a pin without what a full solution knows of its error.
+
+        A full solution will have an error within the tolerance, which is counted.
+
+        accuracy: "rough", on few cells of contact, or "quick".
+        cases: by default all.
+        """
+        trial = self.at(scale)
+        plan = self._plan(trial, cases)
+        tolerance = plan.asked.tolerance
+        asked = replace(plan.asked, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE))
+        if accuracy == "rough":
+            asked = replace(asked, cells="rough")
+        elif self.in_lugs:
+            asked = replace(asked, cells="usual")
+        peaks = [
+            solution.peak
+            for task in plan.tasks
+            for solution in solutions(trial, task, asked, tell, self.memo)
+        ]
+        return _answer(scale, accuracy, peaks, plan.tasks, tolerance)
+
+    def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
+        """Solve a pin as a run does, with standard diameters.
+
+        counting: the cases that are solved to the goal of the study; of the others only whether
+        they reach the factor is asked.
+        """
+        plan = self._plan(self.at(scale, rounded=True), None)
+        if plan.study.table.fatigue is None:
+            plan = replace(plan, tasks=[t for x in plan.tasks for t in _split(x, counting)])
+        outcomes = [
+            judged(_with_goal(plan, task, counting), task, tell, self.memo) for task in plan.tasks
+        ]
+        peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
+        answer = _answer(scale, "full", peaks, plan.tasks, None)
+        return replace(answer, results=results_of(plan, outcomes))
+
+    def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
+        plan = prepare(trial, pins=[self.pin], cases=cases or list(self.plan.loads))
+        return replace(plan, asked=replace(plan.asked, memory=self.plan.asked.memory))
+
+
+def _split(task: Task, counting: tuple[str, ...]) -> list[Task]:
+    """Return a task of the cases that count and one of the others."""
+    parts = [tuple(x for x in task.loads if (x.case in counting) == yes) for yes in (True, False)]
+    return [replace(task, loads=part) for part in parts if part]
+
+
+def _with_goal(plan: Plan, task: Task, counting: tuple[str, ...]) -> Plan:
+    if plan.study.table.fatigue is not None or task.loads[0].case in counting:
+        return plan
+    return replace(plan, asked=replace(plan.asked, goal="decide"))
+
+
+def _answer(
+    scale: float,
+    accuracy: Accuracy,
+    peaks: list[Maximum],
+    todo: list[Task],
+    tolerance: float | None,
+) -> PinAnswer:
+    """Return what the maxima of a pin in all cases say.
+
+    tolerance: largest error that counts, relative; None for the error as it is.
+
+    Raises: NoSizeError for a pin that is not solved.
+    """
+    for peak in peaks:
+        if peak.verdict == "rigid":
+            raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")
+        if peak.verdict == "failed":
+            raise NoSizeError(f"the numerical solution failed in case {peak.case}: {peak.note}")
+    acting = [peak for peak in peaks if peak.max_von_mises]
+    if not acting:
+        raise NoSizeError("no case loads it")
+    strength = todo[0].material.yield_strength
+    assert strength is not None  # a pin without strength is refused before
+    stresses = [_stresses(peak, tolerance) for peak in acting]
+    row, below = (max(each) for each in zip(*stresses, strict=True))
+    largest = max(row, below)
+    worst = next(p for p, s in zip(acting, stresses, strict=True) if max(s) == largest)
+    of_row = next(p for p, s in zip(acting, stresses, strict=True) if s[0] == row)
+    section = of_row.places.section if of_row.places else None
+    exponent = section_exponent(todo[0].pin, section)
+    beneath_factor = strength / below if below else float("inf")
+    trial = PinTrial(scale, strength / row, beneath_factor, exponent, accuracy)
+    counting = tuple(
+        peak.case
+        for peak, stress in zip(acting, stresses, strict=True)
+        if max(stress) >= COUNTING_SHARE * largest
+    )
+    return PinAnswer(trial, worst, counting)
+
+
+def _stresses(peak: Maximum, tolerance: float | None) -> tuple[float, float]:
+    """Return the stresses that count, Pa: of the row and beneath contact.
+
+    tolerance: largest error that counts; None for the error as it is.
+    """
+    row, below = row_stress(peak), beneath(peak)
+    if tolerance is None:
+        return row, below
+    contact = peak.places and peak.places.contact
+    if contact:
+        below = min(below, contact.beneath * (1.0 + tolerance))
+    return min(row, (peak.max_von_mises or 0.0) * (1.0 + tolerance)), below
+
+
+def row_stress(peak: Maximum) -> float:
+    """Return the stress of a row that decides, Pa: the maximum with its error.
+
+    A singular maximum decides nothing; it is replaced by that outside the excluded zones.
+    """
+    return (peak.max_von_mises if peak.verdict == "singular" else peak.upper_end) or 0.0
+
+
+def design_stress(peak: Maximum) -> float:
+    """Return the stress that decides, Pa: the larger of that of the row and that beneath contact,
+    each with its error.
+    """
+    return max(row_stress(peak), beneath(peak))

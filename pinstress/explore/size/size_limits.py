@@ -1,0 +1,152 @@
+"""The size that [size] of a study allows a pin, and what would do where that is too small."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from fea.core.peak import Maximum
+from pinstress.explore.size.pin_answers import SizedStudy
+from pinstress.explore.size.scaled_study import hole_in_eye, rounded
+from pinstress.explore.size.section_law import PinTrial
+from pinstress.study.model.lugs import EYE_DIAMETER_RATIO
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import Study
+from reports.format.numbers import engineering, short
+
+MAX_SHEAR_PLANES = 12  # of an arrangement that is proposed
+MAX_WIDENING = 4.0  # of a lug that is proposed, times its width
+ENDLESS = math.inf
+
+
+@dataclass(frozen=True)
+class SizeLimit:
+    """The largest scale of a pin.
+
+    reason: the key that sets it, with its value.
+    """
+
+    scale: float = ENDLESS
+    reason: str = ""
+
+
+def largest_scale(pin: SizedStudy) -> SizeLimit:
+    """Return the largest scale that [size] allows a pin."""
+    return min(_limits(pin), key=lambda limit: limit.scale, default=SizeLimit())
+
+
+def _limits(sized: SizedStudy) -> Iterator[SizeLimit]:
+    study, name = sized.plan.study, sized.pin
+    allowed, table = study.table.size, study.table.pin[name]
+    largest = max(table.diameters)
+    if allowed.largest_diameter is not None:
+        text = f"largest_diameter = {_length(study, allowed.largest_diameter)}"
+        yield SizeLimit(_down(sized, allowed.largest_diameter) / largest, text)
+    if sized.standard is not None and sized.standard.listed:
+        yield SizeLimit(sized.standard.listed[-1] / largest, "series, the last of its list")
+    for at, band in _bands(study, name).items():
+        lug = table.lug.get(at)
+        ring = hole_in_eye(study, name, at) - band if lug else 0.0
+        outer = lug.outer_diameter if lug else None
+        ratio = allowed.eye_ratio if lug is None else EYE_DIAMETER_RATIO
+        if outer is not None:
+            ratio = min(allowed.eye_ratio, outer / (band + ring))
+        eyes = {}
+        if allowed.room is not None:
+            eyes[f"room = {_length(study, allowed.room)}"] = allowed.room
+        if outer is not None and not allowed.scale_lugs:
+            eyes[f"scale_lugs = false, with the eye {at} of {_length(study, outer)}"] = outer
+        for text, eye in eyes.items():
+            yield SizeLimit(_down(sized, eye / ratio - ring) / band, text)
+
+
+def _bands(study: Study, name: str) -> dict[str, float]:
+    """Return the diameters, m, of the bands in eyes."""
+    shape = pin_of(study, name)
+    names = dict.fromkeys((*shape.connections, *study.table.pin[name].lug))
+    return {at: 2.0 * shape.band(at).radius for at in names}
+
+
+def _down(sized: SizedStudy, diameter: float) -> float:
+    """Return the largest diameter, m, that can be written and is at most this one; 0 without."""
+    unit = sized.plan.study.system.factor("length")
+    if diameter <= 0.0:
+        return 0.0
+    if sized.standard is not None:
+        return sized.standard.down(diameter, unit)
+    return rounded(diameter / unit, None, -1) * unit
+
+
+def _length(study: Study, length: float) -> str:
+    return f"{short(length / study.system.factor('length'))} {study.system.length}"
+
+
+def too_small(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximum) -> str:
+    """Explain why a pin does not reach its factor within a limit, and what would do instead.
+
+    trial: at the limit. worst: its largest stress.
+    """
+    study, required = sized.plan.study, sized.required
+    diameters = [limit.scale * d for d in study.table.pin[sized.pin].diameters]
+    about = "" if trial.accuracy == "full" else "about "
+    text = (
+        f"[size] {limit.reason} limits it to {_length(study, max(diameters))} across, where its "
+        f"factor is {about}{engineering(trial.factor)} instead of {short(required)}"
+    )
+    return f"{text}; instead, one of: {'; '.join(_instead(sized, limit, trial, worst))}"
+
+
+def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximum) -> Iterator[str]:
+    """Yield what would reach the factor at the limit, each alone.
+
+    Stress is proportional to the loads, and to 1 / time of an impulse. With n shear planes instead
+    of m, moment and shear force of a section are m / n of what they were; beneath contact, pressure
+    is force over diameter and width.
+    """
+    study, required = sized.plan.study, sized.required
+    more = required / trial.factor
+    strength = study.table.material[study.table.pin[sized.pin].material].yield_strength or 0.0
+    stress = study.system.factor("stress")
+    yield (
+        f"a yield strength of {engineering(strength * more / stress)} {study.system.stress}, "
+        f"not {engineering(strength / stress)}"
+    )
+    tasks = [t for t in sized.plan.tasks if t.pin.name == sized.pin and worst.case in t.impulses]
+    if tasks:
+        time = tasks[0].impulses[worst.case].time
+        unit = study.system.time
+        yield f"an impulse in {worst.case} of {engineering(time * more)} {unit}, not {short(time)}"
+    else:
+        yield f"{engineering(1.0 / more)} times the loads of {worst.case}"
+    if arrangement := _arrangement(sized, trial):
+        yield arrangement
+    if limit.scale != ENDLESS:
+        larger = limit.scale * max(
+            (required / x) ** (1.0 / e)
+            for x, e in ((trial.row, trial.exponent), (trial.beneath, trial.exponent_at("beneath")))
+        )
+        largest = larger * max(study.table.pin[sized.pin].diameters)
+        across = engineering(largest / study.system.factor("length"), 2)
+        yield f"limits that allow about {across} {study.system.length} across"
+
+
+def _arrangement(sized: SizedStudy, trial: PinTrial) -> str:
+    """Return the shear planes and the width of the lugs that would do, empty where none can be
+    built.
+    """
+    required, parts = sized.required, []
+    planes = len(_bands(sized.plan.study, sized.pin)) - 1
+    if trial.row < required:
+        if planes < 1:
+            return ""
+        more = planes + 2 * math.ceil(0.5 * planes * (required / trial.row - 1.0))
+        if more > MAX_SHEAR_PLANES:
+            return ""
+        parts.append(f"about {more} shear planes, not {planes}, of the same width in all")
+    if trial.beneath < required:
+        wider = required / trial.beneath
+        if wider > MAX_WIDENING:
+            return ""
+        parts.append(f"lugs about {engineering(wider, 2)} times as wide in all")
+    return " and ".join(parts)

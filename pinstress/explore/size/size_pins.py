@@ -1,0 +1,150 @@
+"""All pins of a study sized, until the loads of all the others no longer change their factors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel
+from pinstress.analysis.plan import Plan, all_loads
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import Study
+
+MAX_SIZING_PASSES = 4
+
+Finished = Callable[[SizingResult], None]
+
+
+def size_pins(
+    plan: Plan,
+    goal: SizingGoal,
+    before: Sequence[SizingResult],
+    finished: Finished,
+    jobs: int,
+    progress: Progress,
+) -> list[SizingResult]:
+    """Size the pins of a plan.
+
+    Weights of pins change the loads of others, so a pin is sized again where the loads in the new
+    study could take it below the factor. Weights of links stay.
+
+    before: pins that were sized earlier.
+    finished: called with every pin as soon as it is sized.
+    """
+    names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
+    sized = {result.pin: result for result in before if result.pin in names}
+    todo = [name for name in names if name not in sized]
+    for _ in range(MAX_SIZING_PASSES):
+        _size(plan, goal, names, todo, sized, finished, jobs, progress)
+        todo = loaded_more(plan, goal, list(sized.values()))
+        if not todo:
+            break
+    for name in todo:
+        why = "the loads still change with the sizes of other pins: size the new study again"
+        sized[name] = replace(sized[name], judged=None, scale=None, why=why)
+    return [sized[name] for name in names]
+
+
+def new_study(study: Study, goal: SizingGoal, sized: Sequence[SizingResult]) -> Study:
+    """Return the study with the sizes of pins."""
+    scales = {result.pin: result.scale for result in sized if result.scale is not None}
+    return resized_study(study, scales, goal.standard, goal.required)
+
+
+def _size(
+    plan: Plan,
+    goal: SizingGoal,
+    names: list[str],
+    todo: list[str],
+    sized: dict[str, SizingResult],
+    finished: Finished,
+    jobs: int,
+    progress: Progress,
+) -> None:
+    scales = {x.pin: x.scale for x in sized.values() if x.scale is not None}
+    work = [
+        Job(f"pin {name}", partial(_job, plan, name, goal, scales, _label(names, name)))
+        for name in todo
+    ]
+
+    def done(number: int, outcome: SizingResult | ProcessDied) -> None:
+        name = todo[number]
+        if isinstance(outcome, ProcessDied):
+            outcome = SizingResult(name, None, None, None, None, outcome.reason)
+        first = sized.get(name)
+        sized[name] = outcome if first is None else replace(outcome, before=first.before)
+        finished(sized[name])
+
+    in_parallel(work, jobs, progress, done=done)
+
+
+def _job(
+    plan: Plan,
+    name: str,
+    goal: SizingGoal,
+    scales: Mapping[str, float],
+    label: str,
+    tell: Callable[[str], None],
+) -> SizingResult:
+    return size_pin(plan, name, goal, scales, tell, label)
+
+
+def _label(names: list[str], name: str) -> str:
+    return f"pin {names.index(name) + 1} of {len(names)}"
+
+
+def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> list[str]:
+    """Return the pins whose loads in the new study could take them below the factor.
+
+    Stress grows at most with the largest force, or with what is added to it at any instant.
+    """
+    new, cases = new_study(plan.study, goal, sized), list(plan.loads)
+    after: dict[str, CaseLoads] | None = None
+    out = []
+    for result in sized:
+        if result.scale is None or result.judged is None:
+            continue
+        solved = resized_study(
+            plan.study,
+            {**dict(result.others), result.pin: result.scale},
+            goal.standard,
+            goal.required,
+        )
+        if solved.table.mechanism == new.table.mechanism:
+            continue
+        after = after or all_loads(new, cases)
+        change = changes_of_load(new, result.pin, all_loads(solved, cases), after)
+        if any(
+            factor / (1.0 + change.get(case, 0.0)) < goal.required
+            for case, factor in result.judged.cases
+        ):
+            out.append(result.pin)
+    return out
+
+
+def changes_of_load(
+    study: Study, pin: str, before: Mapping[str, CaseLoads], after: Mapping[str, CaseLoads]
+) -> dict[str, float]:
+    """Return the relative change of the loads on a pin, by case."""
+    out = {}
+    for case, loads in after.items():
+        named = [c for c in pin_of(study, pin).connections if c in loads.reactions.connections]
+        if not named:
+            continue
+        old, new = (
+            np.stack([x[case].reactions.in_pin_axes(c) for c in named], axis=1)
+            for x in (before, after)
+        )
+        largest = float(np.linalg.norm(old, axis=-1).max())
+        if old.shape == new.shape:
+            more = float(np.linalg.norm(new - old, axis=-1).max())
+        else:  # the motion is resolved at other instants
+            more = abs(float(np.linalg.norm(new, axis=-1).max()) - largest)
+        out[case] = more / largest if largest else float(more > 0.0)
+    return out

@@ -1,0 +1,104 @@
+"""[size] of a study: what limits a pin, and what is proposed where that is too small."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pinstress.analysis.plan import prepare
+from pinstress.explore.size.pin_answers import SizedStudy
+from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.size_limits import largest_scale, too_small
+from pinstress.explore.size.standard_diameters import standard_diameters
+from pinstress.study.reading.file import Study, parse_study
+from tests.conftest import ROOT
+from tests.support.each import each
+from tests.support.programs.command_line import QUICK, run_here
+
+CLEVIS = (ROOT / "studies" / "clevis.toml").read_text()  # a pin of 20 mm in eyes of 50 mm
+
+
+def clevis(lines: str) -> Study:
+    return parse_study(ROOT / "studies" / "clevis.toml", f"{CLEVIS}\n[size]\n{lines}\n")
+
+
+def sized(study: Study, required: float = 10.0) -> SizedStudy:
+    return SizedStudy(prepare(study), "P", required, {}, standard_diameters(study.table.size))
+
+
+@each(
+    ("lines", "largest"),
+    [
+        ("largest_diameter = 30", 30.0),
+        ("largest_diameter = 30\nseries = 'R10'", 25.0),
+        ("series = [16, 22, 27]", 27.0),
+        ("room = 60", 40.0),  # of 1.5 times the bore
+        ("room = 60\neye_ratio = 2", 30.0),
+        ("room = 60\neye_ratio = 4", 24.0),  # the eye has only 2.5, and keeps it
+        ("scale_lugs = false", 33.33),  # rounded down to four digits
+        ("scale_lugs = false\nroom = 45\nlargest_diameter = 32", 30.0),
+    ],
+)
+def test_the_largest_diameter_by_hand(lines: str, largest: float) -> None:
+    """Of the clevis pin, 20 mm in eyes of 50 mm without bushings."""
+    limit = largest_scale(sized(clevis(lines)))
+    assert 20.0 * limit.scale == pytest.approx(largest, rel=1e-9)
+    assert limit.reason.split(" =")[0].split(",")[0] in lines
+
+
+def test_eyes_stay_where_they_may_not_grow() -> None:
+    for lines, outer in (("", 0.06), ("eye_ratio = 2", 0.08), ("scale_lugs = false", 0.05)):
+        eye = resized_study(clevis(lines), {"P": 2.0}).table.pin["P"].lug["EYE"]
+        assert eye.outer_diameter == pytest.approx(outer)
+
+
+def test_a_pin_within_limits_is_not_a_number_nobody_can_build(tmp_path: Path) -> None:
+    """Status 1, no study, and what would do instead: a strength by hand, from the factor."""
+    (tmp_path / "study.toml").write_text(f"{QUICK}\n[size]\nlargest_diameter = 2\n")
+    told = run_here("size", "study.toml", "--fos", "200", "--jobs", "1", cwd=tmp_path)
+    assert told.returncode == 1
+    assert not (tmp_path / "study_sized.toml").exists()
+    assert not (tmp_path / "study_sized.toml.unfinished").exists()
+    assert "not reached" in told.stdout
+    said = " ".join(told.stderr.split())
+    match = re.search(
+        r"largest_diameter = 2 in limits it to 2 in across, where its factor is (about )?([\d.]+) "
+        r"instead of 200; instead, one of: a yield strength of ([\d,.e+]+) psi, not ([\d,]+);",
+        said,
+    )
+    assert match is not None, said
+    factor, strength, given = (float(match[k].replace(",", "")) for k in (2, 3, 4))
+    assert strength / given == pytest.approx(200.0 / factor, rel=0.02)
+
+
+def test_diameters_of_a_series(tmp_path: Path) -> None:
+    """Every diameter is one of the list, the factor is reached, and the next smaller is not."""
+    text = f"{QUICK}\n[size]\nseries = [0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.5, 3]\n"
+    (tmp_path / "study.toml").write_text(text)
+    told = run_here("size", "study.toml", "--fos", "10", "--jobs", "1", cwd=tmp_path)
+    assert told.returncode == 0, told.stderr
+    profile = tomllib.loads((tmp_path / "study_sized.toml").read_text())["pin"]["B"]["profile"]
+    diameters = [segment["diameter"] for segment in profile]
+    assert set(diameters) <= {0.75, 1.0, 1.25, 1.5, 1.75, 2.0}
+    # without a series it is 0.8581 in, by `size` itself (tests/pinstress/explore/size/test_size.py)
+    assert min(diameters) == 1.0
+
+
+def test_what_would_do_by_hand() -> None:
+    """A pin whose sections have half the factor: twice the shear planes; beneath contact a third:
+    three times the width.
+    """
+    from fea.core.peak import Maximum
+    from pinstress.explore.size.section_law import PinTrial
+
+    pin = sized(clevis("largest_diameter = 30"))
+    limit = largest_scale(pin)
+    worst = Maximum("P", "pull", "harmonic", "converged", "")
+    text = too_small(pin, limit, PinTrial(limit.scale, 5.0, 10.0 / 3.0, 2.0, "quick"), worst)
+    assert "its factor is about 3.333 instead of 10" in text
+    assert "about 4 shear planes, not 2, of the same width in all" in text
+    assert "lugs about 3.0 times as wide in all" in text
+    assert "0.3333 times the loads of pull" in text
