@@ -41,6 +41,7 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw
 from reports.data.results import PinResult
 
+MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes
 MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # that are remembered, loads of each case
 TABLES_WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
 IGNORED_TABLES = ("vary", "published", "beam_check", "motion_check", "report")
@@ -137,7 +138,7 @@ class Evaluator:
         self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
             MAX_REMEMBERED_LOADS * len(self._cases)
         )
-        self.memo = Memo()
+        self.memo = Memo(MAX_MESHES_SIZE)
         self._rows = Recent[str, tuple[PinResult, ...]](MAX_REMEMBERED_ROWS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
