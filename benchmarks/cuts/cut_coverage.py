@@ -133,8 +133,8 @@ def _code() -> str:
 def _trial(trial: CutTrial) -> Inside | None:
     """None where the whole pin is solid, or the maximum at a singularity."""
     start = time.process_time()
-    asked = Requirement(TOLERANCE)
-    found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)[0].peak
+    requirement = Requirement(TOLERANCE)
+    found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), requirement)[0].peak
     spent = time.process_time() - start
     if found.model != "harmonic+local" or found.verdict == "singular":
         return None

@@ -108,8 +108,10 @@ def _model(trial: PinTrial, size: Resolution) -> ContactModel:
 
 def _stress(model: ContactModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
     """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
-    asked = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
-    (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), asked, first=model.first)
+    requirement = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
+    (found,) = solve_pin(
+        model.pin, model.material, (), (contact.loads,), requirement, first=model.first
+    )
     assert isinstance(found.answer, HarmonicField)
     history = [step.max_von_mises for step in found.peak.history]
     below = beneath(found.answer.fields, contact.loads, found.answer.singularities).value

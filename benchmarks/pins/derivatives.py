@@ -91,8 +91,8 @@ def timed(work: Callable[[], T]) -> tuple[T, float]:
     return made, time.process_time() - start
 
 
-def _solved(trial: Trial, asked: Requirement) -> SolvedCase:
-    (found,) = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)
+def _solved(trial: Trial, requirement: Requirement) -> SolvedCase:
+    (found,) = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), requirement)
     assert isinstance(found.answer, HarmonicField)
     assert found.peak.governing is not None
     zones = found.answer.singularities

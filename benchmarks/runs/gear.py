@@ -95,7 +95,7 @@ def _peaks(plans: Sequence[Plan], processes: int) -> list[tuple[bytes, Maximum]]
     def job(plan: Plan, task: Task) -> Job[list[Maximum]]:
         def solve(_: Tell) -> list[Maximum]:
             steel = _material(plan, task.pin.name)
-            found = solve_pin(task.pin, steel, task.clamps, task.loads, plan.asked)
+            found = solve_pin(task.pin, steel, task.clamps, task.loads, plan.requirement)
             return [s.peak for s in found]
 
         return Job(task.pin.name, solve)

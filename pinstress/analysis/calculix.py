@@ -19,7 +19,7 @@ def ask_calculix(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tupl
 
 def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
     """Return the opinions on a pin with prescribed clamps and loads."""
-    distance = plan.asked.distance
+    distance = plan.requirement.distance
     try:
         return second_opinions(
             task.pin, task.material, task.clamps, task.loads, solved.peaks, distance, tell

@@ -96,7 +96,7 @@ def _together(plan: Plan, jobs: int) -> int:
     """Return the number of jobs that fit the memory, if all were solids of the largest size."""
     if not any(_effort(plan, task)[0] for task in plan.tasks):
         return jobs
-    room = allowed_memory(plan.asked.memory) / solid_memory(SOLID_MESHES.max_unknowns)
+    room = allowed_memory(plan.requirement.memory) / solid_memory(SOLID_MESHES.max_unknowns)
     return max(1, min(jobs, int(room)))
 
 
@@ -105,7 +105,7 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
     Lugs at connections, which move more than those of the structure, count twice.
     """
-    solid = plan.asked.model == "solid" or not task.pin.revolved
+    solid = plan.requirement.model == "solid" or not task.pin.revolved
     lugs = len(task.lugs) + sum(lug.connection in task.pin.connections for lug in task.lugs)
     return solid, lugs, len(task.loads), sum(map(len, task.loads))
 
@@ -155,7 +155,7 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: T
 
 
 def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
-    name, model = task.pin.name, plan.asked.model
+    name, model = task.pin.name, plan.requirement.model
     peaks = tuple(Maximum(name, case.case, model, "failed", reason) for case in task.loads)
     return _assessed(plan, task, PinOutcome(peaks))
 
@@ -167,7 +167,7 @@ def _assessed(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
 
 
 def solutions(
-    study: Study, task: Task, asked: Requirement, tell: Tell, first: FirstMesh | None = None
+    study: Study, task: Task, requirement: Requirement, tell: Tell, first: FirstMesh | None = None
 ) -> tuple[Solution, ...]:
     """Return the solutions of a task's cases.
 
@@ -179,7 +179,7 @@ def solutions(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         first or FirstMesh(),
     )  # fmt: skip
-    return solve(problem, replace(asked, joints=_joints(study, task)), tell)
+    return solve(problem, replace(requirement, joints=_joints(study, task)), tell)
 
 
 def _joints(study: Study, task: Task) -> Joints:
@@ -193,7 +193,7 @@ def _joints(study: Study, task: Task) -> Joints:
 
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     study = plan.study
-    solved = solutions(study, task, plan.asked, tell)
+    solved = solutions(study, task, plan.requirement, tell)
     pressures = [solution.pressure for solution in solved]
     for solution, pressure in zip(solved, pressures, strict=True):
         case = plan.loads[solution.peak.case]
@@ -215,10 +215,10 @@ def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.asked, task, solved)
+    to_do = change(plan.requirement, task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
+    sensitive = sensitivities(study, plan.requirement, task, solved, step, plan.sensitive)
     limits = limit_loads(plan, task, solved, tell)
     return PinOutcome(
         peaks,
@@ -255,5 +255,5 @@ def _around(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> tuple[JointRe
         none = JointResult("prescribed", remark=around.why)
         return tuple(none if here is not None else None for here in loads)
     return prescribed_ranges(
-        around.pin, task.material, around.lugs, loads, (plan.asked.distance, around.assumed)
+        around.pin, task.material, around.lugs, loads, (plan.requirement.distance, around.assumed)
     )

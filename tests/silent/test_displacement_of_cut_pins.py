@@ -44,9 +44,11 @@ def loaded(force: list[float], moment: list[float] | None = None) -> PinLoads:
     return PinLoads("c", ("B",), np.array([[force]]), np.array([[moment or [0.0, 0.0, 0.0]]]))
 
 
-def shown(pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, asked: Requirement) -> Picture:
+def shown(
+    pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, requirement: Requirement
+) -> Picture:
     """The surface at its governing instant."""
-    (solution,) = solve_pin(pin, STEEL, clamps, (loads,), asked)
+    (solution,) = solve_pin(pin, STEEL, clamps, (loads,), requirement)
     assert solution.answer is not None
     picture = solution.answer.picture(solution.loads, solution.instant)
     assert picture is not None

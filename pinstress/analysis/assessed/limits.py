@@ -27,11 +27,11 @@ UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that wa
 
 def limit_rung(study: Study, pin: str) -> Rung | None:
     """Return the model for the limit loads of a pin, None where they are not requested."""
-    asked = study.table.analysis.limit_load
-    if isinstance(asked, list):
-        return "solid" if pin in asked else None
+    requested = study.table.analysis.limit_load
+    if isinstance(requested, list):
+        return "solid" if pin in requested else None
     rungs: dict[str, Rung | None] = {"auto": "auto", "always": "solid", "never": None}
-    return rungs[asked]
+    return rungs[requested]
 
 
 def rung_of(plan: Plan, pin: str) -> Rung | None:
@@ -41,8 +41,8 @@ def rung_of(plan: Plan, pin: str) -> Rung | None:
 
 def limit_seconds(plan: Plan) -> float:
     """Return the processor time that a limit load may take, s; infinite where it was requested."""
-    asked = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
-    return inf if asked else UNASKED_LIMIT_LOAD_SECONDS
+    requested = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
+    return inf if requested else UNASKED_LIMIT_LOAD_SECONDS
 
 
 def limit_loads(
@@ -69,7 +69,7 @@ def _limit_load(
     clamps = tuple(pin.surface(name) for name in task.clamps)
     seconds = limit_seconds(plan)
     try:
-        return limit_load(pin, task.material, clamps, loads, rung, plan.asked.memory, seconds)
+        return limit_load(pin, task.material, clamps, loads, rung, plan.requirement.memory, seconds)
     except ArithmeticError as error:  # the elastic answer stands
         return LimitLoad("none", note=str(error))
 

@@ -81,7 +81,7 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     beam = next((outcome.beam for outcome in outcomes if outcome.beam is not None), None)
-    results = _results(study, plan.loads, rows, beam, plan.published, plan.asked.tolerance)
+    results = _results(study, plan.loads, rows, beam, plan.published, plan.requirement.tolerance)
     landing = {(r.pin, r.case): r for outcome in outcomes for r in outcome.landing}
     fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(

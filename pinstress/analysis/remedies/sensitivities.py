@@ -53,7 +53,7 @@ NOT_AXISYMMETRIC_NOTE = "no derivatives, only of bodies of revolution: solve the
 
 def sensitivities(
     study: Study,
-    asked: Requirement,
+    requirement: Requirement,
     task: Task,
     solutions: Iterable[Solution],
     step: float,
@@ -69,7 +69,7 @@ def sensitivities(
     return tuple(
         _of_lugs(study, task, s, step if every else None)
         if task.lugs
-        else _of_case(asked, task, s, dimensions, step)
+        else _of_case(requirement, task, s, dimensions, step)
         for s in ranked[: None if every else 1]
     )
 
@@ -122,7 +122,7 @@ def governing_place(peak: Maximum) -> Place:
 
 
 def differentiated(
-    asked: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
+    requirement: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> Derivatives | None:
     """Return the derivatives of a solution's maximum; None where it has none.
 
@@ -138,7 +138,7 @@ def differentiated(
         section, zones, history = answer.solution, answer.singularities, solution.loads
     elif isinstance(answer, BeamField):
         case = (peak.governing,)
-        zones = singularities_of(pin, task.material, clamps, case, asked.distance)
+        zones = singularities_of(pin, task.material, clamps, case, requirement.distance)
         section = harmonic_solution(
             SectionProblem(pin, task.material, clamps, case, zones), 0, MESH_RATIO
         )
@@ -167,7 +167,7 @@ def scaled(gradient: Derivatives, maximum: float) -> Derivatives:
 
 
 def _of_case(
-    asked: Requirement,
+    requirement: Requirement,
     task: Task,
     solution: Solution,
     dimensions: tuple[Dimension, ...],
@@ -180,7 +180,7 @@ def _of_case(
     if not isinstance(task.pin, Pin):
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:
-        gradient = differentiated(asked, task, solution, dimensions)
+        gradient = differentiated(requirement, task, solution, dimensions)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
     if gradient is None or peak.governing is None:

@@ -61,7 +61,7 @@ class ChartPlan:
 
     study: Study
     problem: Problem | JointProblem
-    asked: Requirement
+    requirement: Requirement
     peak: Maximum
     beam_error: float | None = None
     chosen: JointRung | None = None
@@ -76,14 +76,14 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     loads = all_loads(study, select(study.table.case, [case], "case", "case"))
     (task,) = tasks(study, [pin_of(study, pin)], loads)
     table = study.table.analysis
-    asked = Requirement(
+    requirement = Requirement(
         require_tolerance(tolerance) or table.tolerance,
         goal=table.goal,
         required=table.required_safety_factor,
         distance=table.excluded_distance,
     )
     if task.lugs:
-        return _plan_in_lugs(study, task, asked)
+        return _plan_in_lugs(study, task, requirement)
     clamps = tuple(task.pin.surface(c) for c in task.clamps)
 
     def first(model: Requirement) -> Solution:
@@ -92,17 +92,17 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
         )
         return solutions[0]
 
-    solution = first(replace(asked, meshes=1))
+    solution = first(replace(requirement, meshes=1))
     peak = solution.peak
-    problem = Problem(task.pin, task.material, clamps, solution.loads, asked.distance)
+    problem = Problem(task.pin, task.material, clamps, solution.loads, requirement.distance)
     _require_stress(study, peak)
     beam_error = None
     if isinstance(task.pin, Pin):
         with suppress(ValueError, ArithmeticError):  # the chart will say why
-            beam = first(replace(asked, model="beam")).peak
+            beam = first(replace(requirement, model="beam")).peak
             if beam.max_von_mises and beam.error_estimate is not None:
                 beam_error = beam.error_estimate / beam.max_von_mises
-    return ChartPlan(study, problem, asked, peak, beam_error)
+    return ChartPlan(study, problem, requirement, peak, beam_error)
 
 
 def _require_stress(study: Study, peak: Maximum) -> None:
@@ -112,7 +112,7 @@ def _require_stress(study: Study, peak: Maximum) -> None:
         raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
 
 
-def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
+def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPlan:
     """Return the plan for a pin in its lugs, solved as a run would."""
     if not isinstance(task.pin, Pin):
         raise study.error(
@@ -122,7 +122,7 @@ def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
             code="not-axisymmetric",
         )
     given = PinProblem(task.pin, task.material, task.lugs, task.loads, task.between)
-    (solution,) = solve_in_lugs(given, asked)
+    (solution,) = solve_in_lugs(given, requirement)
     _require_stress(study, solution.peak)
     assert solution.joint is not None
     loads = solution.loads
@@ -132,10 +132,10 @@ def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
         task.lugs,
         loads.links if isinstance(loads, PressureLoads) else loads,
         solution.instant,
-        asked.distance,
+        requirement.distance,
     )
     end = chosen_in_lugs(problem, solution.peak, solution.joint)
-    return ChartPlan(study, problem, asked, solution.peak, chosen=end)
+    return ChartPlan(study, problem, requirement, solution.peak, chosen=end)
 
 
 def chart(
@@ -162,7 +162,7 @@ def chart(
         progress(message, min(behind / about, 1.0))
         behind += 1
 
-    climb = Climb(plan.problem, plan.asked, plan.peak.model, measure, runs, tell)
+    climb = Climb(plan.problem, plan.requirement, plan.peak.model, measure, runs, tell)
     if plan.chosen is not None:
         climb_in_lugs(climb, plan.chosen, calculix)
         rung, seen, cells = contact_reference(climb)
@@ -224,7 +224,7 @@ def _joined(
         pin=plan.problem.pin.name,
         case=plan.problem.loads.case,
         stress_unit=plan.study.system.stress,
-        tolerance=plan.asked.tolerance,
+        tolerance=plan.requirement.tolerance,
         points=tuple(points),
         reference=Reference(
             at.model, name(at), best.unknowns,

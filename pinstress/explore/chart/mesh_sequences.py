@@ -37,7 +37,7 @@ class Climb:
     """
 
     problem: Problem | JointProblem
-    asked: Requirement
+    requirement: Requirement
     auto: str
     measure: Measure
     runs: int
@@ -75,7 +75,7 @@ class Climb:
 
     def enough(self, model: str, results: tuple[MeshMaximum, ...]) -> bool:
         """Return whether a run of the model would end here."""
-        return accurate_enough(self.asked, self.problem.material, self.seen(model, results))
+        return accurate_enough(self.requirement, self.problem.material, self.seen(model, results))
 
     def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
         """Return successive meshes as a history, as a run sees them."""

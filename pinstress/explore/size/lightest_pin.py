@@ -263,8 +263,8 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
             if any(kind_of(d.key) == kind for d in dimensions_of(study, shaft))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
-    asked = replace(plan.asked, goal="value")
-    return SizingProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
+    requirement = replace(plan.requirement, goal="value")
+    return SizingProblem(study, pin, shape, requirement, plan.loads, aim.required, aim.of_pin(pin))
 
 
 class _Search:

@@ -68,7 +68,7 @@ class SizingProblem:
     """A pin of a study under loads that do not change.
 
     shape: its shape.
-    asked: requirements on the solution.
+    requirement: requirements on the solution.
     loads: by case.
     required: the factor.
     more: by case, the multiple of the required factor that is needed there, mostly 1.
@@ -77,7 +77,7 @@ class SizingProblem:
     study: Study
     name: str
     shape: VariedShape
-    asked: Requirement
+    requirement: Requirement
     loads: dict[str, CaseLoads]
     required: float
     more: dict[str, float]
@@ -236,10 +236,10 @@ class PinStress:
         stresses: list[tuple[_Found, float]] = []
         singular: list[CasePlace] = []
         under: list[CasePlace] = []
-        asked = replace(self.problem.asked, cells=cells)
+        requirement = replace(self.problem.requirement, cells=cells)
         try:
             for task in self._tasks(study, values):
-                for peak, parts in self._of_task(study, task, asked, values is not None):
+                for peak, parts in self._of_task(study, task, requirement, values is not None):
                     peaks.append(peak)
                     allowed = self._allowed(task, peak)
                     stresses += [(part, allowed) for part in parts]
@@ -297,14 +297,14 @@ class PinStress:
         return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
 
     def _of_task(
-        self, study: Study, task: Task, asked: Requirement, differentiated: bool
+        self, study: Study, task: Task, requirement: Requirement, differentiated: bool
     ) -> Iterator[tuple[Maximum, list[_Found]]]:
         """Yield the peaks, each with the stresses of its parts."""
         if differentiated and not isinstance(task.pin, Pin):
             raise UndifferentiatedError
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
-        for solution in solutions(study, task, asked, lambda _: None):
+        for solution in solutions(study, task, requirement, lambda _: None):
             self.in_contact |= solution.rings is not None
             peak = solution.peak
             _require_solved(peak)
@@ -345,7 +345,7 @@ class PinStress:
         if not isinstance(answer, HarmonicField):
 
             def whole() -> Floats:
-                derivatives = differentiated(self.problem.asked, task, solution, dimensions)
+                derivatives = differentiated(self.problem.requirement, task, solution, dimensions)
                 if derivatives is None:
                     raise SolveError("no derivatives", "no-derivatives")
                 slope = np.array([derivatives.by_dimension.get(d.key, 0.0) for d in dimensions])

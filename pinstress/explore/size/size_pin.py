@@ -138,10 +138,10 @@ def governing(plan: Plan, study: Study, pin: str, tell: Tell = lambda _: None) -
     Raises: InputError for a shape that cannot be, NoSizeError when the pin is not solved.
     """
     loads = all_loads(study, list(plan.loads))
-    asked = replace(plan.asked, goal="value")
+    requirement = replace(plan.requirement, goal="value")
     peaks: list[Maximum] = []
     for task in tasks(study, [pin_of(study, pin)], loads):
-        peaks += [solution.peak for solution in solutions(study, task, asked, tell)]
+        peaks += [solution.peak for solution in solutions(study, task, requirement, tell)]
     for peak in peaks:
         if peak.verdict == "rigid":
             raise NoSizeError(f"it is unconstrained in case {peak.case}: {peak.note}")

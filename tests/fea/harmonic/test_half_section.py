@@ -28,8 +28,8 @@ def plane() -> MeridianPlane:
         Segment(0.02, 0.02, 0.0, "P1", "P1"),
     )
     steel = Material("steel", 200e9, 0.3)
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(Pin("p", segments), steel, ("start",), (LOADS,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(Pin("p", segments), steel, ("start",), (LOADS,), requirement)
     assert isinstance(found.answer, HarmonicField)
     return MeridianPlane(found.answer.fields, found.answer.singularities)
 

@@ -124,12 +124,12 @@ def test_quiet_fillets_stay_coarse_and_the_others_do_not(steel: Material) -> Non
 def test_memory_ends_a_section_too(steel: Material) -> None:
     """What the first mesh takes is enough for no second one, and that is reported."""
     pin = shaft(4, 1.0)
-    asked = Requirement(model="harmonic", tolerance=1e-6, meshes=2)
+    requirement = Requirement(model="harmonic", tolerance=1e-6, meshes=2)
     loads = ends(pin)
-    (free,) = solve_pin(pin, steel, ("start",), (loads,), asked)
+    (free,) = solve_pin(pin, steel, ("start",), (loads,), requirement)
     first = free.peak.history[0].dofs
     enough = section_memory(first, count_loads((loads,)))
-    (found,) = solve_pin(pin, steel, ("start",), (loads,), replace(asked, memory=enough))
+    (found,) = solve_pin(pin, steel, ("start",), (loads,), replace(requirement, memory=enough))
     assert [h.dofs for h in found.peak.history] == [first]
     assert "memory-limit" in found.peak.reasons
     assert f"{2 * first:,} unknowns" in found.peak.note

@@ -21,8 +21,8 @@ LOADS = PinLoads("c", ("B",), np.array([[[0.0, 0.0, 0.0]], [[300.0, -400.0, 200.
 
 @pytest.fixture(scope="module")
 def answer(steel: Material) -> HarmonicField:
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(PIN, steel, ("start",), (LOADS,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(PIN, steel, ("start",), (LOADS,), requirement)
     assert isinstance(found.answer, HarmonicField)
     return found.answer
 

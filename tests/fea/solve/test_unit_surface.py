@@ -26,8 +26,8 @@ def loads(distribution: str) -> PinLoads:
 
 
 def solved(pin: Pin, steel: Material, model: Model, acting: PinLoads) -> StressField:
-    asked = Requirement(model=model, meshes=1)
-    (solution,) = solve_pin(pin, steel, ("start",), (acting,), asked)
+    requirement = Requirement(model=model, meshes=1)
+    (solution,) = solve_pin(pin, steel, ("start",), (acting,), requirement)
     assert solution.answer is not None
     return solution.answer
 

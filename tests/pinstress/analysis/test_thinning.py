@@ -51,8 +51,8 @@ def test_straight_lines_need_their_ends_and_jumps_both_sides() -> None:
 def test_a_thinned_meridian_has_the_same_stresses(cantilever_pin: Pin, steel: Material) -> None:
     forces = np.array([[[30.0, -70.0, 20.0]], [[500.0, 200.0, -900.0]]])
     acting = PinLoads("c", ("P1",), forces, distribution="cosine")
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(cantilever_pin, steel, ("start",), (acting,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(cantilever_pin, steel, ("start",), (acting,), requirement)
     assert found.answer is not None
     surface, left_out = unit_surface(found.answer), excluded(found.answer)
     assert surface is not None
