@@ -33,14 +33,15 @@ from geometry import CutPin, Pin, PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
 LOCAL_MODEL = LocalSolids.name
-NO_MESHES = MeshSequence(MESH_RATIO, 0.0, 1, 0, 0.0)  # of a model without any
 
 
-def sequence_of(pin: PinLike, model: str) -> MeshSequence:
-    """The sequence of meshes by which a model, given by its name, refines a pin."""
+def sequence_of(pin: PinLike, model: str) -> MeshSequence | None:
+    """The sequence of meshes by which a model, given by its name, refines a pin; None for a model
+    without meshes.
+    """
     solid = GIVEN_SOLID_MESHES if pin.meshed else SOLID_MESHES
     sequences = {"harmonic": SECTION_MESHES, LOCAL_MODEL: LOCAL_MESHES, "solid": solid}
-    return sequences.get(model, NO_MESHES)
+    return sequences.get(model)
 
 
 def count_loads(cases: tuple[PinLoads, ...]) -> int:

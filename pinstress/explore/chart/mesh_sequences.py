@@ -80,6 +80,7 @@ class Climb:
     def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
         """Return successive meshes as a history, as a run sees them."""
         meshes = sequence_of(self.problem.pin, model)
+        assert meshes is not None, model
         name, case = self.problem.pin.name, self.problem.loads.case
         return MeshHistory(name, case, model, results, (0.0,) * len(results), meshes, first)
 
