@@ -26,7 +26,7 @@ from fea.harmonic.stress_recovery import NO_POINTS
 from fea.harmonic.superposition import Circumference, Crest
 from fea.singular.probes import rim
 from fea.singular.singularities import smooth_edges
-from geometry import ArgumentError, Pin
+from geometry import ArgumentError, Pin, body_of_revolution
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats, Mask
@@ -323,9 +323,11 @@ def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> Sec
 
     Raises: ArgumentError for a pin that is not a body of revolution.
     """
-    pin = problem.pin
-    if not isinstance(pin, Pin):
-        raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
+    pin = body_of_revolution(problem.pin)
+    if pin is None:
+        raise ArgumentError(
+            f"pin {problem.pin.name} is not a body of revolution", "not-axisymmetric"
+        )
     return SectionProblem(
         pin, problem.material, problem.clamps, problem.cases, problem.zones, first
     )

@@ -20,7 +20,7 @@ from fea.singular.singularities import clamp_rims, free_of_arcs, outside
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
-from geometry import CutPin, Pin, PinLike
+from geometry import PinLike
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
@@ -83,24 +83,24 @@ def solid_solution(
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if isinstance(profile, Pin):
+    profile = pin.profile
+    if profile is not None:
         turned = tuple(name for name in clamps if name in (*END_FACES, *profile.labels))
         edges += tuple(z for _, z in clamp_rims(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # whose coefficient is zero
     model = SolidModel(pin, mesh, material, clamps)
     require_memory(pin.name, model.unknowns, memory)
-    if isinstance(pin, Pin):
+    if profile is not None and pin.revolved:
         near = [[p.varied(x) for p in singularities] for x in (1.0, *DISTANCE_VARIATIONS)]
-        rims = [all_round(rim(pin, p, p.radius)) for here in near for p in here]
+        rims = [all_round(rim(profile, p, p.radius)) for here in near for p in here]
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
         r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
         within, *varied = ([~outside((p,), r, z) for p in here] for here in near)
         zones = list(singularities)
     else:
         fields = model.solve(units)
-        limit = partial(free_of_arcs, profile) if isinstance(profile, Pin) else None
+        limit = partial(free_of_arcs, profile) if profile is not None else None
         edge = sharp_edges(fields.space, fields.surface, clamps, limit)
         at = [
             edge.singularities(fields.points, times * distance)

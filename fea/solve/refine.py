@@ -29,7 +29,7 @@ from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
 from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
 from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution
-from geometry import CutPin, Pin, PinLike
+from geometry import PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
 LOCAL_MODEL = LocalSolids.name
@@ -62,10 +62,10 @@ def zones_of(
     """
     # Only the profile of a pin with cuts is a body of revolution, for which zones are known. Where
     # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
-    turned, openings = pin, tuple[tuple[float, float], ...]()
-    if isinstance(pin, CutPin) and not pin.revolved:
-        turned, openings = pin.profile, tuple(c.opens for c in unringed(pin).cuts.values())
-    profile_zones = singularities_of(turned, material, clamps, cases, requirement.distance)
+    openings = [cut.opens for cut in unringed(pin).cuts.values()]
+    profile_zones = singularities_of(
+        pin.profile or pin, material, clamps, cases, requirement.distance
+    )
     return tuple(
         zone.up_to(*(begins(max(a - zone.z, zone.z - b), (b - a) / 2.0) for a, b in openings))
         for zone in profile_zones
@@ -139,9 +139,9 @@ def _posed(
     """
     pin, clamps, material = held.pin, held.clamps, problem.material
     cases = tuple(held.start(case.case) for case in problem.cases)
-    turned = pin.profile if isinstance(pin, CutPin) and model.name == LOCAL_MODEL else pin
+    turned = (pin.profile or pin) if model.name == LOCAL_MODEL else pin
     zones, acting = tuple[Zone, ...](), dict[str, tuple[Zone, ...]]()
-    if isinstance(turned, Pin):
+    if turned.revolved:
         zones = zones_of(pin, clamps, material, cases, requirement)
         acting = {c.case: zones_of(pin, clamps, material, (c,), requirement) for c in cases}
     return MeshProblem(

@@ -22,7 +22,7 @@ from fea.cut.region import loaded_bands
 from fea.harmonic.evaluate import Harmonic
 from fea.singular.singularities import singularities_of
 from fea.solid.evaluate import Solid
-from geometry import ArgumentError, CutPin, Pin, PinLike
+from geometry import ArgumentError, CutPin, PinLike, body_of_revolution
 from geometry.mesh.elements import Element
 
 
@@ -74,9 +74,10 @@ def result_on(
     """
     pin, loads = problem.pin, problem.loads
     if rung.model == "beam":
-        if not isinstance(pin, Pin):
+        profile = body_of_revolution(pin)
+        if profile is None:
             raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
-        beam = BeamField(pin, problem.material, problem.clamps, loads)
+        beam = BeamField(profile, problem.material, problem.clamps, loads)
         return beam.result(problem.singularities)
     model, posed = _posed(problem, rung)
     below = MeshBefore(None, {str(k): result for k, result in enumerate(before)})

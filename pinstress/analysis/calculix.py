@@ -5,7 +5,7 @@ from __future__ import annotations
 from assess.opinion.calculix_compare import second_opinions
 from assess.opinion.calculix_in_lugs import PinInLugs, opinion_in_lugs
 from assess.opinion.opinions import Opinion
-from geometry import Pin
+from geometry import body_of_revolution
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
@@ -34,12 +34,13 @@ def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opin
 
 def _in_lugs(task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
     """Return the opinions on the loaded rows of a pin in lugs."""
-    if not isinstance(task.pin, Pin):
+    pin = body_of_revolution(task.pin)
+    if pin is None:
         why = "contact of a pin with holes is not compared with CalculiX"
         return tuple(
             Opinion(p.pin, p.case, p.max_von_mises, p.own_error, failure=why) for p in solved.peaks
         )
-    seated = PinInLugs(task.pin, task.material, task.lugs)
+    seated = PinInLugs(pin, task.material, task.lugs)
     return tuple(
         opinion_in_lugs(seated, peak, joint, tell)
         for peak, joint in zip(solved.peaks, solved.joints, strict=True)

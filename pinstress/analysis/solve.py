@@ -19,7 +19,6 @@ from fea.solve.solve import solve
 from fea.support.foundation.variations import prescribed_ranges
 from fea.support.records import JointResult
 from fea.support.support import PinProblem, Solution
-from geometry import Pin
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
@@ -188,7 +187,7 @@ def _joints(study: Study, task: Task) -> Joints:
     if joints == "contact" or joints == "foundation":
         return joints
     # A beam sees no holes; damage depends on stress itself, not on a limit.
-    return "auto" if isinstance(task.pin, Pin) and study.table.fatigue is None else "contact"
+    return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"
 
 
 def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:

@@ -42,7 +42,7 @@ from fea.support.foundation.variations import FoundationRange
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.records import BandContact, JointRange, JointResult
 from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
-from geometry import Pin, PinLike
+from geometry import PinLike, body_of_revolution
 
 FOUNDATION_OMISSIONS = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
@@ -63,9 +63,10 @@ class FoundationSupport:
     ) -> HeldFoundation:
         """Hold the pin, as every support does; nothing is discretised."""
         progress(f"pin {problem.pin.name}, beam on foundations")
-        assert isinstance(problem.pin, Pin)
+        pin = body_of_revolution(problem.pin)
+        assert pin is not None
         over = FoundationRange(
-            problem.pin, problem.material, problem.lugs, requirement.distance, assumed=False
+            pin, problem.material, problem.lugs, requirement.distance, assumed=False
         )
         return HeldFoundation(problem, over)
 
@@ -73,13 +74,14 @@ class FoundationSupport:
         """Return whether the foundation's error, at least a tenth, may be small enough; never for a
         pin with cuts.
         """
-        if not isinstance(problem.pin, Pin):
+        pin = body_of_revolution(problem.pin)
+        if pin is None:
             return False
         known = problem.material.yield_strength is not None and requirement.required is not None
         may = requirement.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
             requirement.goal == "decide" and known
         )
-        beyond = beyond_foundations(problem.pin, problem.lugs)
+        beyond = beyond_foundations(pin, problem.lugs)
         return requirement.model == "auto" and may and not beyond
 
 
@@ -152,8 +154,8 @@ class HeldFoundation:
 
     def bounded_everywhere(self, requirement: Requirement) -> bool:
         """Return whether no sharp corner of the pin or edge of a lug makes its stress singular."""
-        nu, pin = self.problem.material.poisson_ratio, self.problem.pin
-        assert isinstance(pin, Pin)
+        nu, pin = self.problem.material.poisson_ratio, body_of_revolution(self.problem.pin)
+        assert pin is not None
         rounded = all(lug.edge_radius > 0.0 for lug in self.problem.lugs)
         return rounded and not find_singularities(pin, (), (), nu, requirement.distance)
 

@@ -13,7 +13,6 @@ from assess.plastic.records import LimitLoad
 from assess.plastic.solve import Rung, limit_load
 from fea.core.peak import Maximum
 from fea.support.support import Solution
-from geometry import Pin
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
@@ -62,7 +61,7 @@ def _limit_load(
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
     pin, loads = task.pin, peak.governing
     assert loads is not None
-    if task.lugs and isinstance(pin, Pin):
+    if task.lugs and pin.revolved:
         if solved.rings is None:
             return LimitLoad("none", note=NOT_ON_FOUNDATIONS_NOTE)
         pin, loads = solved.rings, solved.pressed(loads)

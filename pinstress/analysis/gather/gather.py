@@ -16,7 +16,7 @@ from fea.section.section_stress import SectionField
 from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.records import JointResult
 from fea.support.support import Solution
-from geometry import Cut, CutPin, Flat, Hole, Passage, Pin, Slot
+from geometry import Cut, Flat, Hole, Passage, PinLike, Slot, body_of_revolution
 from geometry.shape.cut_edges import drawn
 from pinstress.analysis.assessed.situations import Assessed, factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
@@ -285,7 +285,7 @@ def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
         for length, diameter, bore, label, kind in outline(pin)
     )
     heavy = weight(pin, density) if density else None
-    cuts = tuple(cut_shapes(pin)) if isinstance(pin, CutPin) else ()
+    cuts = tuple(cut_shapes(pin))
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
     return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
@@ -324,7 +324,7 @@ def _maxima(task: Task, solution: Solution, loads: PinLoads) -> plain.Floats:
     if task.lugs:
         pin = solution.rings
     else:
-        pin = task.pin if isinstance(task.pin, Pin) else None
+        pin = body_of_revolution(task.pin)
         clamps = tuple(task.pin.surface(name) for name in task.clamps)
     assert solution.answer is not None
     surface, places = solution.answer.maxima(acting), solution.peak.places
@@ -342,9 +342,10 @@ def _spread(peak: Maximum) -> tuple[float, float] | None:
     return peak.max_von_mises / high, peak.max_von_mises / low if low > 0.0 else np.inf
 
 
-def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
+def cut_shapes(pin: PinLike) -> Iterator[CutShape]:
     """Yield the cuts of a pin as reports draw them, in SI."""
     for name, cut in pin.cuts.items():
+        assert pin.profile is not None
         drawing = drawn(cut, pin.profile)
         size, offset, depth = _cut_sizes(cut)
         low, high = (cut.z, cut.z) if isinstance(cut, Hole) else _cut_ends(cut)

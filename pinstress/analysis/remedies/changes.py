@@ -18,7 +18,7 @@ from fea.core.requirement import Requirement
 from fea.core.solution import StressField
 from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.support.support import Solution
-from geometry import GeometryError, Pin
+from geometry import GeometryError, Pin, body_of_revolution
 from pinstress.analysis.remedies.secant import NoSizeError, smallest
 from pinstress.study.model.pins import slenderness
 from pinstress.study.model.tasks import Task
@@ -116,7 +116,7 @@ def _maxima(answer: StressField, loads: PinLoads, shares: Floats) -> Floats:
 def _problem(requirement: Requirement, failing: FailingCase) -> Problem | None:
     """Return the governing instant on one mesh; None where that would take too long."""
     task, loads = failing.task, failing.solution.peak.governing
-    if task.lugs or not isinstance(task.pin, Pin) or loads is None:
+    if task.lugs or not task.pin.revolved or loads is None:
         return None
     return Problem(task.pin, task.material, task.clamps, loads, requirement.distance)
 
@@ -128,8 +128,8 @@ def _diameters(
 
     A pin must stay longer than wide.
     """
-    pin = failing.task.pin
-    if problem is None or not isinstance(pin, Pin):
+    pin = body_of_revolution(failing.task.pin)
+    if problem is None or pin is None:
         return None, SIZED_BY_COMMAND
     try:
         return _widening(problem, pin, required * failing.part, required), ""

@@ -29,7 +29,7 @@ from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.support.contact.held import HeldContact
 from fea.support.support import Solution
-from geometry import Pin
+from geometry import body_of_revolution
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
@@ -128,8 +128,8 @@ def differentiated(
 
     Raises: MeshError, SolveError.
     """
-    peak, pin, answer = solution.peak, task.pin, solution.answer
-    if not peak.max_von_mises or peak.governing is None or not isinstance(pin, Pin):
+    peak, pin, answer = solution.peak, body_of_revolution(task.pin), solution.answer
+    if not peak.max_von_mises or peak.governing is None or pin is None:
         return None
     clamps = tuple(pin.surface(name) for name in task.clamps)
     error, history = (peak.own_error or 0.0) / peak.max_von_mises, None
@@ -177,7 +177,7 @@ def _of_case(
     maximum = peak.max_von_mises or 0.0
     factor = peak.safety_factor(task.material.yield_strength)
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
-    if not isinstance(task.pin, Pin):
+    if not task.pin.revolved:
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:
         gradient = differentiated(requirement, task, solution, dimensions)
@@ -211,7 +211,7 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
-    if not isinstance(task.pin, Pin):
+    if not task.pin.revolved:
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     if joined.rings is None or links is None:
         return replace(out, note=NO_CONTACT_NOTE)

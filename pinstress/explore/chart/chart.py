@@ -15,7 +15,7 @@ from fea.solve.single_mesh import ModelMesh, Problem
 from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.support import PinProblem, Solution
-from geometry import Pin
+from geometry import body_of_revolution
 from geometry.mesh.elements import Element
 from pinbase.processes.pool import Progress
 from pinstress.analysis.plan import all_loads
@@ -97,7 +97,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     problem = Problem(task.pin, task.material, clamps, solution.loads, requirement.distance)
     _require_stress(study, peak)
     beam_error = None
-    if isinstance(task.pin, Pin):
+    if task.pin.revolved:
         with suppress(ValueError, ArithmeticError):  # the chart will say why
             beam = first(replace(requirement, model="beam")).peak
             if beam.max_von_mises and beam.error_estimate is not None:
@@ -114,20 +114,21 @@ def _require_stress(study: Study, peak: Maximum) -> None:
 
 def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPlan:
     """Return the plan for a pin in its lugs, solved as a run would."""
-    if not isinstance(task.pin, Pin):
+    pin = body_of_revolution(task.pin)
+    if pin is None:
         raise study.error(
             f"pin {task.pin.name} has cuts and is held by lugs; charts of contact are of pins "
             'without cuts: remove them, or set analysis.joints = "prescribed"',
             at=f"pin.{task.pin.name}",
             code="not-axisymmetric",
         )
-    given = PinProblem(task.pin, task.material, task.lugs, task.loads, task.between)
+    given = PinProblem(pin, task.material, task.lugs, task.loads, task.between)
     (solution,) = solve_in_lugs(given, requirement)
     _require_stress(study, solution.peak)
     assert solution.joint is not None
     loads = solution.loads
     problem = JointProblem(
-        task.pin,
+        pin,
         task.material,
         task.lugs,
         loads.links if isinstance(loads, PressureLoads) else loads,
@@ -168,7 +169,7 @@ def chart(
         rung, seen, cells = contact_reference(climb)
         return _joined(plan, climb, (rung, seen), cells)
     pin = plan.problem.pin
-    if isinstance(pin, Pin):
+    if pin.revolved:
         climb.to(ModelMesh("beam"))
         climb_harmonic(climb)
     elif climb.auto == LOCAL_MODEL:
@@ -179,7 +180,7 @@ def chart(
     elements: tuple[Element, ...] = ("linear", "straight", "curved")
     for element in elements:
         climb_solid(climb, element, meshes)
-    if isinstance(pin, Pin):
+    if pin.revolved:
         reference = harmonic_reference(climb)
     else:
         reference = local_reference(climb) if climb.auto == LOCAL_MODEL else solid_reference(climb)

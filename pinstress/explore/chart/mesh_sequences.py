@@ -13,7 +13,6 @@ from fea.cut.evaluate import LOCAL_MESHES
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, sequence_of
 from fea.solve.single_mesh import ModelMesh, Problem
-from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
@@ -114,7 +113,7 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
     pin = climb.problem.pin
     step = 2 if pin.meshed else 1  # it can only be halved
     first = 0 if pin.meshed else FIRST_SOLID_LEVEL[element]
-    most = MAX_CHARTED_UNKNOWNS if isinstance(pin, Pin) else MAX_UNKNOWNS_BELOW_REFERENCE
+    most = MAX_CHARTED_UNKNOWNS if pin.revolved else MAX_UNKNOWNS_BELOW_REFERENCE
     for k in range(meshes or SOLID_MESHES):
         measured = climb.to(ModelMesh("solid", element, first + step * k))
         if measured.over:

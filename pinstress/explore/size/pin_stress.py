@@ -32,7 +32,7 @@ from fea.core.requirement import Requirement
 from fea.core.zone import DISTANCE_VARIATIONS
 from fea.harmonic.evaluate import HarmonicField
 from fea.support.support import Solution
-from geometry import ArgumentError, Pin
+from geometry import ArgumentError, body_of_revolution
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats, Mask
 from pinstress.analysis.remedies.dimensions import dimensions_of
@@ -300,7 +300,7 @@ class PinStress:
         self, study: Study, task: Task, requirement: Requirement, differentiated: bool
     ) -> Iterator[tuple[Maximum, list[_Found]]]:
         """Yield the peaks, each with the stresses of its parts."""
-        if differentiated and not isinstance(task.pin, Pin):
+        if differentiated and not task.pin.revolved:
             raise UndifferentiatedError
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
@@ -340,8 +340,8 @@ class PinStress:
         parts: PartsOfSection,
     ) -> list[_Found]:
         """Return the stresses of the parts of a row that no lugs hold."""
-        peak, answer, pin = solution.peak, solution.answer, task.pin
-        assert isinstance(pin, Pin)  # others are not differentiated
+        peak, answer, pin = solution.peak, solution.answer, body_of_revolution(task.pin)
+        assert pin is not None  # others are not differentiated
         if not isinstance(answer, HarmonicField):
 
             def whole() -> Floats:
