@@ -27,7 +27,7 @@ from fea.core.requirement import Requirement
 from fea.cut.evaluate import cut_result, cut_solution
 from fea.cut.local_fields import LocalFineness
 from fea.cut.region import PIECE_REACH, loaded_bands, pieces
-from fea.harmonic.evaluate import SectionProblem
+from fea.harmonic.section_solution import SectionProblem
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 

@@ -14,7 +14,8 @@ from benchmarks.timing import table
 from fea.core.pin_loads import Floats
 from fea.core.requirement import Requirement
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import SECTION_MESHES, HarmonicField
+from fea.harmonic.evaluate import SECTION_MESHES
+from fea.harmonic.field import HarmonicField
 from fea.section.place import FLEXIBILITY_ERROR
 from fea.section.section_stress import SectionField
 from fea.solve.solve import solve_pin

@@ -18,9 +18,10 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
-from fea.harmonic.evaluate import HarmonicField, _ends, _rims
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
+from fea.harmonic.section_solution import _ends, _rims
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 from geometry import Pin

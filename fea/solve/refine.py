@@ -23,7 +23,7 @@ from fea.core.requirement import (
 )
 from fea.core.verdict import Evidence, evidence_of
 from fea.core.zone import Zone
-from fea.cut.evaluate import LOCAL_MESHES, CutField, LocalSolids
+from fea.cut.evaluate import LOCAL_MESHES, LocalSolids
 from fea.cut.region import unringed
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
@@ -214,8 +214,6 @@ def _reading(evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: Mesh
     """What the last mesh says about a case."""
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
-    evidence = replace(evidence, governing=governing, history=seen.under(governing))
-    if isinstance(field, CutField):
-        solids = tuple((p.piece.z0, p.piece.z1) for p in field.solution.pieces)
-        evidence = replace(evidence, solids=solids)
+    history = seen.under(governing)
+    evidence = replace(evidence, governing=governing, history=history, solids=mesh.solids)
     return Reading(evidence, field, loads, instant)

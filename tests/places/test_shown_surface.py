@@ -13,7 +13,7 @@ from fea.core.pressed import PressedArcs
 from fea.core.requirement import Requirement
 from fea.core.solution import Picture
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.free_surface import FreeSurface
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import _first, sectors_of

@@ -18,7 +18,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.zone import DISTANCE_VARIATIONS
-from fea.harmonic.evaluate import SectionProblem, harmonic_solution
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import find_singularities, free_of_arcs, singularities_of
 from fea.solid.sharp_edges import SharpEdges
 from fea.solve.solve import solve_pin

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fea.beam.error_model import PLAIN_SECTION_ERROR
-from fea.beam.maximum import VonMisesMaxima
+from fea.beam.maximum import VonMisesMaxima, stress_points
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
@@ -24,7 +24,7 @@ from fea.core.peak import ErrorParts, Maximum, Reason, Refinement
 from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
 from fea.core.requirement import Requirement
-from fea.core.solution import Picture
+from fea.core.solution import StressPoints
 from fea.core.verdict import Evidence, judge
 from fea.section.place import FoundSection
 from fea.section.section_stress import AtSection, SectionField
@@ -186,23 +186,25 @@ class FoundationField:
         top = self._von_mises(loads)
         return float(top.von_mises[top.place]), top.place[1]
 
-    @property
-    def points(self) -> Floats:
-        """The points at which stress is computed, (S, 2): r, z in m."""
-        return np.stack([self.stress.r, self.stress.z], axis=1)
-
-    def harmonics(self, loads: PinLoads) -> Floats:
-        """The stress at the points, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
-        return self.stress.harmonics(self.stress.model.solve(loads))
+    def points(self, loads: PinLoads) -> StressPoints:
+        """Stress at the beam's points, for fatigue."""
+        stress = self.stress
+        points = np.stack([stress.r, stress.z], axis=1)
+        return stress_points(points, stress.harmonics(stress.model.solve(loads)))
 
     def _von_mises(self, loads: Loads) -> VonMisesMaxima:
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)
         return self.stress.von_mises(self.stress.model.solve(links, whole))
 
-    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+    def surface(self) -> None:
         """Return None, since a beam has no field over its surface."""
-        return None
+
+    def picture(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
+
+    def volume(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
 
     def largest_load(self, solution: Solution) -> float:
         """The largest load per length over the diameter at the governing instant, Pa."""

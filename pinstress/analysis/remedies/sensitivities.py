@@ -24,7 +24,8 @@ from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.support.contact.held import HeldContact

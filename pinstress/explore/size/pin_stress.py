@@ -30,7 +30,7 @@ from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.zone import DISTANCE_VARIATIONS
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.support.support import Solution
 from geometry import ArgumentError, body_of_revolution
 from geometry.shape.dimensions import Dimension

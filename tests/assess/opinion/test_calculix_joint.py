@@ -24,7 +24,7 @@ from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
 from fea.support.contact.solve_joint import ContactModel, Resolution

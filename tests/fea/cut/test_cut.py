@@ -11,7 +11,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import VON_MISES
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refusal, zone

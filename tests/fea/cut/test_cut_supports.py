@@ -9,7 +9,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.requirement import Requirement
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.local_model import LocalModel
 from fea.cut.lost_loads import bearings, trial_forces
 from fea.cut.region import loaded_bands, pieces

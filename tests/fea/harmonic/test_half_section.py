@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.half_section import MeridianPlane
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin

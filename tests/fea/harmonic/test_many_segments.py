@@ -13,8 +13,9 @@ from fea.core.memory import section_memory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
 from fea.harmonic.quiet_corners import NUMEROUS_FILLETS_ABOVE, numerous_fillets
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO, count_loads
 from fea.solve.solve import solve_pin

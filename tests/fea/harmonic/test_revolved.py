@@ -8,7 +8,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import VIEW_SECTORS
 from fea.solve.solve import solve_pin

@@ -16,7 +16,7 @@ from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import resultants, surface
-from fea.solid.evaluate import SolidField
+from fea.solid.field import SolidField
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.nodal_loads import Unit, nodal_loads
 from fea.solid.superposition import envelope

@@ -13,7 +13,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.singular.singularities import find_singularities
-from fea.solid.evaluate import SolidField, solid_result, solid_solution
+from fea.solid.evaluate import solid_result, solid_solution
+from fea.solid.field import SolidField
 from fea.solid.model import SolidModel
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment

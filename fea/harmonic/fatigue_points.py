@@ -1,4 +1,4 @@
-"""Stress for fatigue at points on which lugs press at some instants.
+"""Stress tensors for fatigue at points of a body of revolution, some of which lugs press on.
 
 A point of a band is free under one load and pressed under the opposite one. While it is free its
 stress is read. While a lug presses on it, it has the stress of the same fibre without that of the
@@ -14,19 +14,59 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.spatial import KDTree
 
+from fea.core.pin_loads import PinLoads
 from fea.core.pressed import ARC_COUNT, PressedArcs
-from fea.cut.evaluate import CutField
-from fea.cut.free_points import FreePoints, relieved
-from fea.harmonic.free_surface import FreeSurface, SurfacePoints
+from fea.core.solution import StressAt, StressPoints
+from fea.core.zone import Zone
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.five_numbers import COSINE_COMPONENTS
+from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
-# Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
-AXIAL_DISTANCE_WEIGHT = 0.1
 
-Stress = Callable[[Ints, Floats, Ints], Floats]
+def stress_points(
+    fields: MeridianFields, zones: tuple[Zone, ...], loads: PinLoads, nu: float
+) -> StressPoints:
+    """The points of the surface, and where lugs press on it those that replace others.
+
+    zones: of unbounded stress, in which fatigue is not looked for. nu: Poisson's ratio.
+    """
+    if loads.pressed is None:
+        surface = fields.outside(zones)
+        surface[fields.skin :] = False
+        at = _of_fields(fields, loads)
+        return StressPoints.on_meridian(fields.points, surface, len(loads), at)
+    of = surface_points(fields, loads.pressed.rings, nu)
+    substitutes, plain = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
+    at = replaced(_of_fields(of.fields, loads), substitutes.rows)
+    return StressPoints.on_meridian(
+        of.fields.points[plain], of.fields.outside(zones)[plain], len(loads),
+        lambda rows, angles, instants: at(plain[rows], angles, instants),
+    )  # fmt: skip
+
+
+def _of_fields(fields: MeridianFields, loads: PinLoads) -> StressAt:
+    """A function that gives the stress of unit fields under loads."""
+    acting = loads.coefficients()
+    units = [k for k, load in enumerate(fields.loads) if load in acting]
+    n = np.array([fields.loads[k].n for k in units])
+    amounts = np.zeros((len(loads), len(units), 2))
+    for i, k in enumerate(units):
+        amounts[:, i] = acting[fields.loads[k]]
+    even = COSINE_COMPONENTS[:, None]
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        # Cosine and sine parts by phase, as psi = n theta - p pi / 2 has them.
+        turns = np.outer(angles, n)[:, None, :]
+        c, s = np.cos(turns), np.sin(turns)
+        unit, now = fields.stress[rows][:, :, units], amounts[instants]
+        first = (unit * np.where(even, c, s)) @ now[..., 0].T
+        second = (unit * np.where(even, s, -c)) @ now[..., 1].T
+        return np.asarray((first + second).swapaxes(1, 2))
+
+    return at
 
 
 class StandIns:
@@ -69,37 +109,7 @@ class StandIns:
         return self._known[instant]
 
 
-class CutStandIns:
-    """Points of the surface of a pin with cuts that replace others where these are not read."""
-
-    def __init__(self, answer: CutField, pressed: PressedArcs) -> None:
-        cut, pieces = answer.surface, answer.solution.pieces
-        on_outline = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
-        first = len(cut.points) - sum(len(x) for x in on_outline)
-        outline = np.concatenate([np.ones(first, dtype=bool), *on_outline])
-        self.pressed, self._stress = pressed, cut.stress
-        self.free = FreePoints.of(cut.points, outline, pressed.rings)
-        self.amid = np.flatnonzero(self.free.amid >= 0)
-        self.points = np.concatenate([cut.points, cut.points[self.amid]])
-        nu = answer.solution.section.nu
-        more = relieved(cut.stress[self.amid], cut.points[self.amid], nu)
-        self.stress = np.concatenate([cut.stress, more])
-        rows = np.concatenate([np.arange(len(cut.points)), self.amid])
-        self._both = self.free.some(rows, len(cut.points))
-        self._may: Mask = cut.read[rows]
-
-    def rows(self, rows: Ints, instant: int) -> Ints:
-        """The rows (J,) of `stress` that stand for points (J,) at an instant."""
-        read = self._both.read(self.pressed, instant)
-        lost, out = np.flatnonzero(~read[rows]), rows.copy()
-        may = np.flatnonzero(read & self._may)
-        if len(lost) and len(may):
-            scaled = self.points * [1.0, 1.0, AXIAL_DISTANCE_WEIGHT]
-            out[lost] = may[np.atleast_1d(KDTree(scaled[may]).query(scaled[rows[lost]])[1])]
-        return out
-
-
-def replaced(stress: Stress, stands: Callable[[Ints, Floats, int], Ints]) -> Stress:
+def replaced(stress: StressAt, stands: Callable[[Ints, Floats, int], Ints]) -> StressAt:
     """A function that gives stress (J, T, 6) with substitutes for points where they are not read.
 
     stands: gives the points that stand for others at an instant.
