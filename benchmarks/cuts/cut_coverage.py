@@ -25,7 +25,7 @@ from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import Maximum
 from fea.core.requirement import Requirement
 from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.local_fields import LocalFineness
+from fea.cut.local_solution import LocalFineness
 from fea.cut.region import PIECE_REACH, loaded_bands, pieces
 from fea.harmonic.section_solution import SectionProblem
 from fea.singular.singularities import singularities_of

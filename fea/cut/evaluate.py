@@ -13,9 +13,9 @@ from fea.core.model import MeshBefore, MeshProblem, MeshSequence
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.cut.field import CutField, CutSolution
-from fea.cut.local_fields import (
+from fea.cut.local_fields import LocalFields
+from fea.cut.local_solution import (
     LOCAL_MESH_RATIO,
-    LocalFields,
     LocalFineness,
     local_fields,
     mesh_of,

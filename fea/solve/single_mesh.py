@@ -53,7 +53,7 @@ class ModelMesh:
 
     element: of the solid model.
     level: 0 is the first mesh of a run; each further one is finer by the square root of 2 (with
-    local solids by fea.cut.local_fields.LOCAL_MESH_RATIO), those below 0 are coarser.
+    local solids by fea.cut.local_solution.LOCAL_MESH_RATIO), those below 0 are coarser.
     """
 
     model: Literal["beam", "harmonic", "harmonic+local", "solid"]
