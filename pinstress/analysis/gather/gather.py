@@ -13,7 +13,6 @@ from assess.opinion.records import BeamCheck
 from fea.core.peak import Maximum, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
-from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.records import JointResult
 from fea.support.support import Solution
 from geometry import Cut, Flat, Hole, Passage, PinLike, Slot, body_of_revolution
@@ -330,9 +329,8 @@ def _maxima(task: Task, solution: Solution, loads: PinLoads) -> plain.Floats:
     surface, places = solution.answer.maxima(acting), solution.peak.places
     if places is None or places.section is None or pin is None:
         return surface
-    feels = acting.on_rings if isinstance(acting, PressureLoads) else acting
-    sections = SectionField(pin, task.material, clamps, (feels,))
-    return np.maximum(surface, sections.maxima(feels))
+    sections = SectionField(pin, task.material, clamps, (acting.on_rings,))
+    return np.maximum(surface, sections.maxima(acting.on_rings))
 
 
 def _spread(peak: Maximum) -> tuple[float, float] | None:

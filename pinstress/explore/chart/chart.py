@@ -13,7 +13,6 @@ from fea.core.requirement import Requirement
 from fea.solve.refine import LOCAL_MODEL
 from fea.solve.single_mesh import ModelMesh, Problem
 from fea.solve.solve import solve_in_lugs, solve_pin
-from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.support import PinProblem, Solution
 from geometry import body_of_revolution
 from geometry.mesh.elements import Element
@@ -126,12 +125,11 @@ def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPl
     (solution,) = solve_in_lugs(given, requirement)
     _require_stress(study, solution.peak)
     assert solution.joint is not None
-    loads = solution.loads
     problem = JointProblem(
         pin,
         task.material,
         task.lugs,
-        loads.links if isinstance(loads, PressureLoads) else loads,
+        solution.loads.links,
         solution.instant,
         requirement.distance,
     )
