@@ -122,7 +122,7 @@ class PinLoads:
 
     @property
     def on_rings(self) -> PinLoads:
-        """What sections carry: these loads, or the resultants of contact pressures on rings."""
+        """The loads that sections carry: these, or the resultants of contact pressures on rings."""
         return self
 
     @property

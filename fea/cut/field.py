@@ -13,10 +13,9 @@ from fea.core.pin_loads import Loads, PinLoads
 from fea.core.solution import Picture, StressPoints
 from fea.core.unit_surface import SpaceSurface, UnitSurface
 from fea.core.zone import Zone
-from fea.cut.fatigue_points import stress_points
 from fea.cut.local_fields import MAX_REFINED_RISE, LocalFields
 from fea.cut.shown import ShownCut, shown
-from fea.cut.shown_free import free_picture
+from fea.cut.shown_free import free_picture, stress_points
 from fea.cut.supports import ClampMotions, ClampReaction
 from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
 from fea.harmonic.field import HarmonicField

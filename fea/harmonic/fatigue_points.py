@@ -39,7 +39,7 @@ def stress_points(
         at = _of_fields(fields, loads)
         return StressPoints.on_meridian(fields.points, surface, len(loads), at)
     of = surface_points(fields, loads.pressed.rings, nu)
-    substitutes, plain = StandIns(of, loads.pressed), np.flatnonzero(of.relieved < 0)
+    substitutes, plain = Substitutes(of, loads.pressed), np.flatnonzero(of.relieved < 0)
     at = replaced(_of_fields(of.fields, loads), substitutes.rows)
     return StressPoints.on_meridian(
         of.fields.points[plain], of.fields.outside(zones)[plain], len(loads),
@@ -69,7 +69,7 @@ def _of_fields(fields: MeridianFields, loads: PinLoads) -> StressAt:
     return at
 
 
-class StandIns:
+class Substitutes:
     """Points of a surface of revolution that replace others where these are not read."""
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
@@ -82,7 +82,7 @@ class StandIns:
         self._known: dict[int, Mask] = {}
 
     def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
-        """The points (J,) that stand for points (J,) at angles (J,), rad, at an instant."""
+        """The points (J,) that replace points (J,) at angles (J,), rad, at an instant."""
         arc, out = (
             np.rint(angles / (2.0 * np.pi) * ARC_COUNT).astype(np.int64) % ARC_COUNT,
             rows.copy(),
@@ -109,16 +109,16 @@ class StandIns:
         return self._known[instant]
 
 
-def replaced(stress: StressAt, stands: Callable[[Ints, Floats, int], Ints]) -> StressAt:
+def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, int], Ints]) -> StressAt:
     """A function that gives stress (J, T, 6) with substitutes for points where they are not read.
 
-    stands: gives the points that stand for others at an instant.
+    substitutes_of: gives the points that replace others at an instant.
     """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
         out = stress(rows, angles, instants)
         for k, t in enumerate(instants.tolist()):
-            substitutes = stands(rows, angles, t)
+            substitutes = substitutes_of(rows, angles, t)
             some = np.flatnonzero(substitutes != rows)
             if len(some):
                 out[some, k] = stress(substitutes[some], angles[some], np.array([t]))[:, 0]

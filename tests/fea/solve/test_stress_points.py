@@ -4,15 +4,18 @@ stress of the tensors that it gives to fatigue is the maximum of a row.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.core.pressed import ARC_COUNT
 from fea.core.requirement import Model, Requirement
 from fea.core.solution import StressField
 from fea.core.voigt import von_mises
-from fea.solve.solve import solve, solve_pin
+from fea.solve.solve import solve, solve_in_lugs, solve_pin
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem
 from geometry import CutPin, Flat, Pin, Segment
@@ -21,6 +24,8 @@ FORCES = np.array([[[30.0, -70.0, 20.0]], [[500.0, 200.0, -900.0]]])  # two inst
 MOMENTS = np.array([[[0.0, 0.0, 0.0]], [[1.0, -2.0, 3.0]]])
 LOADS = PinLoads("c", ("P1",), FORCES, MOMENTS)
 D = 0.02
+BANDS = ((None, 2), ("A", 10), (None, 1), ("B", 20), (None, 1), ("C", 10), (None, 2))
+CLEVIS = Pin("P", tuple(Segment(1e-3 * x, D, connection=name) for name, x in BANDS))
 PULL = PinLoads("c", tuple("ABC"), 1e4 * np.array([[[-0.5, 0, 0], [1.0, 0, 0], [-0.5, 0, 0]]] * 2))
 
 
@@ -71,12 +76,42 @@ def test_a_pin_with_a_flat(steel: Material) -> None:
 
 
 def test_a_beam_on_foundations(steel: Material) -> None:
-    bands = ((None, 2), ("A", 10), (None, 1), ("B", 20), (None, 1), ("C", 10), (None, 2))
-    pin = Pin("P", tuple(Segment(1e-3 * x, D, connection=name) for name, x in bands))
     lugs = tuple(Lug(n, 0.06, steel, 2e-5) for n in "ABC")
-    given = PinProblem(pin, steel, lugs, (PULL,))
+    given = PinProblem(CLEVIS, steel, lugs, (PULL,))
     (found,) = solve(given, Requirement(0.5, joints="foundation"))
     assert found.peak.model == "foundation"
     assert found.answer is not None
     agree(found.answer, PULL, 360, 1e-4)
     assert found.answer.surface() is None
+
+
+def test_lugs_that_press_by_turns(steel: Material) -> None:
+    """The second load is the first one turned by half a turn, and so is all that is said of it:
+    also of points on which lugs press, which have the stress of others, and of those that are not
+    read. No stress is larger than the maximum, and none is that of the pressure, which is the
+    radial stress of what a lug presses on.
+    """
+    lugs = tuple(Lug(n, 0.06, steel, 2e-5, tilt=0.0 if n == "B" else np.inf) for n in "ABC")
+    loads = replace(PULL, forces=PULL.forces * [[[1.0]], [[-1.0]]], times=np.arange(2.0))
+    requirement = Requirement(0.05, cells="rough", meshes=1)
+    (found,) = solve_in_lugs(PinProblem(CLEVIS, steel, lugs, (loads,)), requirement)
+    assert found.answer is not None
+    agree(found.answer, found.loads, ARC_COUNT, 0.05)
+    known, angle = found.answer.points(found.loads), np.radians(25.0)
+    rows = np.flatnonzero(known.surface)
+    one, other = (
+        known.at(rows, np.full(len(rows), angle + turn), np.array(instants))
+        for turn, instants in ((0.0, [0, 1]), (np.pi, [1, 0]))
+    )
+    np.testing.assert_allclose(one, other, rtol=0.0, atol=1e-6 * np.abs(one).max())
+    assert found.pressure is not None
+    on_shaft = np.hypot(*known.points[rows, :2].T) > 0.499 * D
+    largest = float(found.pressure.pressure.max())
+    assert np.abs(one[on_shaft, :, 0]).max() < 0.05 * largest
+    shown = found.answer.surface()
+    assert shown is not None
+    every = np.arange(len(shown.unit.points))
+    unread = shown.unread(found.loads, every, np.array([angle, angle + np.pi]))
+    assert unread is not None
+    assert np.array_equal(unread[0, :, 0], unread[1, :, 1])
+    assert 0.1 < unread.mean() < 0.9
