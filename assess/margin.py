@@ -50,8 +50,8 @@ class Margin:
     governs: bool = True
 
     @property
-    def instead(self) -> dict[str, str]:
-        """The dimension of the demand, for the conversion of units (reports.data.in_units)."""
+    def dimension_of(self) -> dict[str, str]:
+        """The dimension of the demand, for the conversion of units (pinbase.records.in_units)."""
         return {"own": self.dimension}
 
     @property

@@ -110,9 +110,7 @@ def _model(trial: PinTrial, size: Resolution) -> ContactModel:
 def _stress(model: ContactModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
     """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
     requirement = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
-    (found,) = solve_pin(
-        model.pin, model.material, (), (contact.loads,), requirement, first=model.first
-    )
+    (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), requirement)
     assert isinstance(found.answer, HarmonicField)
     history = [step.max_von_mises for step in found.peak.history]
     below = beneath(found.answer.fields, contact.loads, found.answer.singularities).value

@@ -18,9 +18,9 @@ from fea.solve.refine import MESH_RATIO
 from fea.solve.solve import solve_pin
 from geometry import Pin
 from pinbase.processes.pool import Job, Tell, in_parallel
+from pinbase.records import pack
 from pinstress import load_study
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.serialise import pack
 from pinstress.analysis.stored import cache_key
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task

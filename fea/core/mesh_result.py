@@ -27,8 +27,8 @@ class SingularIntensity:
     notch: Annotated[float, "strength"] | None = None
 
     @property
-    def instead(self) -> dict[str, str]:
-        """The dimension of a strength (reports.data.in_units)."""
+    def dimension_of(self) -> dict[str, str]:
+        """The dimension of a strength (pinbase.records.in_units)."""
         return {"strength": f"stress length^{self.exponent!r}"}
 
 

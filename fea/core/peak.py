@@ -82,12 +82,12 @@ class ErrorParts:
     contact pressure; from the ends of a local solid. None includes the modelling of the joint.
     """
 
-    mesh: float
-    time: float = 0.0
-    series: float = 0.0
-    model: float = 0.0
-    cells: float = 0.0
-    truncation: float = 0.0
+    mesh: Stress
+    time: Stress = 0.0
+    series: Stress = 0.0
+    model: Stress = 0.0
+    cells: Stress = 0.0
+    truncation: Stress = 0.0
 
     @property
     def total(self) -> float:
@@ -101,7 +101,7 @@ class Maximum:
 
     max_von_mises, error_estimate: Pa, None when the pin is `rigid` or its solution `failed`.
     location: (x, y, z) in the pin's axes, m.
-    governing: the loads at the governing instant.
+    governing: the loads at the governing instant, in SI whatever the units of the rest.
     note: one sentence on the verdict, for people.
     why: the model used and the reason, for people.
     reasons: the codes of everything that note and why state.
@@ -121,18 +121,18 @@ class Maximum:
     model: str
     verdict: Verdict
     note: str
-    max_von_mises: float | None = None
-    error_estimate: float | None = None
-    location: tuple[float, float, float] | None = None
+    max_von_mises: Stress | None = None
+    error_estimate: Stress | None = None
+    location: Point | None = None
     governing: PinLoads | None = None
     history: tuple[Refinement, ...] = ()
     singular_at: tuple[SingularZone, ...] = ()
     why: str = ""
-    interval: tuple[float, float] | None = None
+    interval: tuple[Stress, Stress] | None = None
     parts: ErrorParts | None = None
     reasons: tuple[str, ...] = ()
     imbalance: tuple[float, float] | None = None
-    solids: tuple[tuple[float, float], ...] = ()
+    solids: tuple[tuple[Length, Length], ...] = ()
     places: Places | None = None
 
     @property

@@ -84,8 +84,8 @@ class ContactEdge:
     error_estimate: Stress | None
 
     @property
-    def instead(self) -> dict[str, str]:
-        """The dimension of K, which depends on the exponent (reports.data.in_units)."""
+    def dimension_of(self) -> dict[str, str]:
+        """The dimension of K, which depends on the exponent (pinbase.records.in_units)."""
         return {"strength": f"stress length^{self.exponent!r}"}
 
 

@@ -25,7 +25,7 @@ from fea.cut.region import PIECE_REACH, REACH_FACTOR, pieces, surface_ends, zone
 from fea.cut.supports import ClampReaction, motions, reactions
 from fea.harmonic.evaluate import harmonic_result, section_problem
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.kept_fields import FirstMesh
+from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.stress_recovery import NO_POINTS
 from fea.solid.nodal_loads import Unit
@@ -33,6 +33,7 @@ from geometry import CutPin
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
 from pinbase.arrays import Floats
+from pinbase.memo import Memo
 
 CUT_SECTION_ELEMENT = 0.25  # element of the first section about a cut, of its radius
 # The scatter is that on holes under superposed tension, bending and torsion (benchmarks
@@ -205,9 +206,11 @@ class LocalSolids:
         self,
         cut: CutPin,
         bands: tuple[tuple[float, float], ...] = (),
+        memo: Memo | None = None,
         first: FirstMesh | None = None,
     ) -> None:
-        self._cut, self._bands, self._first = cut, bands, first
+        self._cut, self._bands = cut, bands
+        self._memo, self._first = memo, first
 
     def solve(self, problem: MeshProblem, level: int, before: MeshBefore | None = None) -> CutMesh:
         """Solve one mesh, as every model does.
@@ -229,7 +232,7 @@ class LocalSolids:
             elif level > 1 and any(r.truncated > most * r.maximum for r in results):
                 reach *= REACH_FACTOR
         local = pieces(self._cut, problem.clamps, reach, self._bands, spacing)
-        posed = section_problem(problem, self._first)
+        posed = section_problem(problem, self._memo, self._first)
         solution = cut_solution(
             posed, local, level, results, self._bands, problem.distance, reused=reused
         )

@@ -108,12 +108,21 @@ def arcs_apart(on: Mask) -> Ints:
 
 def beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Beneath:
     """The largest stress beneath contact, outside of singular zones."""
-    assert loads.pressed is not None
-    around = Circumference(fields, loads, Away(fields.points, loads.pressed))
+    around = _around(fields, loads)
     top = around.top(_away_from(zones, fields))
     r, z = (float(x) for x in fields.points[top.point])
     at = (r * float(np.cos(top.angle)), r * float(np.sin(top.angle)), z)
     return Beneath(top.value, at, top.instant)
+
+
+def maxima_beneath(fields: MeridianFields, loads: Loads, zones: tuple[Zone, ...]) -> Floats:
+    """The largest stress (T,), Pa, beneath contact at every instant."""
+    return _around(fields, loads).maxima(_away_from(zones, fields))
+
+
+def _around(fields: MeridianFields, loads: Loads) -> Circumference:
+    assert loads.pressed is not None
+    return Circumference(fields, loads, Away(fields.points, loads.pressed))
 
 
 def depths(

@@ -13,13 +13,14 @@ from fea.core.model import MeshBefore, MeshProblem, MeshSequence
 from fea.core.pin_loads import Loads, PinLoads
 from fea.core.zone import Zone
 from fea.harmonic.field import HarmonicField
+from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.free_surface import reader
-from fea.harmonic.kept_fields import FirstMesh
 from fea.harmonic.near_singularities import felt_beyond, inside, interval
 from fea.harmonic.section_solution import HarmonicSolution, SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference, Crest
 from geometry import ArgumentError, body_of_revolution
 from pinbase.arrays import Floats, Mask
+from pinbase.memo import Memo
 
 # The remainder of a pressure's series over its last harmonic, at most: terms go as +-1/(n^2 - 1).
 SERIES_REMAINDER_RATIO = 0.6
@@ -62,26 +63,30 @@ class HarmonicMesh:
 class Harmonic:
     """The harmonic model of any body of revolution (fea.core.model.Model).
 
-    first: the solution on the first mesh of an earlier run.
-    pressed: whether contact pressures act.
+    memo: of meshes and unit fields, shared with other problems.
+    first: the first mesh, if contact pressures act.
     """
 
     name = "harmonic"
 
-    def __init__(self, first: FirstMesh | None = None, pressed: bool = False) -> None:
+    def __init__(
+        self, memo: Memo | None = None, first: FirstMesh | None = None, pressed: bool = False
+    ) -> None:
         self.meshes = PRESSED_SECTION_MESHES if pressed else SECTION_MESHES
-        self._first = first or FirstMesh()
+        self._memo, self._first = memo, first
 
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> HarmonicMesh:
         """Solve one mesh, as every model does."""
-        posed = section_problem(problem, self._first)
+        posed = section_problem(problem, self._memo, self._first)
         results = () if before is None else before.results
         return HarmonicMesh(problem, harmonic_solution(posed, level, self.meshes.ratio, results))
 
 
-def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> SectionProblem:
+def section_problem(
+    problem: MeshProblem, memo: Memo | None = None, first: FirstMesh | None = None
+) -> SectionProblem:
     """The problem of a pin's section.
 
     Raises: ArgumentError for a pin that is not a body of revolution.
@@ -92,7 +97,7 @@ def section_problem(problem: MeshProblem, first: FirstMesh | None = None) -> Sec
             f"pin {problem.pin.name} is not a body of revolution", "not-axisymmetric"
         )
     return SectionProblem(
-        pin, problem.material, problem.clamps, problem.cases, problem.zones, first
+        pin, problem.material, problem.clamps, problem.cases, problem.zones, first, memo=memo
     )
 
 

@@ -20,10 +20,13 @@ from fea.core.pressed import ARC_COUNT, PressedArcs
 from fea.core.solution import StressAt, StressPoints
 from fea.core.zone import Zone
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.five_numbers import COSINE_COMPONENTS
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
+from fea.harmonic.stress_at import stress_at
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
+
+# Substitutes that are tried first; more change the time, never the result. Chosen by judgement.
+NEAREST_SUBSTITUTES = 24
 
 
 def stress_points(
@@ -36,37 +39,15 @@ def stress_points(
     if loads.pressed is None:
         surface = fields.outside(zones)
         surface[fields.skin :] = False
-        at = _of_fields(fields, loads)
+        at = stress_at(fields, loads)
         return StressPoints.on_meridian(fields.points, surface, len(loads), at)
     of = surface_points(fields, loads.pressed.rings, nu)
     substitutes, plain = Substitutes(of, loads.pressed), np.flatnonzero(of.relieved < 0)
-    at = replaced(_of_fields(of.fields, loads), substitutes.rows)
+    at = replaced(stress_at(of.fields, loads), substitutes.rows)
     return StressPoints.on_meridian(
         of.fields.points[plain], of.fields.outside(zones)[plain], len(loads),
         lambda rows, angles, instants: at(plain[rows], angles, instants),
     )  # fmt: skip
-
-
-def _of_fields(fields: MeridianFields, loads: PinLoads) -> StressAt:
-    """A function that gives the stress of unit fields under loads."""
-    acting = loads.coefficients()
-    units = [k for k, load in enumerate(fields.loads) if load in acting]
-    n = np.array([fields.loads[k].n for k in units])
-    amounts = np.zeros((len(loads), len(units), 2))
-    for i, k in enumerate(units):
-        amounts[:, i] = acting[fields.loads[k]]
-    even = COSINE_COMPONENTS[:, None]
-
-    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
-        # Cosine and sine parts by phase, as psi = n theta - p pi / 2 has them.
-        turns = np.outer(angles, n)[:, None, :]
-        c, s = np.cos(turns), np.sin(turns)
-        unit, now = fields.stress[rows][:, :, units], amounts[instants]
-        first = (unit * np.where(even, c, s)) @ now[..., 0].T
-        second = (unit * np.where(even, s, -c)) @ now[..., 1].T
-        return np.asarray((first + second).swapaxes(1, 2))
-
-    return at
 
 
 class Substitutes:
@@ -79,6 +60,7 @@ class Substitutes:
         ]
         amid = np.flatnonzero(of.relieved >= 0)
         self._may = np.setdiff1d(np.concatenate([outline, amid]), of.fields.unread)
+        self._order = np.full((len(self._x), len(self._may)), -1)
         self._known: dict[int, Mask] = {}
 
     def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
@@ -88,18 +70,26 @@ class Substitutes:
             rows.copy(),
         )
         some = np.flatnonzero(self.free.masked(rows))
-        point, place = np.unique(rows[some], return_inverse=True)
-        read = self.free.read(point, np.full(len(point), instant))[place, arc[some]]
-        lost = some[~read]
-        here, place = np.unique(rows[lost], return_inverse=True)
+        lost = some[~self.free.read_at(rows[some], instant, arc[some])]
         # The nearest substitute that is readable at the same angle; without one the point stays.
-        apart = np.linalg.norm(self._x[here][:, None] - self._x[self._may], axis=2)
-        order = np.argsort(apart, axis=1, kind="stable")[place]
-        readable = self._readable(instant)[order, arc[lost][:, None]]
-        first = order[np.arange(len(lost)), readable.argmax(axis=1)]
-        known = readable.any(axis=1)
-        out[lost[known]] = self._may[first[known]]
+        # Mostly that is among the first.
+        for count in (NEAREST_SUBSTITUTES, len(self._may)):
+            nearest, readable = self._nearest(rows[lost], count), self._readable(instant)
+            can = readable[nearest, arc[lost][:, None]]
+            known = can.any(axis=1)
+            first = nearest[np.arange(len(lost)), can.argmax(axis=1)]
+            out[lost[known]] = self._may[first[known]]
+            lost = lost[~known]
         return out
+
+    def _nearest(self, rows: Ints, count: int) -> Ints:
+        """The possible substitutes (J, count), the nearest first, of points (J,)."""
+        here, place = np.unique(rows, return_inverse=True)
+        new = here[self._order[here, 0] < 0]
+        if len(new):
+            apart = np.linalg.norm(self._x[new][:, None] - self._x[self._may], axis=2)
+            self._order[new] = np.argsort(apart, axis=1, kind="stable")
+        return self._order[here, :count][place]
 
     def _readable(self, instant: int) -> Mask:
         """The arcs (M, ARC_COUNT) on which possible substitutes are read at an instant."""

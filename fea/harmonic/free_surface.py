@@ -18,7 +18,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.core.pin_loads import Loads
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, RING_END_TOLERANCE, PressedArcs, Rings
@@ -27,12 +26,11 @@ from fea.harmonic.superposition import ALL_INSTANTS, Circumference
 from fea.harmonic.surface_stress import EDGE_STATIONS
 from pinbase.arrays import Floats, Ints, Mask
 
-Floats32 = NDArray[np.float32]
 # The fit of a cusp, chosen by judgement; `python -m benchmarks places` checks the stress.
 CUSP_FIT_DISTANCE = 0.06  # of the diameter, up to which points take part in the fit
 MIN_CUSP_POINTS = 6  # points of the fit at least
 MIN_CUSP_DISTANCE_RATIO = 2.0  # distance of the farthest point over that of the nearest, at least
-MAX_KEPT_INSTANTS = 256  # instants whose arcs are kept: about 50 MB
+MAX_KEPT_INSTANTS = 512  # instants whose arcs are kept: about 30 MB
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,8 @@ class SurfacePoints:
     -1 for others.
     on_skin: (S,) the point of the section's skin that each is, -1 for none.
     cusps: by point at the edge of a lug, how stress is extrapolated to it.
-    arcs: what FreeSurface has found of what is pressed at an instant.
+    shut_by: what shuts each point.
+    tables: arcs that are shut, by what is pressed at an instant.
     """
 
     fields: MeridianFields
@@ -52,7 +51,8 @@ class SurfacePoints:
     relieved: Ints
     on_skin: Ints
     cusps: dict[int, Cusp]
-    arcs: dict[tuple[bytes, int], tuple[Floats32, Mask, Mask]] = field(default_factory=dict)
+    shut_by: ShutBy
+    tables: dict[tuple[bytes, int], Mask] = field(default_factory=dict)
 
 
 def surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfacePoints:
@@ -78,6 +78,7 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
     rough = np.isin(np.arange(len(x)), fields.unread)
     # A point is not read if any point that it is made of is too rough.
     unread = np.concatenate([rough, rough[rows], [rough[c.near].any() for c in cusps]]).astype(bool)
+    relieving = np.concatenate([np.full(len(x), -1), ring[rows], none])
     return SurfacePoints(
         replace(
             fields,
@@ -88,9 +89,10 @@ def _surface_points(fields: MeridianFields, rings: Rings, nu: float) -> SurfaceP
             unread=np.flatnonzero(unread),
         ),
         np.concatenate([middle, middle[rows], places[:, 1]]),
-        np.concatenate([np.full(len(x), -1), ring[rows], none]),
+        relieving,
         np.concatenate([np.arange(len(x)), rows, none]),
         {first + k: cusp for k, cusp in enumerate(cusps)},
+        ShutBy.of(rings, rings.near(x[:, 0], x[:, 1], middle), relieving, cusps),
     )
 
 
@@ -170,72 +172,98 @@ def _beside(
     return Cusp((radius, z), side, ring, float(rings.exponent[ring]), near, between)
 
 
+@dataclass(frozen=True)
+class ShutBy:
+    """What shuts the points of a surface, as rows of a table of arcs that each instant has.
+
+    The table has the arcs that are pressed at, before and after the R rings (3 R rows); those on
+    which the E edges of lugs are read, on which they stand for points beside them, and those on
+    which they are not; and those on which the middles of rings are not read (R rows). The last row
+    is empty.
+
+    rows: (S, K) rows that shut a point; it is read on the arcs that are in none.
+    beside: by edge, the rows of rings that shut any point from which stress is extrapolated to it.
+    """
+
+    rows: Ints
+    beside: tuple[Ints, ...]
+    masked: Mask
+
+    @classmethod
+    def of(cls, rings: Rings, near: Mask, relieved: Ints, cusps: list[Cusp]) -> ShutBy:
+        """What shuts the points of a skin, and after these middles of rings and edges of lugs.
+
+        near: (P, 3 R) the points of the skin near the rings, as of Rings.near.
+        relieved: (S,) the ring of which each point is the middle, -1 for others.
+        """
+        count, edges = len(rings), len(cusps)
+        shuts = np.zeros((len(relieved), 4 * count + 2 * edges), dtype=bool)
+        shuts[: len(near), : 3 * count] = near
+        for k, cusp in enumerate(cusps):
+            shuts[cusp.between, 3 * count + k] = True
+            shuts[len(relieved) - edges + k, 3 * count + edges + k] = True
+        middles = np.flatnonzero(relieved >= 0)
+        shuts[middles, 3 * count + 2 * edges + relieved[middles]] = True
+        most, none = max(1, int(shuts.sum(axis=1).max(initial=0))), shuts.shape[1]
+        rows = np.full((len(shuts), most), none)
+        point, row = np.nonzero(shuts)
+        first = np.searchsorted(point, np.arange(len(shuts)))
+        rows[point, np.arange(len(point)) - first[point]] = row
+        beside = tuple(np.flatnonzero(near[cusp.near].any(axis=0)) for cusp in cusps)
+        return cls(rows, beside, np.asarray(shuts.any(axis=1)))
+
+    def table(self, pressed: PressedArcs, instant: int) -> Mask:
+        """The arcs (rows, ARC_COUNT) that are shut at an instant."""
+        shut = pressed.shut(instant)
+        of_edges = [~shut[rows].any(axis=0) for rows in self.beside]
+        read = np.array(of_edges, dtype=bool).reshape(-1, ARC_COUNT)
+        inner = pressed.widened(pressed.at_edges(instant))
+        return np.concatenate([shut, read, ~read, inner, np.zeros((1, ARC_COUNT), dtype=bool)])
+
+
 class FreeSurface:
     """The part of the circumference on which points of a surface in contact are read."""
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
-        self.pressed, self.relieved = pressed, of.relieved
-        self.edges = np.array(list(of.cusps), dtype=np.int64)
-        self.beside = [cusp.near for cusp in of.cusps.values()]
-        self._stands = np.zeros((len(of.relieved), len(self.edges)), dtype=bool)
-        for k, cusp in enumerate(of.cusps.values()):
-            self._stands[cusp.between, k] = True
-        r, z = of.fields.points.T
-        near = pressed.rings.near(r, z, of.middle) & (of.relieved < 0)[:, None]
-        near[self.edges] = False
-        some = near.any(axis=1) | (of.relieved >= 0) | self._stands.any(axis=1)
-        some[self.edges] = True
-        self._near = near[some].astype(np.float32)
-        self._row = np.full(len(some), -1)
-        self._row[some] = np.arange(some.sum())
-        self._known = of.arcs
+        self.pressed, self.relieved, self._shut_by = pressed, of.relieved, of.shut_by
+        self._masked = self._shut_by.masked
+        self._tables = of.tables
+        self._table_of: dict[int, Mask] = {}
 
     def masked(self, points: Ints) -> Mask:
         """Mask of the points that are read on a part of the circumference only."""
-        return np.asarray(self._row[points] >= 0)
+        return np.asarray(self._masked[points])
 
     def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
         """The arcs (J, A) on which pairs of points and instants are read; all arcs by default."""
-        out = np.ones((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
-        some = self._row[points] >= 0
-        for t in np.unique(instants).tolist():
-            here = np.flatnonzero((instants == t) & some)
-            out[here] = self._at(points[here], t, arcs)
+        out = np.empty((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
+        # Instants are few, and mostly follow each other: no search for those that differ.
+        order = np.argsort(instants, kind="stable")
+        for here in np.split(order, np.flatnonzero(np.diff(instants[order])) + 1):
+            if len(here):
+                table = self._table(int(instants[here[0]]))[:, arcs]
+                first, *others = self._shut_by.rows[points[here]].T
+                shut = table[first]
+                for row in others:
+                    shut |= table[row]
+                out[here] = ~shut
         return out
 
-    def _at(self, points: Ints, instant: int, arcs: Ints | slice) -> Mask:
-        """The arcs (P, A) on which masked points are read at an instant."""
-        key = self.pressed.on[instant].tobytes(), self.pressed.sector
-        if key not in self._known:
-            if len(self._known) == MAX_KEPT_INSTANTS:
-                self._known.clear()
-            self._known[key] = self._arcs(instant)
-        # Points near a ring are shut by its pressed arcs; middles of rings follow the rule for
-        # these; points between a cusp and its fit give way to the edge; edges are read where the
-        # surface beside them is free.
-        shut, edges, inner = (x[:, arcs] for x in self._known[key])
-        out = (self._near[self._row[points]] @ shut) == 0.0
-        ring = self.relieved[points]
-        out[ring >= 0] = inner[ring[ring >= 0]]
-        for k in np.flatnonzero(self._stands[points].any(axis=0)):
-            out[self._stands[points, k]] &= ~edges[k]
-        at_edge = np.isin(points, self.edges)
-        if at_edge.any():
-            out[at_edge] = edges[np.searchsorted(self.edges, points[at_edge])]
-        return np.asarray(out)
+    def read_at(self, points: Ints, instant: int, arcs: Ints) -> Mask:
+        """Whether points (J,) are read at an instant, each on one arc (J,)."""
+        shut = self._table(instant)[self._shut_by.rows[points].T, arcs]
+        return np.asarray(~np.logical_or.reduce(shut))
 
-    def _arcs(self, instant: int) -> tuple[Floats32, Mask, Mask]:
-        """Arcs that each ring shuts, (3 R, ARC_COUNT), and those read at edges and in rings.
-
-        Edges: (E, ARC_COUNT); middles: (R, ARC_COUNT).
-        """
-        shut = self.pressed.shut(instant).astype(np.float32)
-        edges = np.ones((len(self.edges), ARC_COUNT), dtype=bool)
-        for k, near in enumerate(self.beside):
-            rows = self._row[near]
-            edges[k] = ((self._near[rows[rows >= 0]] @ shut) == 0.0).all(axis=0)
-        inner = ~self.pressed.widened(self.pressed.at_edges(instant))
-        return shut, edges, inner
+    def _table(self, instant: int) -> Mask:
+        """The arcs that are shut at an instant, by the rows of ShutBy."""
+        if instant not in self._table_of:
+            key = self.pressed.on[instant].tobytes(), self.pressed.sector
+            if key not in self._tables:
+                if len(self._tables) == MAX_KEPT_INSTANTS:
+                    self._tables.clear()
+                self._tables[key] = self._shut_by.table(self.pressed, instant)
+            self._table_of[instant] = self._tables[key]
+        return self._table_of[instant]
 
 
 def reader(fields: MeridianFields, loads: Loads, nu: float) -> Circumference:

@@ -191,38 +191,6 @@ class HarmonicModel(HarmonicBody):
     ) -> None:
         super().__init__(pin, Section(section), material, clamps, pivot)
         self.material = material
-        self._moved: Moved | None = None
-        self._found: MeridianFields | None = None
-
-    def solve_more(
-        self,
-        loads: tuple[UnitLoad, ...],
-        extra: Floats = NO_POINTS,
-        ends: Iterable[tuple[float, float]] = (),
-    ) -> MeridianFields:
-        """The unit fields of at least these loads; earlier ones are not solved again.
-
-        extra, ends: as for `solve`, the same in all calls. Pressures on several surfaces are
-        superposed from those on each, since other such pressures may come later.
-        """
-        known = self._found
-        new = loads if known is None else tuple(x for x in loads if x not in known.loads)
-        if new:
-            fields = self._read(self._superposed(new), extra, ends)
-            self._found = fields if known is None else known.joined(fields)
-        assert self._found is not None
-        return self._found
-
-    def _superposed(self, loads: tuple[UnitLoad, ...]) -> Moved:
-        """The displacements under loads, superposed from those on single surfaces, solved once."""
-        known = self._moved
-        alone = tuple(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
-        new = alone if known is None else tuple(x for x in alone if x not in known.loads)
-        if new:
-            moved = self._solved(new)
-            self._moved = moved if known is None else known.joined(moved)
-        assert self._moved is not None
-        return self._moved.summed(loads)
 
     def solve(
         self,
@@ -237,9 +205,9 @@ class HarmonicModel(HarmonicBody):
 
         Raises: SolveError when the pin is not constrained or a check fails.
         """
-        return self._read(self._solved(loads), extra, ends)
+        return self.read(self.moved(loads), extra, ends)
 
-    def _solved(self, loads: tuple[UnitLoad, ...]) -> Moved:
+    def moved(self, loads: tuple[UnitLoad, ...]) -> Moved:
         """The displacements under unit loads, harmonic by harmonic."""
         u = np.zeros((len(self.space.nodes), 3, len(loads)))
         applied = np.zeros_like(u)
@@ -252,7 +220,7 @@ class HarmonicModel(HarmonicBody):
             u[:, :, here] = _polar(self.displace(n, forces, self._shifted(n, loads, here)))
         return moved
 
-    def _read(
+    def read(
         self, moved: Moved, extra: Floats, ends: Iterable[tuple[float, float]]
     ) -> MeridianFields:
         """The unit fields, read at the points of this mesh."""

@@ -14,7 +14,7 @@ from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.harmonic.beneath import just_beneath
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.kept_fields import FirstMesh
+from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.near_singularities import CORNER_ELEMENT_SIZES
 from fea.harmonic.quiet_corners import low_stress_fillets, numerous_fillets
@@ -25,6 +25,7 @@ from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
 from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
 from pinbase.arrays import Floats
+from pinbase.memo import Memo
 
 FIRST_MESH_SIZE = SectionSize()  # of the first mesh
 BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
@@ -66,8 +67,9 @@ class SectionProblem:
     """A body of revolution of a material, clamped at surfaces (by name), in some cases.
 
     singularities: those of any of the cases.
-    first: where the first mesh is kept for other loads.
+    first: the first mesh under contact pressures.
     besides: additional unit loads to be solved.
+    memo: of meshes and unit fields, shared with other problems.
     """
 
     pin: Pin
@@ -77,6 +79,7 @@ class SectionProblem:
     singularities: tuple[Zone, ...]
     first: FirstMesh | None = None
     besides: tuple[UnitLoad, ...] = ()
+    memo: Memo | None = None
 
 
 def harmonic_solution(
@@ -126,7 +129,16 @@ def harmonic_solution(
         elastic = material.youngs_modulus, material.poisson_ratio, material.density
         mesh = size, tuple(places), tuple(grades), quiet, read.tobytes(), ends
         key = pin, elastic, problem.clamps, *mesh
-        return (problem.first or FirstMesh()).fields(level, model, key, (loads, read, ends))
+        if not level and problem.first is not None:
+            return problem.first.fields(model, key, (loads, read, ends))
+        memo = problem.memo or Memo()
+
+        def fields() -> MeridianFields:
+            # Patterns of pressure change with any load, the mesh on which they act does not.
+            solved_before = memo.get(("model", *key), model) if rings else model()
+            return solved_before.solve(loads, read, ends)
+
+        return memo.get(("fields", loads, *key), fields)
 
     quiet = numerous_fillets(pin)
     if quiet and before:

@@ -112,8 +112,14 @@ class _Free:
         self.rows, self.place = np.flatnonzero(first), np.cumsum(first) - 1
         self.ring = pressed.rings.at(self.x[:, 0], of.middle[: fields.skin])
         self.around, self.free = Circumference(of.fields, loads), FreeSurface(of, pressed)
+        self._shown: dict[int, tuple[Floats, Mask]] = {}
 
     def stress(self, instant: int) -> tuple[Floats, Mask]:
+        if instant not in self._shown:
+            self._shown[instant] = self._stress(instant)
+        return self._shown[instant]
+
+    def _stress(self, instant: int) -> tuple[Floats, Mask]:
         every = self.around.stress(self.skin, instant, self.angles)
         read = self._read(self.skin, instant)
         pressed = np.logical_and.reduceat(self._on(instant), self.rows)

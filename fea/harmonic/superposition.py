@@ -455,16 +455,20 @@ class Circumference:
         points: (J,) numbers.
         angles: (A,) rad.
         """
-        out = np.zeros((len(points), len(angles), 6))
+        # The loads of a harmonic are summed first, then harmonics at each angle.
         here = self.fields.stress[points]
-        for wave in self._waves:
+        summed = np.empty((2, len(self._waves), len(points), 6))
+        for w, wave in enumerate(self._waves):
             unit = here[:, :, self._at[wave]]
-            first, second = (unit @ x[instant, wave] for x in (self._first, self._second))
-            c, s = np.cos(self._n[wave.start] * angles), np.sin(self._n[wave.start] * angles)
-            back = first[:, None] * c[:, None] + second[:, None] * s[:, None]
-            forth = first[:, None] * s[:, None] - second[:, None] * c[:, None]
-            out += np.where(COSINE_COMPONENTS, back, forth)
-        return out
+            for phase, amounts in enumerate((self._first, self._second)):
+                summed[phase, w] = unit @ amounts[instant, wave]
+        turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
+        c, s = np.cos(turns), np.sin(turns)
+        out = np.empty((len(angles), len(points), 6))
+        for some, factors in ((COSINE_COMPONENTS, (c, s)), (~COSINE_COMPONENTS, (s, -c))):
+            parts = np.ascontiguousarray(summed[..., some])
+            out[..., some] = np.tensordot(np.stack(factors, axis=1), parts, axes=2)
+        return out.swapaxes(0, 1)
 
 
 def _update_best(best: Floats, point: Ints, t: Ints, value: Floats, at: Ints) -> None:

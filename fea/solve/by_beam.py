@@ -9,7 +9,7 @@ from fea.core.over_time import rise_between, through_time
 from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.support.support import HeldPin, PinProblem, Reading, Solution
+from fea.support.support import HeldPin, PinProblem, Solution, StressReading
 from geometry import body_of_revolution
 
 
@@ -34,5 +34,5 @@ def by_beam(
         rise = rise_between(field, loads, between)
         field = BeamField(pin, problem.material, held.clamps, loads)
     instant, spent = field.estimate.instant, time.perf_counter() - start
-    reading = Reading(field.evidence(spent, remarks, rise), field, loads, instant)
+    reading = StressReading(field.evidence(spent, remarks, rise), field, loads, instant)
     return held.finished(reading, requirement)

@@ -24,6 +24,7 @@ from fea.core.requirement import DECIDED_TEXT, Requirement, decided
 from fea.cut.evaluate import LocalSolids
 from fea.cut.region import RingedCutPin, corner_refusal, loaded_bands, refusal, unringed
 from fea.harmonic.evaluate import Harmonic
+from fea.harmonic.first_mesh import FirstMesh
 from fea.solid.evaluate import Solid
 from fea.solve.by_beam import by_beam
 from fea.solve.refine import refine, zones_of
@@ -169,7 +170,7 @@ def _beam_instead(at: Attempt) -> dict[str, Solution]:
 
 def _harmonic(at: Attempt) -> dict[str, Solution]:
     pressed = any(at.held.start(case.case).pressed is not None for case in at.problem.cases)
-    return at.refined(Harmonic(at.problem.first, pressed))
+    return at.refined(Harmonic(at.problem.memo, pressed=pressed))
 
 
 def _local(at: Attempt) -> dict[str, Solution]:
@@ -187,7 +188,7 @@ def _solid(at: Attempt) -> dict[str, Solution]:
     return at.refined(Solid(at.held.pin.meshed), why)
 
 
-def _local_solids(at: Attempt) -> LocalSolids:
+def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
     """The model with solids about the cuts of a pin.
 
     Raises: Refused where it does not apply.
@@ -203,7 +204,7 @@ def _local_solids(at: Attempt) -> LocalSolids:
     why = refusal(whole, clamps, loaded) or corner_refusal(whole, zones)
     if why is not None:
         raise Refused(why.text, why.codes[-1])
-    return LocalSolids(whole, loaded_bands(whole, loaded), problem.first)
+    return LocalSolids(whole, loaded_bands(whole, loaded), problem.memo, first)
 
 
 def _contact(at: Attempt) -> dict[str, Solution]:
@@ -217,14 +218,14 @@ def _contact(at: Attempt) -> dict[str, Solution]:
     ready = tuple(c for c in cases if held.resolved(c.case, requirement))
     if not ready:
         return {}
-    problem = replace(at.problem, cases=ready, first=held.model.first)
+    problem, first = replace(at.problem, cases=ready), held.model.first
     at = replace(at, problem=problem, requirement=held.of_meshes(requirement))
-    model: Harmonic | LocalSolids = Harmonic(problem.first, True)
+    model: Harmonic | LocalSolids = Harmonic(problem.memo, first, True)
     why = CONTACT_REASON
     if isinstance(held.pin, RingedCutPin):
         why = CUT_CONTACT_REASON
         try:
-            model = _local_solids(at)
+            model = _local_solids(at, first)
         except Refused as refused:
             raise SolveError(
                 f"pin {held.pin.name}: no local solid about the cuts will do, since {refused}",

@@ -28,7 +28,7 @@ from fea.cut.region import unringed
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
 from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
-from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading
 from geometry import PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
@@ -210,10 +210,12 @@ def _at_crest(
     return more, replace(seen, results=(*seen.results[:-1], last))
 
 
-def _reading(evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory) -> Reading:
+def _reading(
+    evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory
+) -> StressReading:
     """What the last mesh says about a case."""
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
     history = seen.under(governing)
     evidence = replace(evidence, governing=governing, history=history, solids=mesh.solids)
-    return Reading(evidence, field, loads, instant)
+    return StressReading(evidence, field, loads, instant)

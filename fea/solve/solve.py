@@ -10,7 +10,6 @@ from fea.core.material import Material
 from fea.core.over_time import Between
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.kept_fields import FirstMesh
 from fea.solve.choose import Attempt, rungs
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, silent
 from geometry import GeometryError, PinLike
@@ -60,12 +59,9 @@ def solve_pin(
     requirement: Requirement = DEFAULT_REQUIREMENT,
     progress: Progress = silent,
     between: Mapping[str, Between] | None = None,
-    first: FirstMesh | None = None,
 ) -> tuple[Solution, ...]:
     """Solutions of a pin under prescribed loads; clamps: names of the clamped surfaces."""
-    problem = PinProblem(
-        pin, material, (), cases, between or {}, clamps=clamps, first=first or FirstMesh()
-    )
+    problem = PinProblem(pin, material, (), cases, between or {}, clamps=clamps)
     return solve(problem, requirement, progress)
 
 

@@ -16,7 +16,7 @@ from fea.core.verdict import judge
 from fea.section.place import found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
-from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
 from geometry import PinLike, body_of_revolution
 
 MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
@@ -79,7 +79,7 @@ class HeldPrescribed:
         """The whole requirement, since the loads have no error."""
         return requirement
 
-    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
+    def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution with the largest stress of sections, where the pin is a body of
         revolution.
         """

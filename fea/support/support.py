@@ -13,11 +13,11 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.solution import StressField
 from fea.core.verdict import Evidence
-from fea.harmonic.kept_fields import FirstMesh
 from fea.support.cell_pressure import CellPressure
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointResult
 from geometry import Pin, PinLike, body_of_revolution
+from pinbase.memo import Memo
 
 Progress = Callable[[str], None]
 
@@ -36,7 +36,7 @@ class PinProblem:
     between: for the cases that are motions, the loads at any times; in others only the given
     instants count.
     also: by case, other loads under which its stress will be requested.
-    first: the solution on the first mesh of an earlier run.
+    memo: of flexibilities, meshes and unit fields, shared with other problems.
     """
 
     pin: PinLike
@@ -46,7 +46,7 @@ class PinProblem:
     between: Mapping[str, Between] = field(default_factory=dict)
     also: Mapping[str, PinLoads] = field(default_factory=dict)
     clamps: tuple[str, ...] = ()
-    first: FirstMesh | None = None
+    memo: Memo | None = None
 
 
 class HeldPin(Protocol):
@@ -98,7 +98,7 @@ class HeldPin(Protocol):
         """The requirement on the meshes, given the support's own error."""
         ...
 
-    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
+    def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution of a case, judged once, with the results of the support.
 
         These are its part of the error, sections, contact, and the range over the uncertain
@@ -130,7 +130,7 @@ class Support(Protocol):
 
 
 @dataclass(frozen=True)
-class Reading:
+class StressReading:
     """What a model has found of a case: evidence that nobody has judged yet.
 
     answer: the stress on the last mesh.

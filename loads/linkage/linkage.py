@@ -260,7 +260,12 @@ class Linkage:
 
     def joint(self, name: str) -> Joint:
         """The joint of this name."""
-        return next(j for j in self.joints if j.name == name)
+        return self._joints[name]
+
+    @cached_property
+    def _joints(self) -> dict[str, Joint]:
+        """The joints by name."""
+        return {j.name: j for j in self.joints}
 
     def carrier(self, joint: Joint) -> str:
         """The item of which the pin is a part: a body, the ground, or itself when it floats."""
@@ -268,11 +273,17 @@ class Linkage:
 
     def joints_on(self, body: str) -> tuple[Joint, ...]:
         """The joints at which a body (or the ground) turns or of which it carries the pin."""
-        return tuple(
-            j
-            for j in self.joints
-            if j.fixed_in == body or any(c.body == body for c in j.connections)
-        )
+        return self._joints_on.get(body, ())
+
+    @cached_property
+    def _joints_on(self) -> dict[str, tuple[Joint, ...]]:
+        """The joints by body, in their order."""
+        joints: dict[str, tuple[Joint, ...]] = {}
+        for joint in self.joints:
+            for body in dict.fromkeys((joint.fixed_in, *(c.body for c in joint.connections))):
+                if body is not None:
+                    joints[body] = (*joints.get(body, ()), joint)
+        return joints
 
     @cached_property
     def length_scale(self) -> float:

@@ -21,6 +21,7 @@ from pinbase.arrays import Floats
 Ints = NDArray[np.int64]
 
 MAX_POWER_ROUNDS = 30  # of the power method for a condition number
+NUMPY_SUMS_IN_ORDER = 8  # terms from which numpy may sum in pairs instead
 CONDITION_TOLERANCE = 1e-6  # relative change in the last round; the error is of that order
 
 
@@ -34,6 +35,11 @@ class Step:
 
     rows: Ints
     columns: Ints
+
+    @cached_property
+    def block(self) -> tuple[Ints, Ints]:
+        """Index of these rows and columns in a matrix."""
+        return self.rows[:, None], self.columns[None, :]
 
 
 def elimination(pattern: NDArray[np.bool_]) -> tuple[Step, ...]:
@@ -78,11 +84,11 @@ class Factors:
         # For every step: its reflection I - u u^T (T last), and its row of R, the diagonal first.
         self._reflections, self._R = list[Floats](), list[Floats]()
         for step in steps:
-            block = np.ix_(step.rows, step.columns)
-            front = work[block]
+            front = work[step.block]
             u = _reflection(front[:, 0])
-            front -= u[:, None] * _total(u[:, None] * front)
-            work[block] = front
+            if len(u) > 1:
+                front -= u[:, None] * _total(u[:, None] * front)
+                work[step.block] = front
             self._reflections.append(u)
             self._R.append(front[0])
 
@@ -110,21 +116,23 @@ class Factors:
 
     def solve(self, b: Floats) -> Floats:
         """The least-squares solution x (T, columns) of J x = b (T, rows)."""
+        self._require_pivots()
         y = self._apply_q_transposed(np.array(b.T, order="C"))
         x = np.empty((self._n, len(b)))
         for step, row in zip(reversed(self._steps), reversed(self._R), strict=True):
             column, others = step.columns[0], step.columns[1:]
             rest = y[step.rows[0]] - _total(row[1:] * x[others])
-            x[column] = _divided(rest, row[0])
+            x[column] = rest / row[0]
         return np.ascontiguousarray(x.T)
 
     def solve_transposed(self, g: Floats) -> Floats:
         """The shortest solution y (T, rows) of J^T y = g (T, columns)."""
+        self._require_pivots()
         rest = np.array(g.T, order="C")
         y = np.zeros((self._rows, len(g)))
         for step, row in zip(self._steps, self._R, strict=True):
             column, others = step.columns[0], step.columns[1:]
-            y[step.rows[0]] = _divided(rest[column], row[0])
+            y[step.rows[0]] = rest[column] / row[0]
             rest[others] -= row[1:] * y[step.rows[0]]
         return np.ascontiguousarray(self._apply_q(y).T)
 
@@ -142,6 +150,16 @@ class Factors:
         return np.stack([row[0] for row in self._R])
 
     @cached_property
+    def _regular(self) -> bool:
+        """Whether no pivot is zero."""
+        return bool(self._diagonal.all())
+
+    def _require_pivots(self) -> None:
+        """Raises: LinAlgError where a pivot is zero, as LAPACK would."""
+        if not self._regular:
+            raise np.linalg.LinAlgError("singular matrix")
+
+    @cached_property
     def weakest(self) -> Floats:
         """Smallest over largest pivot, (T,), which is tiny where J loses rank."""
         pivots = np.abs(self._diagonal)
@@ -156,12 +174,13 @@ class Factors:
 
     def _solve_gram(self, x: Floats) -> Floats:
         """The solution (R^T R)^-1 x for x (columns, T), in place."""
+        self._require_pivots()
         for step, row in zip(self._steps, self._R, strict=True):
-            x[step.columns[0]] = _divided(x[step.columns[0]], row[0])
+            x[step.columns[0]] /= row[0]
             x[step.columns[1:]] -= row[1:] * x[step.columns[0]]
         for step, row in zip(reversed(self._steps), reversed(self._R), strict=True):
             column, others = step.columns[0], step.columns[1:]
-            x[column] = _divided(x[column] - _total(row[1:] * x[others]), row[0])
+            x[column] = (x[column] - _total(row[1:] * x[others])) / row[0]
         return x
 
     def condition(self) -> Floats:
@@ -220,18 +239,14 @@ def _reflection(x: Floats) -> Floats:
 def _reflect(b: Floats, rows: Ints, u: Floats) -> None:
     """Reflect some of the rows of b (rows, ..., T) in place, by I - u u^T."""
     if len(rows) > 1:
-        u = u.reshape(len(u), *(1,) * (b.ndim - 2), -1)
+        if b.ndim > 2:
+            u = u.reshape(len(u), *(1,) * (b.ndim - 2), -1)
         front = b[rows]
         b[rows] = front - u * _total(u * front)
 
 
 def _total(x: Floats) -> Floats:
     """Sum over the first axis, in its order: the same bits whatever the number of systems."""
+    if len(x) < NUMPY_SUMS_IN_ORDER:
+        return np.asarray(np.add.reduce(x, axis=0, initial=0.0))
     return reduce(np.add, x, np.zeros(x.shape[1:]))
-
-
-def _divided(a: Floats, pivot: Floats) -> Floats:
-    """The quotient a / pivot. Raises: LinAlgError where a pivot is zero, as LAPACK would."""
-    if not pivot.all():
-        raise np.linalg.LinAlgError("singular matrix")
-    return a / pivot

@@ -171,8 +171,12 @@ class Loops:
         angles = self.frames - 1
         turn = np.ones((len(q), self.frames), dtype=complex)
         np.exp(1j * q[:, :angles], out=turn[:, 1:])
-        drawn = np.array([number(s.axis) for s in self.linkage.sliders], dtype=complex)
-        return Pose(turn, turn[:, self.slider_frame] * drawn, q[:, angles:])
+        return Pose(turn, turn[:, self.slider_frame] * self._drawn_axes, q[:, angles:])
+
+    @cached_property
+    def _drawn_axes(self) -> Complex:
+        """Directions of the sliders as drawn, (S,) complex unit vectors."""
+        return np.array([number(s.axis) for s in self.linkage.sliders], dtype=complex)
 
     def place(self, pose: Pose, points: Points) -> Complex:
         """Positions of points, (T, N) complex, m."""
@@ -249,9 +253,9 @@ class Loops:
             J[rows, columns] += slopes.real
             J[count + rows, columns] += slopes.imag
 
-        turning, sliding = self.closures.turning[1:], self.closures.sliding
-        f, k = np.nonzero(turning)
-        add(k, f, (1j / self.scale[f] * turning[f, k])[:, None] * pose.turn.T[1 + f])
+        f, k, slopes = self._turning_slopes
+        add(k, f, slopes * pose.turn.T[1 + f])
+        sliding = self.closures.sliding
         for s, frame in enumerate(self.slider_frame):
             k = np.flatnonzero(sliding[s])
             along = sliding[s, k, None] * pose.axis[:, s]
@@ -260,6 +264,15 @@ class Loops:
                 add(k, frame - 1, 1j / self.scale[frame - 1] * pose.extension[:, s] * along)
         J[2 * count :] = self._fixed_rows[:, :, None]
         return np.moveaxis(J, -1, 0)
+
+    @cached_property
+    def _turning_slopes(self) -> tuple[Ints, Ints, Complex]:
+        """Frames (less the ground's) and closures that depend on each other, (N,) each, and the
+        slope of the closure over the direction of the frame, (N, 1).
+        """
+        turning = self.closures.turning[1:]
+        f, k = np.nonzero(turning)
+        return f, k, (1j / self.scale[f] * turning[f, k])[:, None]
 
     def factors(self, pose: Pose) -> Factors:
         """Orthogonal factors of the Jacobian at T instants."""

@@ -27,6 +27,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
     """
     linkage, loops = motion.linkage, motion.loops
     out: dict[tuple[str, str], Floats] = {}
+    beside = _neighbours(linkage)
     for k, drive in enumerate(linkage.drives):
         unit = np.zeros_like(motion.speeds)
         unit[:, k] = 1.0
@@ -36,7 +37,7 @@ def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
         for body, ends in _links(motion, rates, still).items():
             angles = _angles(motion, rates, body, ends)
             for joint, angle in zip(ends, angles, strict=True):
-                if _moved_by(linkage, body, joint, still, drivers):
+                if _moved_by(linkage, beside, body, joint, still | {body}, drivers):
                     key = (body, joint.name)
                     out[key] = np.minimum(out[key], angle) if key in out else angle
     return out
@@ -105,34 +106,48 @@ def _spin(motion: Motion, rates: Floats, body: str) -> Floats:
 
 
 def _moved_by(
-    linkage: Linkage, link: str, end: Joint, still: set[str], drivers: tuple[str, str]
+    linkage: Linkage,
+    beside: dict[str, set[str]],
+    link: str,
+    end: Joint,
+    blocked: set[str],
+    drivers: tuple[str, str],
 ) -> bool:
     """Whether a link moves the bodies at this end.
 
     It does if the drive does not reach them in another way, or reaches both ends of the link.
+    blocked: the link, and the bodies at rest.
     """
     other = next(j for j in linkage.joints_on(link) if j != end)
-    blocked = still | {link}
-    return not _reached(linkage, end, blocked, drivers) or _reached(
-        linkage, other, blocked, drivers
-    )
+    return not _reached(beside, end, blocked, drivers) or _reached(beside, other, blocked, drivers)
 
 
-def _reached(linkage: Linkage, end: Joint, blocked: set[str], drivers: tuple[str, str]) -> bool:
+def _reached(
+    beside: dict[str, set[str]], end: Joint, blocked: set[str], drivers: tuple[str, str]
+) -> bool:
     """Whether the drive reaches a joint without passing through blocked bodies."""
-    seen, queue = set[str](), _bodies(end)
+    seen, queue = set(blocked), _bodies(end)
     while queue:
         body = queue.pop()
-        if body in blocked or body in seen:
+        if body in seen:
             continue
         if body in drivers:
             return True
         seen.add(body)
-        for joint in linkage.joints_on(body):
-            queue += _bodies(joint)
-        pairs = [(s.base, s.moving) for s in linkage.sliders] + [t.bodies for t in linkage.teeth]
-        queue += [other for pair in pairs if body in pair for other in pair]
+        queue += beside[body]
     return False
+
+
+def _neighbours(linkage: Linkage) -> dict[str, set[str]]:
+    """The bodies that a joint, a slider or teeth connect with each body."""
+    groups = [_bodies(joint) for joint in linkage.joints]
+    groups += [[s.base, s.moving] for s in linkage.sliders]
+    groups += [[*t.bodies] for t in linkage.teeth]
+    beside: dict[str, set[str]] = {}
+    for group in groups:
+        for body in group:
+            beside.setdefault(body, set()).update(group)
+    return beside
 
 
 def _bodies(joint: Joint) -> list[str]:

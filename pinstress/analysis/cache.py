@@ -2,7 +2,7 @@
 its content depends.
 
 A file is a line with our name, the hash of its own name and its content, and the content
-(pinstress.analysis.serialise). A file that is damaged, renamed or of another type counts as
+(pinbase.records). A file that is damaged, renamed or of another type counts as
 missing, and so does a folder that cannot be written. Other programs, too, name files by hashes:
 only files that begin with our line are ever removed.
 """
@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from pinbase.platform import portable
-from pinstress.analysis.serialise import pack, unpack
+from pinbase.records import pack, unpack
 
 T = TypeVar("T")
 
@@ -66,7 +66,7 @@ class Cache:
     limit: int = MAX_CACHE_SIZE
 
     def key(self, inputs: object) -> str:
-        """Return the name of the answer to a question (a value that pinstress.analysis.serialise
+        """Return the name of the answer to a question (a value that pinbase.records
         packs).
         """
         return hashlib.sha256(self.program.encode() + pack(inputs)).hexdigest()

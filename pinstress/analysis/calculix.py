@@ -8,43 +8,46 @@ from assess.opinion.opinions import Opinion
 from geometry import body_of_revolution
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
-from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.tasks import Task
+from reports.data.results import PinResult
 
 
-def ask_calculix(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
+def ask_calculix(
+    plan: Plan, task: Task, rows: tuple[PinResult, ...], tell: Tell
+) -> tuple[Opinion, ...]:
     """Solve the rows of a task once more with CalculiX; called in the task's own process."""
-    return _in_lugs(task, solved, tell) if task.lugs else _alone(plan, task, solved, tell)
+    return _in_lugs(task, rows, tell) if task.lugs else _alone(plan, task, rows, tell)
 
 
-def _alone(plan: Plan, task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
+def _alone(plan: Plan, task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opinion, ...]:
     """Return the opinions on a pin with prescribed clamps and loads."""
-    distance = plan.requirement.distance
+    peaks, distance = tuple(row.maximum for row in rows), plan.requirement.distance
     try:
         return second_opinions(
-            task.pin, task.material, task.clamps, task.loads, solved.peaks, distance, tell
+            task.pin, task.material, task.clamps, task.loads, peaks, distance, tell
         )
     except ArithmeticError as error:  # MeshError, SolveError: no mesh to compare on
         return tuple(
             Opinion(p.pin, p.case, p.max_von_mises, p.own_error, failure=str(error))
-            for p in solved.peaks
+            for p in peaks
             if p.verdict != "rigid"
         )
 
 
-def _in_lugs(task: Task, solved: PinOutcome, tell: Tell) -> tuple[Opinion, ...]:
+def _in_lugs(task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opinion, ...]:
     """Return the opinions on the loaded rows of a pin in lugs."""
     pin = body_of_revolution(task.pin)
     if pin is None:
         why = "contact of a pin with holes is not compared with CalculiX"
         return tuple(
-            Opinion(p.pin, p.case, p.max_von_mises, p.own_error, failure=why) for p in solved.peaks
+            Opinion(row.pin, row.case, row.max_von_mises, row.maximum.own_error, failure=why)
+            for row in rows
         )
     seated = PinInLugs(pin, task.material, task.lugs)
     return tuple(
-        opinion_in_lugs(seated, peak, joint, tell)
-        for peak, joint in zip(solved.peaks, solved.joints, strict=True)
-        if joint is not None and peak.max_von_mises
+        opinion_in_lugs(seated, row.maximum, row.joint, tell)
+        for row in rows
+        if row.joint is not None and row.max_von_mises
     )
 
 

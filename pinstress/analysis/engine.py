@@ -8,15 +8,15 @@ updated in place.
 from __future__ import annotations
 
 import hashlib
-from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Literal, TypeVar
 
+from pinbase.memo import Memo
+from pinbase.records import pack, unpack
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import RunResults, solve
-from pinstress.analysis.serialise import pack, unpack
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.in_python import changed_study
 from reports.data.results import PinResult
@@ -27,43 +27,33 @@ Changes = Mapping[str, float | str]  # "pin.E.profile[2].diameter": 2.4, in the 
 
 AS_IS: Changes = MappingProxyType({})
 QUICK_TOLERANCE = 0.1  # of a quick answer, whose error says how far it is to be believed
-MAX_MEMO_SIZE = 2 * 10**8  # bytes
 
 
-class Memo:
-    """Solved pins by the content of all they depend on, in memory; the oldest go first.
+class SolvedPins:
+    """Solved pins by the content of all they depend on (pinstress.analysis.cache.OutcomeStore)."""
 
-    max_size: bytes that are kept.
-    """
-
-    def __init__(self, max_size: int = MAX_MEMO_SIZE) -> None:
-        self._max_size, self._size = max_size, 0
-        self._entries: OrderedDict[str, bytes] = OrderedDict()
+    def __init__(self, memo: Memo) -> None:
+        self._memo = memo
 
     def key(self, inputs: object) -> str:
-        """The name of what these inputs yield (pinstress.analysis.serialise packs them)."""
+        """The name of what these inputs yield (pinbase.records packs them)."""
         return hashlib.sha256(pack(inputs)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:
         """The value of a key, a `kind`; None where nothing is remembered."""
-        if key not in self._entries:
-            return None
-        self._entries.move_to_end(key)
-        return unpack(kind, self._entries[key])
+        known = self._memo.read(key)
+        return None if known is None else unpack(kind, known)
 
     def write(self, key: str, value: object) -> None:
         """Remember a value."""
-        self._size -= len(self._entries.pop(key, b""))
-        self._entries[key] = pack(value)
-        self._size += len(self._entries[key])
-        while self._size > self._max_size and len(self._entries) > 1:
-            self._size -= len(self._entries.popitem(last=False)[1])
+        self._memo.write(key, pack(value))
 
 
 class Engine:
     """A study, asked with changes. It lives in one process.
 
-    pins, cases: names; all by default. memo: shared with other engines, perhaps.
+    pins, cases: names; all by default. memo: of solved pins, and of the flexibilities, meshes and
+    unit fields of pins that have changed since; shared with other engines, perhaps.
     """
 
     def __init__(
@@ -77,7 +67,7 @@ class Engine:
         self.study = study
         self._pins = None if pins is None else list(pins)
         self._cases = None if cases is None else list(cases)
-        self._memo = memo or Memo()
+        self._memo = Memo() if memo is None else memo
 
     def changed(self, changes: Changes = AS_IS) -> Study:
         """The study with other values by their keys, in its own units or as texts with a unit.
@@ -125,7 +115,8 @@ class Engine:
     ) -> RunResults:
         plan = prepare(self.changed(changes), pins=pins, cases=self._cases)
         plan = replace(plan, sensitive=sensitive)
-        return solve(_quick(plan) if accuracy == "quick" else plan, cache=self._memo)
+        plan = _quick(plan) if accuracy == "quick" else plan
+        return solve(plan, cache=SolvedPins(self._memo), memo=self._memo)
 
 
 def _of_pin(key: str) -> bool:

@@ -8,12 +8,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from fea.core.requirement import Model
+from pinbase.memo import Memo
 from pinbase.processes.pool import processes
 from pinbase.processes.threads import one_thread
 from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.solve import keep_none, solve_tasks
+from pinstress.analysis.solve import solve_tasks
 from pinstress.study.reading.choices import require_count
 from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study
@@ -191,10 +192,15 @@ def run(
 
 
 def solve(
-    plan: Plan, *, fields: bool = False, jobs: int | None = 1, cache: OutcomeStore | None = None
+    plan: Plan,
+    *,
+    fields: bool = False,
+    jobs: int | None = 1,
+    cache: OutcomeStore | None = None,
+    memo: Memo | None = None,
 ) -> RunResults:
     """Solve what `prepare` returned; fields, jobs: as in `run`. cache: where pins that were solved
-    before are found, and the others kept.
+    before are found, and the others kept. memo: of parts of their solutions.
 
     Raises: InputError where the study has [fatigue] and its extra is not installed, and for what is
     no number of jobs.
@@ -209,7 +215,8 @@ def solve(
     most = 1 if fields else processes(jobs)
     with one_thread():
         results = results_of(
-            plan, solve_tasks(plan, keep if fields else keep_none, jobs=most, cache=cache)
+            plan,
+            solve_tasks(plan, keep if fields else None, jobs=most, cache=cache, memo=memo),
         )
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
     return RunResults(**plain, fields=kept_fields, plan=plan)

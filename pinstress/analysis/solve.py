@@ -13,13 +13,14 @@ from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
 from fea.core.requirement import Joints, Requirement
-from fea.harmonic.kept_fields import FirstMesh
 from fea.solid.evaluate import SOLID_MESHES
 from fea.solve.solve import solve
 from fea.support.foundation.variations import prescribed_ranges
 from fea.support.records import JointResult
 from fea.support.support import PinProblem, Solution
+from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
+from pinbase.records import Unit, in_units
 from pinstress.analysis import checks, gather_fields
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
 from pinstress.analysis.assessed.situations import assessed
@@ -33,31 +34,27 @@ from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_
 from pinstress.study.model.pins import shape_notes
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from reports.data.in_units import Unit, in_units
-from reports.data.results import Field
+from reports.data.results import Field, PinResult
 
 # Of a dimension, m, whose effect is found.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
 
 Keep = Callable[[Field], None]
-Ask = Callable[[Plan, Task, PinOutcome, Tell], tuple[Opinion, ...]]
+Ask = Callable[[Plan, Task, tuple[PinResult, ...], Tell], tuple[Opinion, ...]]
 
 
-def keep_none(_: Field) -> None:
-    """Keep no field. Not a lambda: it is sent to processes that are started anew."""
-
-
-def _ask_none(_: Plan, __: Task, ___: PinOutcome, ____: Tell) -> tuple[Opinion, ...]:
+def _ask_none(_: Plan, __: Task, ___: tuple[PinResult, ...], ____: Tell) -> tuple[Opinion, ...]:
     return ()
 
 
 def solve_tasks(
     plan: Plan,
-    keep: Keep = keep_none,
+    keep: Keep | None = None,
     progress: Progress = lambda _, __: None,
     ask: Ask = _ask_none,
     jobs: int = 1,
     cache: OutcomeStore | None = None,
+    memo: Memo | None = None,
 ) -> list[PinOutcome]:
     """Return the outcome of every task of a plan, in their order.
 
@@ -66,15 +63,16 @@ def solve_tasks(
     `failed`; the others continue.
 
     keep: called with every field, in the study's units, as soon as it exists, in the task's
-    process.
+    process; without it fields are not made.
     progress: called with the current step and the completed part of the work.
     ask: gives a second opinion on a task, in the task's process, and reports its progress.
     cache: where earlier tasks are looked up, and new ones are stored.
+    memo: of flexibilities and meshes, for tasks that are solved in this process.
     """
-    show = partial(_in_units, plan.study.system.factor, keep)
+    show = None if keep is None else partial(_in_units, plan.study.system.factor, keep)
     order = sorted(range(len(plan.tasks)), key=lambda i: _effort(plan, plan.tasks[i]), reverse=True)
     work = [
-        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache))
+        Job(f"pin {task.pin.name}", partial(_attempt, plan, task, show, ask, cache, memo))
         for task in (plan.tasks[i] for i in order)
     ]
     outcomes: dict[int, PinOutcome] = {}
@@ -110,21 +108,31 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
 
 def _attempt(
-    plan: Plan, task: Task, keep: Keep, ask: Ask, cache: OutcomeStore | None, tell: Tell
+    plan: Plan,
+    task: Task,
+    keep: Keep | None,
+    ask: Ask,
+    cache: OutcomeStore | None,
+    memo: Memo | None,
+    tell: Tell,
 ) -> PinOutcome:
     try:
         if cache is None:
-            solved = _solve(plan, task, keep, tell)
+            solved = _solve(plan, task, keep, memo, tell)
         else:
-            solved = _solve_once(plan, task, keep, cache, tell)
-        return _assessed(plan, task, replace(solved, opinions=ask(plan, task, solved, tell)))
+            solved = _solve_once(plan, task, keep, cache, memo, tell)
+        opinions = {x.case: x for x in ask(plan, task, solved.rows, tell)}
+        rows = (replace(row, second_opinion=opinions.get(row.case)) for row in solved.rows)
+        return replace(solved, rows=tuple(assessed(plan.study, task, row) for row in rows))
     except MemoryError:
         return _failed(plan, task, "out of memory; a larger tolerance needs less")
     except ArithmeticError as error:  # MeshError, SolveError and what numpy raises
         return _failed(plan, task, str(error))
 
 
-def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: Tell) -> PinOutcome:
+def _solve_once(
+    plan: Plan, task: Task, keep: Keep | None, cache: OutcomeStore, memo: Memo | None, tell: Tell
+) -> PinOutcome:
     """Return a task's outcome from the cache; else solve it, and store it there.
 
     An outcome without a limit load that would take too long has a key of its own: it does not
@@ -137,46 +145,42 @@ def _solve_once(plan: Plan, task: Task, keep: Keep, cache: OutcomeStore, tell: T
         entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
         tell(f"pin {task.pin.name}, as solved before")
-        for field in entry.fields:
-            keep(field)
-        return replace(entry.solved, before=True)
+        if keep is not None:
+            for field in entry.fields:
+                keep(field)
+        return replace(entry.solved, cached=True)
     fields: list[Field] = []
 
     def keep_both(field: Field) -> None:
+        assert keep is not None
         keep(field)
         fields.append(field)
 
-    solved = _solve(plan, task, keep_both, tell)
-    if independent_of_memory(plan, task, solved.peaks):
-        stopped = any(limit is not None and limit.stopped for limit in solved.limits)
+    solved = _solve(plan, task, keep_both if keep else None, memo, tell)
+    if independent_of_memory(plan, task, [row.maximum for row in solved.rows]):
+        stopped = any(row.limit_load is not None and row.limit_load.stopped for row in solved.rows)
         cache.write(lacking if lacking and stopped else key, Entry(solved, tuple(fields)))
     return solved
 
 
 def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
     name, model = task.pin.name, plan.requirement.model
-    peaks = tuple(Maximum(name, case.case, model, "failed", reason) for case in task.loads)
-    return _assessed(plan, task, PinOutcome(peaks))
-
-
-def _assessed(plan: Plan, task: Task, solved: PinOutcome) -> PinOutcome:
-    none = (None,) * len(solved.peaks)
-    rows = zip(solved.peaks, solved.joints or none, solved.limits or none, strict=True)
-    return replace(solved, strength=tuple(assessed(plan.study, task, *row) for row in rows))
+    peaks = (Maximum(name, case.case, model, "failed", reason) for case in task.loads)
+    return PinOutcome(tuple(assessed(plan.study, task, PinResult(peak)) for peak in peaks))
 
 
 def solutions(
-    study: Study, task: Task, requirement: Requirement, tell: Tell, first: FirstMesh | None = None
+    study: Study, task: Task, requirement: Requirement, tell: Tell, memo: Memo | None = None
 ) -> tuple[Solution, ...]:
     """Return the solutions of a task's cases.
 
-    first: earlier solutions on the first mesh of clamped pins.
+    memo: of flexibilities, meshes and unit fields, shared with other tasks.
 
     Raises: ArgumentError, MeshError, SolveError.
     """
     problem = PinProblem(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
-        first or FirstMesh(),
+        memo,
     )  # fmt: skip
     return solve(problem, replace(requirement, joints=_joints(study, task)), tell)
 
@@ -190,47 +194,42 @@ def _joints(study: Study, task: Task) -> Joints:
     return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"
 
 
-def _solve(plan: Plan, task: Task, keep: Keep, tell: Tell) -> PinOutcome:
+def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:
     study = plan.study
-    solved = solutions(study, task, plan.requirement, tell)
+    solved = solutions(study, task, plan.requirement, tell, memo)
     pressures = [solution.pressure for solution in solved]
-    for solution, pressure in zip(solved, pressures, strict=True):
-        case = plan.loads[solution.peak.case]
-        field = gather_fields.field(task, solution, case, plan.also, pressure)
-        if field is not None:
-            tell(f"pin {task.pin.name}, pictures")
-            keep(field)
-    notes = shape_notes(task.pin)
-    peaks = tuple(
-        replace(s.peak, note="; ".join(filter(None, (s.peak.note, notes)))) for s in solved
-    )
-    ranges = (gather.landing_range(plan.loads, task, s) for s in solved)
-    landing = tuple(r for r in ranges if r is not None)
-    beam = None
+    if keep is not None:
+        for solution, pressure in zip(solved, pressures, strict=True):
+            case = plan.loads[solution.peak.case]
+            field = gather_fields.field(task, solution, case, plan.also, pressure)
+            if field is not None:
+                tell(f"pin {task.pin.name}, pictures")
+                keep(field)
+    landing = [gather.landing_range(plan.loads, task, s) for s in solved]
+    beam_check = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
-        beam = checks.beam_check(study, task)
-    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, peaks)
+        beam_check = checks.beam_check(study, task)
+    joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    to_do = change(plan.requirement, task, solved)
+    remedy = change(plan.requirement, task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
     sensitive = sensitivities(study, plan.requirement, task, solved, step, plan.sensitive)
     limits = limit_loads(plan, task, solved, tell)
-    return PinOutcome(
-        peaks,
-        landing,
-        beam,
-        surfaces,
-        joints=joints,
-        change=to_do,
-        histories=histories,
-        limits=limits,
-        sensitivities=sensitive,
-        no_histories=no_histories,
+    parts = zip(solved, joints, limits, landing, strict=True)
+    rows = tuple(
+        PinResult(_with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over)
+        for s, joint, limit, over in parts
     )
+    return PinOutcome(rows, surfaces, histories, no_histories, sensitive, remedy, beam_check)
+
+
+def _with_notes(task: Task, peak: Maximum) -> Maximum:
+    """Return the maximum with the notes on the pin's shape."""
+    return replace(peak, note="; ".join(filter(None, (peak.note, shape_notes(task.pin)))))
 
 
 def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHistory, ...], str]:
@@ -245,11 +244,11 @@ def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHis
         return (), f"{type(error).__name__}: {error}"
 
 
-def _around(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> tuple[JointResult | None, ...]:
-    """Return the range over lugs around a pin with prescribed clamps and loads."""
-    around, loads = task.surroundings, [peak.governing for peak in peaks]
+def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[JointResult | None, ...]:
+    """Return the range over lugs around a pin with prescribed clamps and loads, by case."""
+    around, loads = task.surroundings, [solution.peak.governing for solution in solved]
     if around is None:
-        return ()
+        return (None,) * len(solved)
     if around.pin is None:
         none = JointResult("prescribed", remark=around.why)
         return tuple(none if here is not None else None for here in loads)

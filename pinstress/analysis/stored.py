@@ -5,25 +5,22 @@ runs.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from math import inf
 
 from assess.fatigue.records import PointHistory
-from assess.opinion.opinions import Opinion
 from assess.opinion.records import BeamCheck
-from assess.plastic.records import LimitLoad
 from fea.core.memory import too_much
 from fea.core.peak import Maximum
 from fea.solve.refine import count_loads, sequence_of
-from fea.support.records import JointResult
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.assessed.limits import rung_of
-from pinstress.analysis.assessed.situations import Assessed
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
-from reports.data.results import Field, LandingRange
+from reports.data.results import Field, PinResult
 from reports.data.sensitivities import PinSensitivities
 from reports.data.surface import Surface
 
@@ -32,32 +29,27 @@ SHAPE_TABLES = "profile", "meridian", "bore_meridian", "band"  # whose keys sens
 
 @dataclass(frozen=True)
 class PinOutcome:
-    """A task's peaks in the order of its cases, with the other results for reports and CalculiX.
+    """What was solved of a task: a row for each of its cases, and the results of all of them.
 
-    joints: in the same order, empty where nothing is in contact.
-    change: the change by which the pin reaches its factor, if it does not.
-    histories: of the stress at its critical points.
-    before: whether it comes from an earlier run.
-    limits: limit loads, in the order of the cases.
+    rows: in the order of the cases. Every run completes them, as that takes little time and depends
+    on more of the study (assessed.situations, gather).
+    surfaces: the stress on the surface of the pin.
+    histories: of the stress at its critical points; no_histories: why there are none, if computing
+    them failed.
     sensitivities: of the worst case, or of all.
-    no_histories: why there are no histories, if computing them failed.
-    strength: in the order of the cases; computed by every run, as it takes little time and depends
-    on more of the study.
+    remedy: the change by which the pin reaches its factor, if it does not.
+    beam_check: the comparison with a beam, if the study asks for it of this pin.
+    cached: whether it comes from an earlier run.
     """
 
-    peaks: tuple[Maximum, ...]
-    landing: tuple[LandingRange, ...] = ()
-    beam: BeamCheck | None = None
+    rows: tuple[PinResult, ...]
     surfaces: tuple[Surface, ...] = ()
-    opinions: tuple[Opinion, ...] = ()
-    joints: tuple[JointResult | None, ...] = ()
-    change: Remedy | None = None
     histories: tuple[PointHistory, ...] = ()
-    before: bool = False
-    limits: tuple[LimitLoad | None, ...] = ()
-    sensitivities: tuple[PinSensitivities, ...] = ()
     no_histories: str = ""
-    strength: tuple[Assessed, ...] = ()
+    sensitivities: tuple[PinSensitivities, ...] = ()
+    remedy: Remedy | None = None
+    beam_check: BeamCheck | None = None
+    cached: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,13 +62,13 @@ class Entry:
     def answers(self, task: Task) -> bool:
         """Return whether the entry is of this pin in these cases, after which files are named."""
         rows = [(task.pin.name, loads.case) for loads in task.loads]
-        solved_rows = [(p.pin, p.case) for p in self.solved.peaks]
+        solved_rows = [(row.pin, row.case) for row in self.solved.rows]
         return solved_rows == rows and {(f.pin, f.case) for f in self.fields} <= set(rows)
 
 
 def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
     """Return all that the answer to a task depends on, except versions and memory, as a value that
-    pinstress.analysis.serialise packs.
+    pinbase.records packs.
 
     seconds: the time limit of an answer that lacks a limit load because of it.
     """
@@ -107,7 +99,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
 
 def shape_of(pin: PinLike) -> object:
     """Return a pin's shape, with the content of its file, as a value that
-    pinstress.analysis.serialise packs.
+    pinbase.records packs.
     """
     if isinstance(pin, Pin | CutPin):
         return pin
@@ -125,7 +117,7 @@ def shape_of(pin: PinLike) -> object:
     return file.name, file.path.suffix, file.unit, file.places, content, mesh
 
 
-def independent_of_memory(plan: Plan, task: Task, peaks: tuple[Maximum, ...]) -> bool:
+def independent_of_memory(plan: Plan, task: Task, peaks: Iterable[Maximum]) -> bool:
     """Return whether more memory would give the same answer (fea.solve.solve is limited by it)."""
     open_ = [
         (p, meshes)

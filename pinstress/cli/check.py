@@ -10,7 +10,10 @@ from geometry import PinLike
 from loads import Linkage
 from loads.motion.four_bar import four_bar
 from pinstress.explore.sweep.correlations import correlations_of
+from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
+from pinstress.explore.sweep.possible import drawn, tried
+from pinstress.explore.sweep.sample import designs_of
 from pinstress.study.model.balance import other_warnings, unheld
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.lugs import lugs
@@ -66,10 +69,12 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
+    warnings = other_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
-    loose = [line for task in todo for line in unheld(study, task)]
-    return "\n".join(lines), loose, other_warnings(study, todo)
+        warnings += _impossible(study) if todo else []
+    loose = [line for task in todo for line in unheld(study, task).values()]
+    return "\n".join(lines), loose, warnings
 
 
 def _sampled(vary: VaryTable) -> bool:
@@ -101,6 +106,20 @@ def _varied(study: Study) -> list[str]:
             f"{a.samples:,} plain and {a.importance_samples:,} importance samples"
         )
     return lines
+
+
+def _impossible(study: Study) -> list[str]:
+    """Return warnings about designs that cannot be built.
+
+    Raises: InputError for given forces that vary one by one, out of equilibrium.
+    """
+    vary = study.table.vary
+    sampled = vary is not None and _sampled(vary)
+    parameters = parameters_of(study, sampled)
+    values = drawn(study, parameters)
+    if vary is not None and sampled:
+        values = designs_of(vary, parameters, correlations_of(study, parameters))
+    return tried(study, Evaluator(study, parameters), values).warnings
 
 
 def _pin(study: Study, pin: PinLike) -> str:

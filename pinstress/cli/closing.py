@@ -9,9 +9,9 @@ from typing import TypeVar
 
 import click
 
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
-from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS, as_described, outcome
 from reports.data.headline import judged_checks
 from reports.data.results import PinResult, Results, SingularZone
 from reports.format.numbers import engineering
@@ -43,7 +43,7 @@ def report_left_out(results: Results) -> None:
 def report_reused(plan: Plan, outcomes: list[PinOutcome]) -> None:
     """Report the number of pins that were taken from the cache."""
     pins = {task.pin.name for task in plan.tasks}
-    anew = {t.pin.name for t, row in zip(plan.tasks, outcomes, strict=True) if not row.before}
+    anew = {t.pin.name for t, row in zip(plan.tasks, outcomes, strict=True) if not row.cached}
     if pins - anew:
         click.echo(
             f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} reused from the cache "
@@ -77,10 +77,10 @@ def report_violations(results: Results) -> int:
     """Report the pins that miss their required factor, as described or within a range that the
     study leaves open, or have a negative margin; return the exit status.
     """
-    short = [p for p in results.pins if outcome(p) in (FAILS, YIELDS)]
+    short = [p for p in results.pins if p.outcome in (FAILS, YIELDS)]
     if short:
         click.echo(f"Required factor missed: {_listed(short)}.", err=True)
-    depending = [p for p in results.pins if outcome(p) == DEPENDS]
+    depending = [p for p in results.pins if p.outcome == DEPENDS]
     for p in depending:
         but = but_words(p.depends_on, results.units, "not")
         click.echo(f"Safe as described, {but}: {_listed([p])}.", err=True)
@@ -122,7 +122,7 @@ def report_missed(results: Results, decide: bool) -> int:
         if p.verdict == "converged"
         and p.required is not None
         and p.safety_factor is not None
-        and as_described(p) == NOT_DECIDED
+        and p.as_described == NOT_DECIDED
     ]
     for which, why in _together((p, undecided_because(p)) for p in near):
         click.echo(
@@ -139,7 +139,7 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
     """
     lines = []
     for which, (result, verdict, reason) in _together(
-        (p, (outcome(p), p.verdict, _reason(p))) for p in rows
+        (p, (p.outcome, p.verdict, _reason(p))) for p in rows
     ):
         head = f"{result.capitalize()}, {VERDICT_WORDS[verdict]}"
         if verdict == "singular":

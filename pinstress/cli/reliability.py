@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from assess.judgement import DEPENDS, NOT_DECIDED
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
@@ -14,7 +15,6 @@ from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
 from pinstress.study.reading.file import Study
-from reports.data.decision import DEPENDS, NOT_DECIDED
 from reports.data.reliability import Reliability
 from reports.page.reliability import write_reliability_page
 from reports.tables.reliability import write_reliability

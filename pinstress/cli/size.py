@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload, processes
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
@@ -24,7 +25,7 @@ from pinstress.study.model.pins import slenderness, weight
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
-from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, factor_ends, outcome
+from reports.data.decision import factor_ends
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import worst_checks
 from reports.data.results import PinResult, Results
@@ -221,9 +222,9 @@ def why_missed(results: Results, pin: str) -> str:
     singular = [p.case for p in rows if p.verdict == "singular"]
     if not rows:
         return "the run of the new study gives no safety factor"
-    missing = [p.case for p in rows if outcome(p) == FAILS]
-    depends = [p.case for p in rows if outcome(p) == DEPENDS]
-    loose = [p.case for p in rows if p.verdict != "singular" and outcome(p) == NOT_DECIDED]
+    missing = [p.case for p in rows if p.outcome == FAILS]
+    depends = [p.case for p in rows if p.outcome == DEPENDS]
+    loose = [p.case for p in rows if p.verdict != "singular" and p.outcome == NOT_DECIDED]
     if missing:
         return f"it fails in the run of the new study, case {', '.join(missing)}"
     if singular:
@@ -242,7 +243,7 @@ def why_missed(results: Results, pin: str) -> str:
     if check.row is None and check.outcome == FAILS:
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g} in that run"
     if depends:
-        every = [d for p in rows if outcome(p) == DEPENDS for d in p.depends_on]
+        every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
         ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])
         places = ["beneath contact"] * any(d.over == BENEATH_CONTACT for d in every)
         places += [f"within the range of the {ranges}"] * bool(ranges)

@@ -12,7 +12,7 @@ from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
 from pinstress.explore.sweep.number import Number, number_at, si_value
 from pinstress.study.reading.file import Study
-from reports.data.curve import Curve, CurvePoint
+from reports.data.curve import CurvePoint, FactorCurve
 
 USUAL_RANGE = 0.5, 2.0  # times the number in the study
 STRESS = "stress"
@@ -28,7 +28,7 @@ def curve(
     pins: Sequence[str] | None = None,
     jobs: int = 1,
     progress: Progress = lambda _, __: None,
-) -> Curve:
+) -> FactorCurve:
     """Solve a study at evenly spaced values of one of its numbers, and at the one that it has.
 
     key: as in messages and [vary], "pin.E.profile[2].diameter".
@@ -61,7 +61,7 @@ def curve(
         for value, design in zip(part, rows, strict=True):
             solved += [_point(study, number, float(value), row) for row in design]
     required = study.table.analysis.required_safety_factor
-    return Curve(
+    return FactorCurve(
         study.name, key, number.unit, number.nominal / number.factor, required,
         study.system.stress, tuple(solved),
     )  # fmt: skip

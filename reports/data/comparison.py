@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, YIELDS
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 
 UNCHANGED_TOLERANCE = 1e-9  # relative: what differs by less has not changed
 DECISION_CHANGED = "decision changed"
@@ -36,7 +36,7 @@ class Side:
 
     maximum, low, high: the maximum stress and its range by the error, in the units of the first
     run.
-    factor: safety factor. outcome: as in reports.data.decision.
+    factor: safety factor. outcome: as in assess.judgement.
     """
 
     maximum: float | None

@@ -42,7 +42,7 @@ class CurvePoint:
 
 
 @dataclass(frozen=True)
-class Reach:
+class Crossing:
     """Where a pin's factor passes the required one: between two values next to each other, and by
     interpolation.
 
@@ -56,7 +56,7 @@ class Reach:
 
 
 @dataclass(frozen=True)
-class Curve:
+class FactorCurve:
     """Factors of safety of pins against one number.
 
     key, unit: of the number; nominal: its value in the study.
@@ -96,7 +96,7 @@ class Curve:
         )
 
     @property
-    def reached(self) -> tuple[Reach, ...]:
+    def reached(self) -> tuple[Crossing, ...]:
         """Where the pins pass the required factor, by the straight line between the logarithms of
         neighbouring factors.
         """
@@ -111,5 +111,5 @@ class Curve:
                     continue
                 share = low / (low - high)
                 value = left.value + share * (right.value - left.value)
-                out.append(Reach(pin, (left.value, right.value), value, high > low))
+                out.append(Crossing(pin, (left.value, right.value), value, high > low))
         return tuple(out)

@@ -1,43 +1,13 @@
-"""Outcome of a row: whether it meets its required factor, by how much, and which row is worst."""
+"""Factors and utilisations of rows with their errors, and which row is worst."""
 
 from __future__ import annotations
 
 from math import inf
 
+from assess.judgement import OUTCOME_ORDER
 from reports.data.results import PinResult, Results
 
-SAFE, FAILS, NOT_DECIDED = "safe", "fails", "not decided"
-DEPENDS = "depends"  # safe as described, but not within a range that the study leaves open
-BELOW_YIELD, YIELDS = "below yield", "yields"  # where no factor is required
-OUTCOME_ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, DEPENDS: 2, SAFE: 3, BELOW_YIELD: 3}
-
 Ends = tuple[float, float]
-
-
-def outcome(pin: PinResult) -> str:
-    """Return whether a pin meets its required factor, or yields if no factor is required.
-
-    It is safe, fails, is not decided, or depends on what the study leaves open.
-    """
-    described = as_described(pin)
-    return DEPENDS if described in (SAFE, BELOW_YIELD) and pin.depends_on else described
-
-
-def as_described(pin: PinResult) -> str:
-    """Return the outcome of a pin that is exactly as its study describes it."""
-    return in_words(pin.decided, pin.required)
-
-
-def in_words(decided: bool | None, required: float | None) -> str:
-    """Return the outcome that follows from a decision.
-
-    decided: whether a maximum stays below what is permitted (fea.core.peak.meets_limit).
-    """
-    if decided is None:
-        return NOT_DECIDED
-    if required is None:
-        return BELOW_YIELD if decided else YIELDS
-    return SAFE if decided else FAILS
 
 
 def factor_ends(pin: PinResult) -> Ends:
@@ -77,6 +47,6 @@ def worst_first(results: Results) -> list[PinResult]:
 
     def place(pin: PinResult) -> tuple[int, float]:
         used = utilisation(pin, 1.0)
-        return OUTCOME_ORDER[outcome(pin)], -inf if used is None else -used[1]
+        return OUTCOME_ORDER[pin.outcome], -inf if used is None else -used[1]
 
     return sorted(results.pins, key=place)

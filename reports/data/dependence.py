@@ -9,9 +9,10 @@ from typing import Literal
 
 import numpy as np
 
+from assess.judgement import BELOW_YIELD, NOT_DECIDED, SAFE
 from fea.core.places import ContactPlace
 from fea.support.records import JointResult, Variation
-from reports.data.decision import BELOW_YIELD, NOT_DECIDED, SAFE, as_described, factor_ends
+from reports.data.decision import factor_ends
 from reports.data.results import Dependence, Floats, LandingRange, PinResult
 
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
@@ -44,27 +45,13 @@ class Judged:
         return (high > self.permitted) if self.safe else (max(low, high) <= self.permitted)
 
 
-def dependences(
-    judged: Judged,
-    contact: ContactPlace | None,
-    joint: JointResult | None,
-    landing: LandingRange | None,
-) -> tuple[Dependence, ...]:
-    """Return everything that changes the outcome; empty where nothing does.
+def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
+    """Return what changes the outcome of a row; empty where nothing does, and where the outcome is
+    not decided as described.
 
     The stress beneath contact comes first, then the ranges, that of the joint first.
     """
-    if judged.maximum <= 0.0:
-        return ()
-    dependence_list = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
-    if landing is not None:
-        dependence_list += _with_beneath(judged, contact, landing)
-    return tuple(dependence_list)
-
-
-def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence, ...]:
-    """Return what the outcome of a row depends on; empty where it is not decided as described."""
-    described = as_described(pin)
+    described = pin.as_described
     if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
     strength = pin.safety_factor * pin.max_von_mises
@@ -74,7 +61,10 @@ def depends_on(pin: PinResult, landing: LandingRange | None) -> tuple[Dependence
     judged = Judged(
         low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
     )
-    return dependences(judged, contact, pin.joint, landing)
+    ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, pin.joint)]
+    if pin.landing is not None:
+        ranges += _with_beneath(judged, contact, pin.landing)
+    return tuple(ranges)
 
 
 def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependence]:

@@ -28,7 +28,7 @@ class DropPeak:
     dimension: str
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         return {"own": self.dimension}
 
 

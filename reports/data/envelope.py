@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from reports.data.decision import limit, outcome, utilisation, worst_first
+from reports.data.decision import limit, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
 from reports.data.results import PinResult, Results
 
@@ -43,7 +43,7 @@ def envelope(results: Results) -> list[EnvelopeCell]:
     return [
         EnvelopeCell(
             row,
-            outcome(row),
+            row.outcome,
             None if (used := utilisation(row, required)) is None else used[1],
             governs[row.pin] == row.case,
             tuple(largest.get((row.pin, row.case), ())),
@@ -76,9 +76,6 @@ def detailed_rows(results: Results) -> Results:
     return replace(
         results,
         pins=tuple(x for x in results.pins if governs[x.pin] == x.case),
-        margins=tuple(x for x in results.margins if governs.get(x.pin) == x.case or not x.case),
-        arms=tuple(x for x in results.arms if governs.get(x.pin) == x.case),
-        landing=tuple(x for x in results.landing if governs.get(x.pin) == x.case),
         reactions=tuple(x for x in results.reactions if x.case in cases),
         surfaces=tuple(
             replace(x, cases=tuple(c for c in x.cases if governs.get(x.pin) == c.case))

@@ -7,21 +7,11 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
 from assess.margin import PinMargin
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
-from reports.data.decision import (
-    DEPENDS,
-    FAILS,
-    NOT_DECIDED,
-    OUTCOME_ORDER,
-    SAFE,
-    YIELDS,
-    factor_ends,
-    limit,
-    outcome,
-    utilisation,
-)
+from reports.data.decision import factor_ends, limit, utilisation
 from reports.data.results import PinResult, Results
 
 
@@ -29,7 +19,7 @@ from reports.data.results import PinResult, Results
 class JudgedCheck:
     """One check of a pin in a case (empty if over several cases).
 
-    check: its name. outcome: one of reports.data.decision. factor: allowable over demand.
+    check: its name. outcome: one of assess.judgement. factor: allowable over demand.
     required: the required factor.
     used: required over actual factor, the upper end of a range, by which checks are compared.
     row: the row of the model's maximum, None for a margin.
@@ -108,7 +98,7 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
     used = utilisation(row, required)
     high = -inf if used is None else used[1]
     return JudgedCheck(
-        row.pin, row.case, YIELD_METHOD, outcome(row), row.safety_factor, required, high, row
+        row.pin, row.case, YIELD_METHOD, row.outcome, row.safety_factor, required, high, row
     )
 
 

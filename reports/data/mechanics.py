@@ -80,7 +80,7 @@ class ReactionTable:
     unresolved: tuple[tuple[Time, Time], ...] = ()
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         return shown_position(self.position_unit)
 
     @cached_property
@@ -152,7 +152,7 @@ class DriveTable:
     effort: DriveEffort | None = None
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         turning = {"length": "degrees", "velocity": "rad/s", "acceleration": "rad/s^2"}
         return {} if self.kind == "slider" else {**turning, "force": "energy"}
 
@@ -355,14 +355,14 @@ class MotionCheck:
 
 @dataclass(frozen=True)
 class Dimensioned:
-    """Values of a dimension (as reports.data.in_units writes it), and the study's unit of it."""
+    """Values of a dimension (as pinbase.records.in_units writes it), and the study's unit of it."""
 
     values: Annotated[Floats, "own"]
     dimension: str
     unit: str
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         return {"own": self.dimension}
 
 
@@ -399,5 +399,5 @@ class PublishedValue:
     dimension: str = "degrees"
 
     @property
-    def instead(self) -> dict[str, str]:
+    def dimension_of(self) -> dict[str, str]:
         return {"own": self.dimension}

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from reports.data.decision import DEPENDS, FAILS, NOT_DECIDED, SAFE
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
 
 SYSTEM_ROW = "all"  # the pin and the case of the row for the lowest factor of all rows
 

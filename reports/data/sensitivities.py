@@ -27,8 +27,8 @@ class Sensitivity:
     factor_with_step: float | None
 
     @property
-    def instead(self) -> dict[str, str]:
-        """The dimensions of this parameter (reports.data.in_units)."""
+    def dimension_of(self) -> dict[str, str]:
+        """The dimensions of this parameter (pinbase.records.in_units)."""
         plain = self.kind == "1"
         return {
             "parameter": self.kind,

@@ -5,16 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import inf
 
-from reports.data.decision import (
-    BELOW_YIELD,
-    DEPENDS,
-    FAILS,
-    NOT_DECIDED,
-    SAFE,
-    YIELDS,
-    outcome,
-    worst_first,
-)
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
+from reports.data.decision import worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
@@ -101,7 +93,7 @@ def result_words(pin: PinResult) -> str:
 
     Examples: "not decided: singular", "depends: joint", "fails (yields)".
     """
-    state = outcome(pin)
+    state = pin.outcome
     if state == NOT_DECIDED:
         return f"{state}: {undecided_because(pin)}"
     if state == DEPENDS:
@@ -221,7 +213,7 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     """
     row = worst_first(results)[0]
     factor, needed = _factor_words(row, results)
-    safe = outcome(row) == SAFE
+    safe = row.outcome == SAFE
     other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
     if pins == 1:
         state = "is safe" if safe else "stays below yield"

@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from pinbase.records import plain
 from reports.data.changes import command
-from reports.data.decision import limit, outcome, utilisation
+from reports.data.decision import limit, utilisation
 from reports.data.results import PinResult, Results
 from reports.format.files.csv import Cell
-from reports.format.plain import plain
 from reports.format.words import OUTCOME_MEANINGS
 from reports.tables.column import grid_of
 from reports.tables.published import published_maxima
@@ -40,7 +40,7 @@ def factor_part(results: Results) -> dict[str, Any]:
         "reading": reading(table),
         "rows": [
             {
-                "outcome": outcome(row.pin),
+                "outcome": row.pin.outcome,
                 "cells": [(c.shown(row), _sorted_by(c.cell(row))) for c in table.columns],
                 "bar": _bar(row.pin, limit(results)),
             }

@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from reports.data.changes import command
-from reports.data.decision import outcome, worst_first
+from reports.data.decision import worst_first
 from reports.data.envelope import EnvelopeCell, detailed_rows
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
@@ -72,7 +72,7 @@ def _factors(results: Results) -> Content | None:
     if not results.pins:
         return None
     grid = shown_factors(results, without=("verdict", "model")).grid(results.units)
-    return asdict(grid) | {"outcomes": [outcome(pin) for pin in worst_first(results)]}
+    return asdict(grid) | {"outcomes": [pin.outcome for pin in worst_first(results)]}
 
 
 def _envelope(results: Results) -> Content | None:
@@ -145,7 +145,7 @@ def _case(pin: PinResult, results: Results) -> Content:
     joint, places = joint_part(pin, results.units), places_part(pin, results.units)
     return {
         "case": pin.case,
-        "outcome": outcome(pin),
+        "outcome": pin.outcome,
         "sentence": pin_sentence(pin, results.units),
         "model": pin.why,
         "held": pin.held,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from reports.data.decision import outcome
 from reports.data.results import PinResult, Results
 from reports.format.numbers import ratio
 from reports.page.joint import JointPart, joint_part
@@ -72,7 +71,7 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
             cases=tuple(
                 PinCase(
                     p,
-                    outcome(p),
+                    p.outcome,
                     pin_sentence(p, results.units),
                     grid_of(shown_zones(p, zones[name][p.case], results.units), results.units),
                     pin_checks(p, results.units).grid(results.units) if p.hand_checks else None,

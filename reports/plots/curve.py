@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from reports.data.curve import CURVE_NAME, Curve, CurvePoint
+from reports.data.curve import CURVE_NAME, CurvePoint, FactorCurve
 from reports.plots.spec import NUMBER_FORMAT, Plot, Spec, clipped, headed, instant, level, rows
 
 MIN_FACTOR_SHARE = 1e-3  # of a factor: the lower end of an error bar on the logarithmic axis
 
 
-def curve_plot(curve: Curve) -> Plot:
+def curve_plot(curve: FactorCurve) -> Plot:
     """Return a line for each pin, by the case with its smallest factor, with the error as bars."""
     data = [_row(point) for pin in curve.pins for point in curve.least(pin)]
     unit = f" [{curve.unit}]" if curve.unit else ""

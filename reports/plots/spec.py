@@ -11,12 +11,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from reports.data.results import Floats
 from reports.plots.theme import dashes
 
 Spec = dict[str, Any]
 CURVE_TOLERANCE = 1e-6  # of the largest value: curves nearer than this are one
+FEW_VALUES = 32  # values of a curve by which it is compared first
 NUMBER_FORMAT = ",.5~r"
 ZOOM_PARAMETER: Spec = {
     "name": "zoom",
@@ -166,23 +168,46 @@ def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
 
     Curves without any value are left out as long as others have some.
     """
-    groups: list[list[str]] = []
-    for name in panels[0]:
+    names = list(panels[0])
+    close = [_tolerance(panel) for panel in panels]
+    few = [np.array([_few(panel[name]) for name in names]) for panel in panels]
+    groups: list[list[int]] = []
+    for k, name in enumerate(names):
         if not any(np.isfinite(panel[name]).any() for panel in panels):
             continue
-        same = (g for g in groups if all(_coincide(panel, g[0], name) for panel in panels))
+        first = [group[0] for group in groups]
+        alike = np.ones(len(groups), dtype=bool)
+        for values, tolerance in zip(few, close, strict=True):
+            alike &= _coincide(values[first], values[k], tolerance)
+        same = (
+            groups[g] for g in np.flatnonzero(alike)
+            if all(_coincide(panel[names[first[g]]], panel[name], tolerance)
+                   for panel, tolerance in zip(panels, close, strict=True))
+        )  # fmt: skip
         if (group := next(same, None)) is not None:
-            group.append(name)
+            group.append(k)
         else:
-            groups.append([name])
-    groups = groups or [[next(iter(panels[0]))]]
-    return [{clipped(", ".join(g), 48): panel[g[0]] for g in groups} for panel in panels]
+            groups.append([k])
+    groups = groups or [[0]]
+    keys = {clipped(", ".join(names[k] for k in g), 48): names[g[0]] for g in groups}
+    return [{key: panel[name] for key, name in keys.items()} for panel in panels]
 
 
-def _coincide(panel: dict[str, Floats], one: str, other: str) -> bool:
+def _tolerance(panel: dict[str, Floats]) -> float:
+    """Return the difference at which curves of a panel coincide."""
     known = (np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in panel.values())
-    close = CURVE_TOLERANCE * float(max(known))
-    return np.allclose(panel[one], panel[other], rtol=0.0, atol=close, equal_nan=True)
+    return CURVE_TOLERANCE * float(max(known))
+
+
+def _few(values: Floats) -> Floats:
+    """Return a few values of a curve, in which most curves differ already."""
+    return values[:: max(1, len(values) // FEW_VALUES)]
+
+
+def _coincide(some: Floats, other: Floats, tolerance: float) -> NDArray[np.bool_]:
+    """Return whether curves (..., N) coincide with another one (N,)."""
+    close = np.isclose(some, other, rtol=0.0, atol=tolerance, equal_nan=True)
+    return np.asarray(close.all(axis=-1))
 
 
 def clipped(name: str, most: int = 24) -> str:

@@ -14,12 +14,12 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from pinbase.records import plain
 from reports.data.results import Floats, PinResult, Units
 from reports.format.files import markdown
 from reports.format.files.csv import Cell, write_csv
 from reports.format.files.parquet import write_parquet
 from reports.format.numbers import DASH, engineering, short
-from reports.format.plain import plain
 from reports.format.units import unit_name
 
 MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576

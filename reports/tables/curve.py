@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from reports.data.curve import CURVE_NAME, Curve, CurvePoint
+from reports.data.curve import CURVE_NAME, CurvePoint, FactorCurve
 from reports.format.numbers import DASH, engineering, percent
 from reports.tables.column import Column, Table, fields
 
 
-def curve_table(curve: Curve) -> Table[CurvePoint]:
+def curve_table(curve: FactorCurve) -> Table[CurvePoint]:
     """Return a row for each value, pin and case."""
     return Table(CURVE_NAME, _columns(curve), curve.points)
 
 
-def least_table(curve: Curve) -> Table[CurvePoint]:
+def least_table(curve: FactorCurve) -> Table[CurvePoint]:
     """Return a row for each value and pin, with the case that has the smallest factor."""
     least = [point for pin in curve.pins for point in curve.least(pin)]
     by_value = sorted(least, key=lambda point: point.value)
     return Table(CURVE_NAME, _columns(curve), by_value)
 
 
-def _columns(curve: Curve) -> list[Column[CurvePoint]]:
+def _columns(curve: FactorCurve) -> list[Column[CurvePoint]]:
     unit = f" [{curve.unit}]" if curve.unit else ""
     name = curve.key.rpartition(".")[2]
 

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from reports.data.decision import DEPENDS, outcome
+from assess.judgement import DEPENDS
+from pinbase.records import plain
 from reports.data.headline import headline_json
 from reports.data.results import (
     DriveTable,
@@ -17,7 +18,6 @@ from reports.data.results import (
     SingularZone,
 )
 from reports.format.numbers import finite
-from reports.format.plain import plain
 from reports.format.words import headline
 from reports.tables.column import Column, Table, fields, json_of
 from reports.tables.strength.fatigue import fatigue_json
@@ -120,7 +120,7 @@ def _drop(d: DropRecord) -> dict[str, Any]:
 
 def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
     """Return a pin in a case: JSON columns of the safety factors, and values without a table."""
-    pin, depends = of.pin, "depends_on" if outcome(of.pin) == DEPENDS else "safe_within"
+    pin, depends = of.pin, "depends_on" if of.pin.outcome == DEPENDS else "safe_within"
     return {
         **json_of([column for column in table.columns if column.in_json], of),
         **json_of(PIN, pin),

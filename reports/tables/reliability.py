@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
+from pinbase.records import plain
 from reports.data.reliability import ByErrors, Driver, Reliability, Risk, Spread
 from reports.format.numbers import DASH, engineering, finite
-from reports.format.plain import plain
 from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"

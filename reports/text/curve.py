@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from reports.data.curve import Curve, Reach
+from reports.data.curve import Crossing, FactorCurve
 from reports.format.numbers import engineering
 from reports.tables.curve import least_table
 from reports.text.fitted_table import fitted_table
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-def print_curve(curve: Curve, console: Console) -> None:
+def print_curve(curve: FactorCurve, console: Console) -> None:
     """Print the table, where the required factor is reached, and why designs have no factor."""
     from rich.text import Text
 
@@ -24,7 +24,7 @@ def print_curve(curve: Curve, console: Console) -> None:
         console.print(Text(line))
 
 
-def reached_lines(curve: Curve) -> list[str]:
+def reached_lines(curve: FactorCurve) -> list[str]:
     """Say for every pin where its factor passes the required one."""
     if curve.required is None:
         return []
@@ -32,7 +32,7 @@ def reached_lines(curve: Curve) -> list[str]:
     for pin, reached in where.items():
         factors = [p.safety_factor for p in curve.least(pin) if p.safety_factor]
         if reached:
-            lines += [_reached(curve, reach) for reach in reached]
+            lines += [_reached(curve, crossing) for crossing in reached]
         elif factors:
             all_above = min(factors) >= curve.required
             state = "throughout" if all_above else "nowhere in this range"
@@ -40,17 +40,17 @@ def reached_lines(curve: Curve) -> list[str]:
     return lines
 
 
-def _reached(curve: Curve, reach: Reach) -> str:
+def _reached(curve: FactorCurve, crossing: Crossing) -> str:
     unit = f" {curve.unit}" if curve.unit else ""
-    ends = " and ".join(f"{engineering(x)}" for x in reach.between)
-    side = "from" if reach.rising else "up to"
+    ends = " and ".join(f"{engineering(x)}" for x in crossing.between)
+    side = "from" if crossing.rising else "up to"
     return (
-        f"Pin {reach.pin} reaches the required factor {curve.required:g} {side} about "
-        f"{engineering(reach.value, 3)}{unit} (interpolated between {ends})."
+        f"Pin {crossing.pin} reaches the required factor {curve.required:g} {side} about "
+        f"{engineering(crossing.value, 3)}{unit} (interpolated between {ends})."
     )
 
 
-def _failures(curve: Curve) -> list[str]:
+def _failures(curve: FactorCurve) -> list[str]:
     reasons: dict[str, list[float]] = {}
     for point in curve.points:
         if point.reason and point.max_von_mises is None:

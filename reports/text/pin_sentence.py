@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reports.data.decision import DEPENDS, outcome
+from assess.judgement import DEPENDS
 from reports.data.results import PinResult, PinShape, Units
 from reports.format.numbers import components, engineering, short
 from reports.format.ranges import error_words, factor_range
@@ -32,7 +32,7 @@ def pin_sentence(pin: PinResult, units: Units) -> str:
 
 
 def _depends(pin: PinResult, units: Units) -> str:
-    if outcome(pin) != DEPENDS:
+    if pin.outcome != DEPENDS:
         return ""
     state, fails = ("Safe", "fails") if pin.required else ("Below yield", "yields")
     return f" {state} as described, {but_words(pin.depends_on, units, fails)}."

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from assess.judgement import BELOW_YIELD, FAILS, SAFE, YIELDS
 from reports.data.changes import command
-from reports.data.decision import BELOW_YIELD, FAILS, SAFE, YIELDS, limit, outcome, worst_first
+from reports.data.decision import limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results
@@ -43,7 +44,7 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
         shown = detailed_rows(results)
         # As Text: a name in square brackets is no markup.
         console.print(Text(headline(results), "bold"))
-        tints = [OUTCOME_COLOURS.get(outcome(pin), "yellow") for pin in worst_first(shown)]
+        tints = [OUTCOME_COLOURS.get(pin.outcome, "yellow") for pin in worst_first(shown)]
         table = _brief(shown)
         console.print(fitted_table(table, units, console.width, {"Result": tints}))
         if rest := omitted_note(results):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from reports.data.decision import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS, outcome
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
@@ -65,7 +65,7 @@ def _due_to(check: JudgedCheck) -> str:
 def _depending(results: Results) -> str:
     """Return sentences on the rows whose outcome changes within a range of the study."""
     text = ""
-    rows = [p for p in results.pins if outcome(p) == DEPENDS]
+    rows = [p for p in results.pins if p.outcome == DEPENDS]
     if len(rows) > 1 or (rows and pins_with(worst_checks(results).values(), FAILS, YIELDS)):
         clauses = (
             f"{p.pin} ({p.case}), {but_words(p.depends_on, results.units, 'not')}"
@@ -81,7 +81,7 @@ def _depending(results: Results) -> str:
         some = [
             (p.pin, p.case)
             for p in results.pins
-            if outcome(p) in (FAILS, YIELDS) and any(d.over == over for d in p.depends_on)
+            if p.outcome in (FAILS, YIELDS) and any(d.over == over for d in p.depends_on)
         ]
         if some:
             text += f" Fails as described, safe within the range of the {over}: {_listed(some)}."
@@ -139,7 +139,7 @@ def _unknown(results: Results) -> str:
     total = len(results.pins)
     verdicts = [p.verdict for p in results.pins]
     singular = verdicts.count("singular")
-    wide = [outcome(p) for p in results.pins if p.verdict == "unconverged"]
+    wide = [p.outcome for p in results.pins if p.verdict == "unconverged"]
     loose = wide.count(NOT_DECIDED)
     unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""

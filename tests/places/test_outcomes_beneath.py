@@ -18,12 +18,11 @@ from fea.core.places import (
     SurfacePlace,
 )
 from fea.harmonic.beneath import stairs
+from pinbase.records import in_units
 from pinstress import load_study, run
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED, report_violations
 from pinstress.study.schema.units import UNIT_SYSTEMS
-from reports.data.decision import outcome
 from reports.data.dependence import depends_on
-from reports.data.in_units import in_units
 from reports.data.results import LandingRange, PinResult, Results
 from reports.format.words import headline, result_words
 from reports.tables.json_results import to_json
@@ -33,6 +32,7 @@ from reports.text.pin_sentence import pin_sentence
 from reports.text.summary import summary
 from tests.conftest import ROOT
 from tests.support.results.judged_results import judged, row
+from tests.support.results.rows import with_values
 
 SURFACE = SurfacePlace(59000.0, 295.0, "converged", (0.0, 1.0, 2.0))
 SECTION = SectionPlace(50000.0, 250.0, "converged", 2.0, None, 0.0, 1e4, 2e4, 0.0, 0.2)
@@ -48,8 +48,8 @@ def contact(beneath: float, error: float = 1000.0) -> ContactPlace:
 
 def pin(beneath: float, error: float = 1000.0, **changes: object) -> PinResult:
     places = Places("surface", SURFACE, SECTION, contact(beneath, error))
-    made = replace(row("x", "converged", 2.0, True), places=places, **changes)  # type: ignore[arg-type]
-    return replace(made, depends_on=depends_on(made, None))
+    made = with_values(row("x", "converged", 2.0, True), places=places, **changes)
+    return replace(made, depends_on=depends_on(made))
 
 
 def only(made: PinResult) -> Results:
@@ -64,20 +64,20 @@ def test_it_is_safe_only_if_what_lies_beneath_is_with_its_error(
 ) -> None:
     """118,000 / 1.5 = 78,666.7: 78,600 is less, 78,700 is more."""
     made = pin(beneath, error)
-    assert outcome(made) == expected
+    assert made.outcome == expected
     assert made.meets_required is (expected == "safe")
 
 
 def test_nothing_beneath_changes_a_row_that_fails_or_is_open() -> None:
     for decided, expected in ((False, "fails"), (None, "not decided")):
         made = pin(85000.0, decided=decided)
-        assert outcome(made) == expected
+        assert made.outcome == expected
         assert made.depends_on == ()
 
 
 def test_without_a_required_factor_yield_is_the_limit() -> None:
-    assert outcome(pin(117500.0, 600.0, required=None)) == "depends"
-    assert outcome(pin(117500.0, 400.0, required=None)) == "below yield"
+    assert pin(117500.0, 600.0, required=None).outcome == "depends"
+    assert pin(117500.0, 400.0, required=None).outcome == "below yield"
 
 
 def test_the_depth_is_that_of_what_is_permitted() -> None:
@@ -125,7 +125,7 @@ def test_results_json_has_the_places() -> None:
     assert found["section"]["safety_factor"] == pytest.approx(118.0 / 50.0)
     assert found["contact"]["beneath"] == 85000.0
     assert "depths" not in found["contact"]
-    bare = replace(pin(85000.0), places=Places("surface", SURFACE))
+    bare = with_values(pin(85000.0), places=Places("surface", SURFACE))
     found = to_json(only(bare))["pins"][0]
     assert not {"section", "contact"} & set(found)
 
@@ -166,13 +166,13 @@ def test_what_lies_beneath_goes_with_the_impulse() -> None:
     )  # fmt: skip
     made = pin(75000.0, 0.0)
     assert made.depends_on == ()
-    (found,) = depends_on(made, over)
+    (found,) = depends_on(replace(made, landing=over))
     assert (found.what, found.value, found.over) == ("beneath", "impulse time", "landing")
     assert found.flips_at == pytest.approx(0.15 * 75000.0 / (118000.0 / 1.5))
     assert found.factor == pytest.approx(118000.0 / 75000.0 * 0.13 / 0.15)
     text = headline(only(replace(made, depends_on=(found,))))
     assert "range of the landing (beneath contact at impulse time below 0.143 s)" in text
-    assert depends_on(pin(50000.0, 0.0), over) == ()
+    assert depends_on(pin(50000.0, 0.0, landing=over)) == ()
 
 
 def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_is() -> None:
@@ -184,8 +184,8 @@ def test_a_row_that_fails_is_safe_at_a_longer_impulse_only_if_what_lies_beneath_
         "converged", pulses=("rectangular",) * 2, nominal_pulse="rectangular",
     )  # fmt: skip
     for beneath, expected in ((75000.0, ["impulse time"]), (90000.0, [])):
-        failing = replace(row("x", "converged", 1.4, False), places=pin(beneath, 0.0).places)
-        assert [d.what for d in depends_on(failing, over)] == expected
+        failing = row("x", "converged", 1.4, False, places=pin(beneath, 0.0).places, landing=over)
+        assert [d.what for d in depends_on(failing)] == expected
 
 
 @pytest.mark.slow

@@ -26,6 +26,7 @@ from reports.page.viewer import pin_views
 from tests.support.results.html_page import parse
 from tests.support.results.made_up_joint import in_lugs, make_joint, surface_in
 from tests.support.results.made_up_run import make_results
+from tests.support.results.rows import with_values
 
 UNITS = Units("in", "lbf", "psi", "s")
 SURFACE = SurfacePlace(1500.0, 15.0, "converged", (0.0, 0.5, 0.25), 1.25)
@@ -107,7 +108,7 @@ def test_a_sharp_edge_has_no_peak(results: Results) -> None:
 
 def test_without_a_yield_strength_there_is_no_depth(results: Results) -> None:
     bare = replace(first(row(results, replace(BOTH, contact=contact(reach=None)))))
-    part = places_part(replace(bare, safety_factor=None, required=None), UNITS)
+    part = places_part(with_values(bare, safety_factor=None, required=None), UNITS)
     assert part is not None
     assert [cells[3] for cells in part.grid.body] == ["–", "–", "–"]
     assert len(part.notes) == 1

@@ -7,11 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from reports.data.decision import outcome, utilisation, worst_first
+from reports.data.decision import utilisation, worst_first
 from reports.data.results import PinResult, Results
 from reports.format.words import headline
 from reports.page.loads import loads_at, timings
 from reports.text.summary import summary
+from tests.support.results.rows import with_values
 
 
 def row(results: Results, pin: str, case: str) -> PinResult:
@@ -24,7 +25,7 @@ def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Resu
     least = min(known, key=lambda p: p.safety_factor or 0.0)
     assert headline(results).startswith(f"Pin {least.pin} fails: FoS ")
     assert f"< 1.5 required ({least.case})" in headline(results)
-    order = [outcome(pin) for pin in worst_first(results)]
+    order = [pin.outcome for pin in worst_first(results)]
     assert order == sorted(order, key=["fails", "not decided", "safe"].index)
 
 
@@ -47,19 +48,18 @@ def test_the_worst_row_in_a_sentence(
     required: float | None,
     words: str,
 ) -> None:
-    pin = replace(
+    pin = with_values(
         row(results, "A", "retract"),
         verdict=verdict,
         safety_factor=factor,
         decided=meets,
         required=required,
-        yields=None if factor is None else False,
     )
     some = replace(results, pins=(pin,), required_safety_factor=required)
     assert words in headline(some)
     if verdict == "converged":
         assert summary(some).endswith("All maxima have converged to 2 %.")
-        other = replace(pin, pin="B", safety_factor=5.0)
+        other = with_values(pin, pin="B", safety_factor=5.0)
         text = headline(replace(some, pins=(other, pin)))
         assert text.startswith("All 2 pins ")
         assert "(pin A, retract)" in text
@@ -73,9 +73,11 @@ def test_the_worst_row_in_a_sentence(
 def test_utilisation(
     results: Results, interval: tuple[float, float | None] | None, used: tuple[float, float]
 ) -> None:
-    pin = replace(row(results, "A", "retract"), safety_factor=4.0, safety_factor_interval=interval)
+    pin = with_values(
+        row(results, "A", "retract"), safety_factor=4.0, safety_factor_interval=interval
+    )
     assert utilisation(pin, 2.0) == pytest.approx(used)
-    assert utilisation(replace(pin, safety_factor=None), 2.0) is None
+    assert utilisation(with_values(pin, safety_factor=None), 2.0) is None
 
 
 def test_loads_are_those_at_the_governing_instant(results: Results) -> None:

@@ -14,10 +14,9 @@ import pytest
 from rich.console import Console
 
 from fea.support.records import JointRange, JointResult, Variation
+from pinbase.records import in_units
 from pinstress.study.schema.units import UNIT_SYSTEMS
-from reports.data.decision import outcome
 from reports.data.dependence import depends_on
-from reports.data.in_units import in_units
 from reports.data.results import Field, Results
 from reports.files import write_reports
 from reports.format.ranges import joint_range, part_words
@@ -187,11 +186,11 @@ def test_a_result_that_the_joint_changes_is_named(
 ) -> None:
     odd = in_lugs(
         small, CONTACT, verdict=verdict, max_von_mises=1500.0, safety_factor=factor,
-        error_estimate=1.0, decided=True if verdict == "converged" else None, yields=False,
+        error_estimate=1.0, decided=True if verdict == "converged" else None,
     )  # fmt: skip
     first = odd.pins[0]
-    first = replace(first, depends_on=depends_on(first, None))
-    assert (outcome(first) == "depends") is changes
+    first = replace(first, depends_on=depends_on(first))
+    assert (first.outcome == "depends") is changes
     text = summary(replace(odd, pins=(first, *odd.pins[1:])))
     assert ("depends: A (joint)" in text) is changes
 
@@ -199,9 +198,9 @@ def test_a_result_that_the_joint_changes_is_named(
 def test_without_a_required_factor_yield_is_the_limit(small: Results) -> None:
     odd = in_lugs(
         replace(small, required_safety_factor=None), CONTACT, max_von_mises=1500.0,
-        error_estimate=1.0, safety_factor=1.1, decided=True, required=None, yields=False,
+        error_estimate=1.0, safety_factor=1.1, decided=True, required=None,
     )  # fmt: skip
-    (over,) = depends_on(odd.pins[0], None)
+    (over,) = depends_on(odd.pins[0])
     assert (over.what, over.value) == ("tilt", "guided")
 
 

@@ -14,10 +14,11 @@ from reports.plots.strength.landing import landing_plot
 from reports.tables.published import published_values_table, write_published_values
 from reports.tables.strength.landing import landing_table, landing_tables, write_landing
 from tests.support.results.made_up_run import ranged
+from tests.support.results.rows import with_landing, with_values
 
 
 def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:
-    some = replace(results, landing=(ranged("A"), ranged("B", "unconverged")))
+    some = with_landing(results, ranged("A"), ranged("B", "unconverged"))
     landing_table(some).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     assert len(rows) == 8
@@ -33,10 +34,11 @@ def test_every_pair_is_a_row(results: Results, tmp_path: Path) -> None:
 
 
 def test_the_page_has_the_tables(results: Results, tmp_path: Path) -> None:
-    few = replace(results, landing=(ranged("<A>"),), motion=(), reactions=(), pins=(), drive=())
+    row = with_values(results.pins[0], pin="<A>", case="landing", landing=ranged("<A>"))
+    few = replace(results, motion=(), reactions=(), pins=(row,), drive=())
     text = write_page(few, tmp_path).read_text(encoding="utf-8")
-    assert 'id="landing"' in text
-    assert ">&lt;A&gt;</td>" in text
+    _, ranges = text.split('id="landing"')
+    assert ">&lt;A&gt;</td>" in ranges.partition("</section>")[0]
 
 
 def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> None:
@@ -47,7 +49,7 @@ def test_nothing_is_written_without_ranges(results: Results, tmp_path: Path) -> 
 
 def test_a_material_without_strength_has_no_factors(results: Results, tmp_path: Path) -> None:
     weak = replace(ranged("A"), safety_factor=None)
-    landing_table(replace(results, landing=(weak,))).write(tmp_path)
+    landing_table(with_landing(results, weak)).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))
     assert {r["safety_factor"] for r in rows} == {""}
     assert landing_plot("landing", [weak], 1.5, results.units) is None

@@ -10,7 +10,7 @@ import pyvista
 from assess.plastic.records import FlowField, LimitLoad, LoadCurve, PlasticMesh
 from geometry import Pin, Segment
 from geometry.mesh.hexahedra import HexSize, hexahedra, twenty
-from pinstress.analysis.serialise import pack, unpack
+from pinbase.records import pack, unpack
 from reports.data.results import Results
 from reports.plots.strength.limit_load import limit_plot
 from reports.tables.json_results import to_json

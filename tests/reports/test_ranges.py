@@ -19,6 +19,7 @@ from reports.tables.strength.safety_factors import safety_factors_table, write_s
 from reports.tables.stress.singular_zones import zones_table
 from reports.text.html import safety_factors_html
 from reports.text.safety_factors import print_safety_factors
+from tests.support.results.rows import with_values
 
 ZONE = SingularZone(
     (0.0, 0.5, 1.0), "the edge of a clamp", ("left", "A"), 0.5, 0.4555, 0.1, True, 9e5, "none",
@@ -32,7 +33,7 @@ def found(results: Results) -> Results:
 
 
 def singular(pin: PinResult) -> PinResult:
-    return replace(
+    return with_values(
         pin,
         verdict="singular",
         max_von_mises=72_430.0,
@@ -50,7 +51,7 @@ def test_in_words(found: Results) -> None:
     assert error_range(wide) == "51,500 to 95,600"
     assert factor_range(wide) == "2.35 to 4.37"
     assert error_words(wide) == "51,500 to 95,600 over half and twice the excluded distance"
-    assert factor_range(replace(wide, safety_factor_interval=(2.354, None))) == "2.35 to –"
+    assert factor_range(with_values(wide, safety_factor_interval=(2.354, None))) == "2.35 to –"
     assert error_words(narrow).startswith("± ")
 
 

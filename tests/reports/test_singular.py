@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 from assess.margin import Margin
-from reports.data.decision import outcome
 from reports.data.results import Field, PinResult, Results, SingularZone, Units
 from reports.files import write_reports
 from reports.tables.json_results import to_json
 from reports.text.summary import summary
 from reports.vtk.fields import render_pin, renderer_problem, write_vtu
+from tests.support.results.rows import with_values
 
 UNITS = Units("in", "lbf", "psi", "s")
 ZONE = SingularZone(
@@ -33,11 +33,10 @@ CHECK = Margin(
 @pytest.fixture
 def singular(results: Results) -> Results:
     """The run with its first pin singular, and enough outside of the zones."""
-    first = replace(
+    first = with_values(
         results.pins[0],
         verdict="singular",
         safety_factor=5.0,
-        yields=False,
         decided=None,
         singular_at=(ZONE, LOGARITHM),
         margins=(CHECK,),
@@ -77,8 +76,8 @@ def test_a_singular_row_can_only_miss(
     singular: Results, factor: float, meets: bool | None, expected: str
 ) -> None:
     """Too little outside the zones is too little; enough there says nothing of the zones."""
-    pin: PinResult = replace(singular.pins[0], safety_factor=factor, decided=meets)
-    assert outcome(pin) == expected
+    pin: PinResult = with_values(singular.pins[0], safety_factor=factor, decided=meets)
+    assert pin.outcome == expected
     text = summary(replace(singular, pins=(pin,)))
     assert ("fails: A" in text) == (expected == "fails")
     assert "no maximum exists" in text

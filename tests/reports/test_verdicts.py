@@ -13,7 +13,6 @@ import pytest
 from rich.console import Console
 
 from fea.core.peak import Verdict
-from reports.data.decision import outcome
 from reports.data.results import Results
 from reports.format.words import OUTCOME_MEANINGS, VERDICT_MEANINGS, verdict_words
 from reports.plots.strength.landing import landing_plot
@@ -27,6 +26,7 @@ from reports.text.summary import summary
 from tests.support.each import each
 from tests.support.results.judged_results import judged, row
 from tests.support.results.made_up_run import ranged
+from tests.support.results.rows import with_landing
 
 
 @pytest.fixture(scope="module")
@@ -48,8 +48,8 @@ def found() -> Results:
     ],
 )
 def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str) -> None:
-    found = row("x", verdict, factor, meets, yields=factor < 1.0)
-    assert outcome(found) == expected
+    found = row("x", verdict, factor, meets)
+    assert found.outcome == expected
 
 
 @each(("decided", "expected"), [
@@ -57,7 +57,7 @@ def test_outcome(verdict: str, factor: float, meets: bool | None, expected: str)
 ])  # fmt: skip
 def test_without_a_required_factor_yield_is_the_limit(decided: bool | None, expected: str) -> None:
     found = row("x", "converged", 1.2, decided, required=None)
-    assert outcome(found) == expected
+    assert found.outcome == expected
     assert found.meets_required is None
 
 
@@ -114,7 +114,7 @@ def test_tables_say_the_verdict_and_yield(found: Results, tmp_path: Path) -> Non
     assert "converged, beyond yield" in shown["beyond"]
     assert "| not decided: singular " in shown["sharp"]
     assert "| fails (singular) " in shown["weak"]
-    assert [r["outcome"] for r in rows] == [outcome(p) for p in found.pins]
+    assert [r["outcome"] for r in rows] == [p.outcome for p in found.pins]
     for r in rows:
         used, spare = float(r["utilisation"]), float(r["margin_of_safety"])
         assert used == pytest.approx(1.5 / float(r["safety_factor"]))
@@ -183,7 +183,7 @@ def test_summary_of_one_singular_row(found: Results) -> None:
 
 def test_singular_ranges_of_a_landing_can_only_miss(found: Results, tmp_path: Path) -> None:
     members = [ranged("A", "singular"), ranged("B"), ranged("C", "unconverged")]
-    some = replace(found, landing=tuple(members))
+    some = with_landing(found, *members)
     write_landing(some, tmp_path)
     landing_table(some).write(tmp_path)
     rows = list(csv.DictReader((tmp_path / "landing_range.csv").read_text().splitlines()))

@@ -21,6 +21,7 @@ from reports.tables.json_results import to_json
 from reports.tables.stress.singular_zones import ShownZone, circles, pin_zones
 from tests.support.results.html_page import EVIL, parse
 from tests.support.results.judged_results import judged, row, zones
+from tests.support.results.rows import with_values
 
 
 @pytest.fixture(scope="module")
@@ -126,8 +127,8 @@ def test_no_factor_without_its_verdict(written: Path) -> None:
 
 def test_refinement_plot_of_the_pin(found: Results) -> None:
     assert plot_name("refinement-pin", "A") in all_plots(found)
-    single = replace(found, pins=tuple(replace(p, history=p.history[:1]) for p in found.pins))
-    beam = replace(single, pins=(replace(single.pins[0], history=()), *single.pins[1:]))
+    single = replace(found, pins=tuple(with_values(p, history=p.history[:1]) for p in found.pins))
+    beam = replace(single, pins=(with_values(single.pins[0], history=()), *single.pins[1:]))
     assert not any(name.startswith("refinement") for name in all_plots(beam))
 
 
@@ -184,7 +185,7 @@ def test_advice_and_names_are_shown_and_not_run(found: Results, tmp_path: Path) 
     assert parse(page).text.count(EVIL) >= 10
     assert "<script" not in (tmp_path / "hand_checks.md").read_text(encoding="utf-8")
     formula = replace(zone, advice="=1+1")
-    made = replace(made, singular_at=(formula,))
+    made = with_values(made, singular_at=(formula,))
     write_reports(replace(found, pins=(made,)), tmp_path)
     assert read(tmp_path / "singular_zones.csv")[0]["advice"] == "'=1+1"
 

@@ -13,13 +13,13 @@ from pathlib import Path
 import pytest
 
 import pinstress
+from assess.judgement import SAFE
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size import least_weight
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
-from reports.data.decision import SAFE, outcome
 
 HEAD = """
 title = "stays decided"
@@ -70,7 +70,7 @@ def study(text: str) -> Study:
 
 def outcomes(of: Study) -> list[str]:
     """Of a plain run."""
-    return [outcome(p) for p in pinstress.run(of).pins]
+    return [p.outcome for p in pinstress.run(of).pins]
 
 
 def lighter(found: LightStudy, before: Study) -> float:

@@ -40,7 +40,7 @@ from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces
 from fea.support.lugs.rings import whole_names
 from fea.support.prescribed import balanced, imbalance
-from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
 from geometry import CutPin, Pin, PinLike
 
 # They are tried in this order, until one is fine enough.
@@ -81,7 +81,7 @@ class ContactSupport:
             near = coarser.candidates
         progress(f"pin {problem.pin.name}, flexibility of {self.cells.rings} rings of each lug")
         profile = profile_of(problem.pin)
-        model = ContactModel(profile, problem.material, problem.lugs, self.cells)
+        model = ContactModel(profile, problem.material, problem.lugs, self.cells, problem.memo)
         progress(f"pin {problem.pin.name}, contact")
         cut = isinstance(problem.pin, CutPin)
         contact = PressedCases(model, left, problem.between, problem.also, cut=cut)
@@ -216,7 +216,7 @@ class HeldContact:
             for case, links in self.contact.instants.items()
         }
 
-    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
+    def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution with the error of cells and of what contact neglects, sections, contact, and
         the range over the uncertain properties of the joint.
         """
@@ -249,7 +249,7 @@ class HeldContact:
         peak = with_contact(peak, place)
         return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
 
-    def _evidence(self, reading: Reading, contact: JointContact, cells: float) -> Evidence:
+    def _evidence(self, reading: StressReading, contact: JointContact, cells: float) -> Evidence:
         """The evidence of the surface, with the names of the whole pin instead of its rings, and
         the relative error of the cells.
         """
@@ -293,7 +293,7 @@ class HeldContact:
             cells,
         )
 
-    def _at_row(self, reading: Reading, peak: Maximum, case: PinLoads) -> Solution:
+    def _at_row(self, reading: StressReading, peak: Maximum, case: PinLoads) -> Solution:
         """The solution with the loads at all samples of a case, at the instant of its row."""
         loads, links, instant = reading.loads, self.contact.press(case), reading.instant
         if loads.times is not None:

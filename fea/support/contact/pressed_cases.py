@@ -168,12 +168,14 @@ class PressedCases:
         problem = SectionProblem(model.pin, model.material, (), tuple(loads), both, model.first)
         section = harmonic_solution(problem, 0, 1.0)
         for x, zones in zip(loads, zones_by_case, strict=True):
-            answer = HarmonicField(section, zones)
-            largest, instant = answer.largest(x)
-            may = answer.maxima(x, CANDIDATE_FRACTION * largest) > CANDIDATE_FRACTION * largest
+            around = HarmonicField(section, zones).reader(x)
+            among = around.fields.outside(zones)
+            top = around.top(among)
+            least = CANDIDATE_FRACTION * top.value
+            may = around.maxima(among, least) > least
             if self.cut:  # the uncut pin does not show which instant governs at a cut
                 may[:] = True
-            out[x.case] = Candidates(instant, may, largest)
+            out[x.case] = Candidates(top.instant, may, top.value)
         return out
 
     def follow(self, near: Mapping[str, Candidates]) -> None:

@@ -18,7 +18,7 @@ from fea.core.equilibrium import centre_of_volume
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.pressed import PressedArcs, Rings
-from fea.harmonic.kept_fields import FirstMesh
+from fea.harmonic.first_mesh import FirstMesh
 from fea.singular.lug_edge import lug_edge_exponent
 from fea.support.bands import Bands
 from fea.support.contact.bending import bending_moment, mass_per_length
@@ -44,6 +44,7 @@ from fea.support.lugs.lug import Bushing, Lug
 from fea.support.lugs.rings import annulus, beside_fillets, ring_ends, ringed, rings
 from geometry import Pin
 from pinbase.arrays import Ints
+from pinbase.memo import Memo
 
 EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
 LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
@@ -135,27 +136,53 @@ class ContactModel:
 
     first: its first mesh for stress.
     on_pin, on_lugs: the meshes of the flexibilities, one for equal lugs.
+    memo: of flexibilities and meshes, shared with other models.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
 
     def __init__(
-        self, pin: Pin, material: Material, lugs: Sequence[Lug], cells: Resolution = Resolution()
+        self,
+        pin: Pin,
+        material: Material,
+        lugs: Sequence[Lug],
+        cells: Resolution = Resolution(),
+        memo: Memo | None = None,
     ) -> None:
-        self.cells, self.first = cells, FirstMesh()
+        self.cells, self.first, self._memo = cells, FirstMesh(memo), memo or Memo()
         self._shape(pin, material, lugs)
-        self.on_pin = pin_rings(self.pin, self.rings, material, cells.across)
-        self.of_pin = self.on_pin.flexibility(cells.highest)
+        self.on_pin, self.of_pin = self._pin_flexibility()
         self.of_lugs = np.zeros_like(self.of_pin)
         self.wavy = np.zeros((2, len(self.high), *self.of_pin.shape[1:]))  # of the pin, of the lugs
         self.on_lugs: dict[Alike, RingBody] = {}
         for key, equal in self.alike().items():
             (_, lug, ends), *_ = equal
-            self.on_lugs[key] = lug_rings(self.eye(lug, ends), lug, cells.across)
-            low = self.on_lugs[key].flexibility(cells.highest)
-            wavy = self.wavy_of(lug, ends)
+            self.on_lugs[key], low, wavy = self._lug_flexibility(lug, ends)
             for rows, *_ in equal:
                 self.of_lugs[:, rows, rows], self.wavy[:, :, rows, rows] = low, wavy
+
+    def _pin_flexibility(self) -> tuple[RingBody, Floats]:
+        """The pin's rings on a mesh and their flexibility, solved once for each shape."""
+
+        def make() -> tuple[RingBody, Floats]:
+            body = pin_rings(self.pin, self.rings, self.material, self.cells.across)
+            return body, body.flexibility(self.cells.highest)
+
+        key = "pin", self.pin, self.rings, elastic(self.material)
+        return self._memo.get((*key, self.cells.across, self.cells.highest), make)
+
+    def _lug_flexibility(self, lug: Lug, ends: Floats) -> tuple[RingBody, Floats, Floats]:
+        """A lug's rings on a mesh, their flexibility, and that for short waves (of the pin too)."""
+
+        def make() -> tuple[RingBody, Floats, Floats]:
+            body = lug_rings(self.eye(lug, ends), lug, self.cells.across)
+            return body, body.flexibility(self.cells.highest), self.wavy_of(lug, ends)
+
+        radius, bushing = self.whole.band(lug.connection).radius, lug.bushing
+        size = radius, lug.outer_diameter, bushing and bushing.thickness, ends.tobytes()
+        made_of = tuple(map(elastic, (self.material, lug.material, lug.bearing)))
+        key = "lug", lug.connection, size, made_of
+        return self._memo.get((*key, self.cells), make)
 
     def _shape(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> None:
         cells, before = self.cells, self.__dict__.get("_cut")
@@ -395,6 +422,11 @@ class ContactModel:
     @property
     def _mass(self) -> float:
         return (self.material.density or 0.0) * self.whole.volume
+
+
+def elastic(material: Material) -> tuple[float, float]:
+    """What flexibilities depend on of a material: no strength."""
+    return material.youngs_modulus, material.poisson_ratio
 
 
 def _directions(forces: Floats) -> list[float]:

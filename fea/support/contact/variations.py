@@ -16,7 +16,7 @@ import numpy as np
 from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.beneath import beneath
+from fea.harmonic.beneath import maxima_beneath
 from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
@@ -183,22 +183,17 @@ def _at_places(
     model: ContactModel, requirement: Requirement, every: Sequence[Sequence[PressureLoads]]
 ) -> list[AtPlaces]:
     """The stress at the places on the first mesh, of loads of one instant each."""
-    loads = list(itertools.chain(*every))
-    whole = stacked(loads)
+    whole = stacked(list(itertools.chain(*every)))
     singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
     problem = SectionProblem(model.pin, model.material, (), (whole,), singular, model.first)
     section = harmonic_solution(problem, 0, 1.0)
-    answer = HarmonicField(section, singular)
-    on_rings = [one.on_rings for one in loads]
-    sections = SectionField(model.pin, model.material, (), on_rings)
-    return [
-        AtPlaces(
-            answer.largest(one)[0],
-            sections.largest(other)[0],
-            beneath(section.fields, one, singular).value,
-        )
-        for one, other in zip(loads, on_rings, strict=True)
-    ]
+    on_rings = whole.on_rings
+    places = (
+        HarmonicField(section, singular).maxima(whole),
+        SectionField(model.pin, model.material, (), (on_rings,)).maxima(on_rings),
+        maxima_beneath(section.fields, whole, singular),
+    )
+    return [AtPlaces(*stress) for stress in zip(*(x.tolist() for x in places), strict=True)]
 
 
 def _on_both_cells(model: ContactModel, at: Sequence[JointContact]) -> list[tuple[_Joint, _Joint]]:

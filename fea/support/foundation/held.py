@@ -41,7 +41,7 @@ from fea.support.foundation.stress import FoundationStress
 from fea.support.foundation.variations import FoundationRange
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.records import BandContact, JointRange, JointResult
-from fea.support.support import HeldPin, PinProblem, Progress, Reading, Solution, silent
+from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
 from geometry import PinLike, body_of_revolution
 
 FOUNDATION_OMISSIONS = (
@@ -118,7 +118,7 @@ class HeldFoundation:
         """The whole requirement, since there are no meshes."""
         return requirement
 
-    def finished(self, reading: Reading, requirement: Requirement) -> Solution:
+    def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
         """The solution of a beam on the loads of the links, to which a foundation adds nothing."""
         peak = judge(reading.evidence, requirement.tolerance)
         return Solution(peak, reading.answer, reading.loads, reading.instant, self)

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from assess.checks import margins_of
-from assess.margin import Margin, PinMargin, skipped, worst_places
-from assess.plastic.records import LimitLoad
+from assess.judgement import against_yield
+from assess.margin import Margin, skipped, worst_places
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
-from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
+from reports.data.results import PinResult
 
 FORMULA_CHECKS = "checks by formula"
 FORMULA_KINDS = "hand", "clause"
@@ -27,47 +27,28 @@ FORCE_OF_CLAMP = (
 LOAD_FACTOR_KEYS = ("limit_factor", "ultimate_factor", "fitting_factor")
 
 
-@dataclass(frozen=True)
-class Assessed:
-    """The assessment of one pin in one case.
-
-    margins: of every check at every place and level; the hand checks use these.
-    worst: the worst place of each check that counts.
-    arms: None where the formulas do not apply.
-    """
-
-    margins: tuple[Margin, ...]
-    worst: tuple[PinMargin, ...]
-    arms: BendingArms | None = None
-
-
-def assessed(
-    study: Study,
-    task: Task,
-    peak: Maximum,
-    joint: JointResult | None,
-    limit: LimitLoad | None = None,
-) -> Assessed:
-    """Return the margins of a row, by formula and by the model.
+def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
+    """Return a row with its judgement, and its margins by formula and by the model.
 
     A pin with cuts is checked as if it had none.
     """
-    loads = next(x for x in task.loads if x.case == peak.case)
+    loads = next(x for x in task.loads if x.case == row.case)
     required = study.table.analysis.required_safety_factor
-    s, why = _situation(study, task, loads, joint)
-    s = replace(s, row=SolvedRow(peak, limit, required))
-    rigid = peak.verdict == "rigid"
+    s, why = _situation(study, task, loads, row.joint)
+    s = replace(s, row=SolvedRow(row.maximum, row.limit_load, required))
+    rigid = row.verdict == "rigid"
     if s.complete and rigid and not why:
         why = "supports of the pin, or loads in equilibrium"
     margins = margins_of(s)
     counted = margins
     if s.complete and (rigid or not s.across.any()):
         counted = [m for m in margins if m.kind not in FORMULA_KINDS]
-    worst = worst_places([*counted, *_not_made(s, why)])
-    return Assessed(
-        tuple(margins),
-        tuple(PinMargin(peak.pin, peak.case, m) for m in worst),
-        None if why else _arms(s, task, peak, joint),
+    return replace(
+        row,
+        judgement=against_yield(row.maximum, task.material.yield_strength, required),
+        margins=tuple(margins),
+        worst=tuple(worst_places([*counted, *_not_made(s, why)])),
+        arms=None if why else _arms(s, task, row),
     )
 
 
@@ -77,11 +58,11 @@ def load_factors(study: Study) -> LoadFactors:
     return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
 
 
-def factor_assumption(study: Study, assessments: Sequence[Assessed]) -> tuple[str, ...]:
+def factor_assumption(study: Study, rows: Iterable[PinResult]) -> tuple[str, ...]:
     """Return a sentence on the factors that the study omits, if any margin depends on them."""
     table = study.table.analysis
     assumed = [key for key in LOAD_FACTOR_KEYS if key not in table.model_fields_set]
-    if not assumed or not any(x.worst for x in assessments):
+    if not assumed or not any(row.worst for row in rows):
         return ()
     values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
     return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)
@@ -140,8 +121,9 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
     return [skipped(name, "", "hand", "limit", factor, needs) for name, needs in lacking.items()]
 
 
-def _arms(s: Situation, task: Task, peak: Maximum, joint: JointResult | None) -> BendingArms:
+def _arms(s: Situation, task: Task, row: PinResult) -> BendingArms:
     """Return the arms of the bending moment at the governing instant, one of the joint's."""
+    peak, joint = row.maximum, row.joint
     now = s.by_formula.at(np.array([0]))
     if peak.time is not None and s.joint is None and peak.case in task.between:
         now = task.between[peak.case](np.array([peak.time]))

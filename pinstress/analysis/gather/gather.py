@@ -9,15 +9,14 @@ from importlib.metadata import version
 
 import numpy as np
 
-from assess.opinion.records import BeamCheck
-from fea.core.peak import Maximum, meets_limit
+from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
 from fea.support.records import JointResult
 from fea.support.support import Solution
 from geometry import Cut, Flat, Hole, Passage, PinLike, Slot, body_of_revolution
 from geometry.shape.cut_edges import drawn
-from pinstress.analysis.assessed.situations import Assessed, factor_assumption
+from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.analysis.gather.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
@@ -61,46 +60,22 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     ]
     pins, cases = list(study.table.pin), list(plan.loads)
     rows = [
-        (task, *row)
+        (task, row)
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
-        for row in zip(
-            outcome.peaks,
-            outcome.joints or [None] * len(outcome.peaks),
-            outcome.strength,
-            strict=True,
-        )
+        for row in outcome.rows
     ]
-    opinions = {(o.pin, o.case): o for outcome in outcomes for o in outcome.opinions}
-    limits = {
-        (peak.pin, peak.case): limit
-        for outcome in outcomes
-        for peak, limit in zip(
-            outcome.peaks, outcome.limits, strict=False
-        )  # none of a task that failed
-    }
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
-    beam = next((outcome.beam for outcome in outcomes if outcome.beam is not None), None)
-    results = _results(study, plan.loads, rows, beam, plan.published, plan.requirement.tolerance)
-    landing = {(r.pin, r.case): r for outcome in outcomes for r in outcome.landing}
+    results = _results(study, plan.loads, rows, plan.published, plan.requirement.tolerance)
     fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
-        pins=tuple(
-            replace(
-                p,
-                second_opinion=opinions.get((p.pin, p.case)),
-                limit_load=limits.get((p.pin, p.case)),
-                depends_on=depends_on(p, landing.get((p.pin, p.case))),
-            )
-            for p in results.pins
-        ),
-        landing=tuple(landing.values()),
+        beam_check=next((x.beam_check for x in outcomes if x.beam_check is not None), None),
         surfaces=tuple(surface for outcome in outcomes for surface in outcome.surfaces),
         changes=_worst_changes(outcomes),
         sensitivities=_in_order(outcomes, pins, cases, plan.sensitive),
         histories=tuple(history for outcome in outcomes for history in outcome.histories),
         fatigue=fatigue,
-        margins=(*results.margins, *fatigue_margins),
+        spectrum_margins=tuple(fatigue_margins),
     )
     return _in_study_units(results, study)
 
@@ -109,8 +84,8 @@ def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
     """Return one remedy for each pin, for the worst of its cases; the pin with the worst comes
     first.
     """
-    rows = sorted((x.change for x in outcomes if x.change), key=lambda change: change.load_factor)
-    return tuple({change.pin: change for change in reversed(rows)}.values())[::-1]
+    remedies = sorted((x.remedy for x in outcomes if x.remedy), key=lambda x: x.load_factor)
+    return tuple({remedy.pin: remedy for remedy in reversed(remedies)}.values())[::-1]
 
 
 def _in_order(
@@ -139,24 +114,22 @@ def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Result
     published = read_published(study)
     loads = all_loads(study, chosen_cases(study, cases))
     tolerance = study.table.analysis.tolerance
-    return _in_study_units(_results(study, loads, [], None, published, tolerance), study)
+    return _in_study_units(_results(study, loads, [], published, tolerance), study)
 
 
 def _results(
     study: Study,
     loads: dict[str, CaseLoads],
-    rows: list[tuple[Task, Maximum, JointResult | None, Assessed]],
-    beam: BeamCheck | None,
+    rows: list[tuple[Task, plain.PinResult]],
     published: Published,
     tolerance: float,
 ) -> plain.Results:
-    """Return all results of a run, in SI.
+    """Return the results of a run that follow from its loads and rows, in SI.
 
-    rows: each peak with its task, in the order of the table.
+    rows: each with its task, in the order of the table.
     """
     table = study.table
-    tasks = {task.pin.name: task for task, *_ in reversed(rows)}
-    strength = [assessment for *_, assessment in rows]
+    tasks = {task.pin.name: task for task, _ in reversed(rows)}
     return plain.Results(
         title=table.title,
         study=study.path.name,
@@ -164,21 +137,18 @@ def _results(
         units=plain.SI,
         required_safety_factor=table.analysis.required_safety_factor,
         tolerance=tolerance,
-        pins=tuple(_pin_result(study, loads, *row, published) for row in rows),
+        pins=tuple(_completed(study, loads[row.case], task, row, published) for task, row in rows),
         shapes=tuple(
-            _shape(tasks[name], [peak for _, peak, *_ in rows if peak.pin == name])
+            _shape(tasks[name], [row.maximum for _, row in rows if row.pin == name])
             for name in table.pin
             if name in tasks
         ),
-        margins=tuple(margin for assessment in strength for margin in assessment.worst),
-        arms=tuple(assessment.arms for assessment in strength if assessment.arms),
         **mechanics(study, loads, published),
-        beam_check=beam,
         provenance=tuple(plain.Provenance(**asdict(source)) for source in study.provenance),
         published_source=table.published.source if table.published else "",
         assumptions=(
             *table.assumptions,
-            *factor_assumption(study, strength),
+            *factor_assumption(study, (row for _, row in rows)),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
@@ -194,55 +164,25 @@ def _title_block(given: ReportTable) -> plain.TitleBlock:
     return plain.TitleBlock(given.revision, date, given.prepared, given.checked, given.approved)
 
 
-def _pin_result(
-    study: Study,
-    loads: dict[str, CaseLoads],
-    task: Task,
-    peak: Maximum,
-    joint: JointResult | None,
-    assessment: Assessed,
-    published: Published,
+def _completed(
+    study: Study, case: CaseLoads, task: Task, row: plain.PinResult, published: Published
 ) -> plain.PinResult:
-    strength = task.material.yield_strength
-    required = study.table.analysis.required_safety_factor
-    factor = peak.safety_factor(strength)
-    case = loads[peak.case]
-    here = case if peak.time is None else at_time(case, peak.time)
+    """Return a row with what the study says of its case."""
+    time = row.maximum.time
+    here = case if time is None else at_time(case, time)
     assert here is not None
-    positions = drive_position(study, here) if peak.location else None
-    theirs = published.peaks.get((peak.pin, peak.case), (None, None))
-    return plain.PinResult(
-        pin=peak.pin,
-        case=peak.case,
-        model=peak.model,
-        verdict=peak.verdict,
-        note=peak.note,
-        max_von_mises=peak.max_von_mises,
-        error_estimate=peak.error_estimate,
-        location=peak.location,
-        time=peak.time if peak.location else None,
+    positions = drive_position(study, here) if row.location else None
+    published_stress, published_factor = published.peaks.get((row.pin, row.case), (None, None))
+    return replace(
+        row,
+        held=_held(task, row.joint),
+        left_out=task.left_out[row.case],
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
-        safety_factor=factor,
-        yields=None if factor is None else factor < 1.0,
-        decided=_meets(peak, strength, required),
-        required=required,
-        dofs=peak.dofs,
-        seconds=peak.seconds,
-        history=peak.history,
-        held=_held(task, joint),
-        joint=joint,
-        places=peak.places,
-        left_out=task.left_out[peak.case],
-        published_max_von_mises=theirs[0],
-        published_safety_factor=theirs[1],
-        why=peak.why,
-        singular_at=peak.singular_at,
-        margins=assessment.margins,
-        max_von_mises_interval=peak.interval,
-        safety_factor_interval=_factors(peak, strength),
-        error_parts={} if peak.parts is None else asdict(peak.parts),
         loads=_governing_loads(task, here),
+        depends_on=depends_on(row),
+        published_max_von_mises=published_stress,
+        published_safety_factor=published_factor,
     )
 
 
@@ -252,16 +192,6 @@ def _held(task: Task, joint: JointResult | None) -> str:
     return ", ".join(task.clamps) or "nothing (loads in balance)"
 
 
-def _factors(peak: Maximum, strength: float | None) -> tuple[float, float | None] | None:
-    """Return the factors of safety at both ends of the interval of the maximum; the upper one is
-    None where no stress is left.
-    """
-    if peak.interval is None or strength is None:
-        return None
-    low, high = peak.interval
-    return strength / high, strength / low if low > 0.0 else None
-
-
 def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, ...]:
     r = here.reactions
     return tuple(
@@ -269,11 +199,6 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
         for c, name in enumerate(r.connections)
         if name in task.pin.connections
     )
-
-
-def _meets(peak: Maximum, strength: float | None, required: float | None) -> bool | None:
-    """Return whether the required factor, or yield, is reached; None where that is not decided."""
-    return None if strength is None else meets_limit(peak, strength / (required or 1.0))
 
 
 def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:

@@ -152,21 +152,21 @@ def _missing(plan: Plan, outcomes: list[PinOutcome], pin: str, table: FatigueTab
         return _Open(f"{_named(idle)} not run", f"{_named(idle, verb='')} to be run")
     pin_outcomes = [m for t, m in zip(plan.tasks, outcomes, strict=True) if t.pin.name == pin]
     covered = {c.case for outcome in pin_outcomes for h in outcome.histories for c in h.cases}
-    peaks = [
-        p
+    rows = [
+        row
         for outcome in pin_outcomes
-        for p in outcome.peaks
-        if p.case in cases and p.case not in covered
+        for row in outcome.rows
+        if row.case in cases and row.case not in covered
     ]
-    if unsolved := [p.case for p in peaks if p.max_von_mises is None]:
-        verdict = next(p.verdict for p in peaks if p.max_von_mises is None)
+    if unsolved := [row.case for row in rows if row.max_von_mises is None]:
+        verdict = next(row.verdict for row in rows if row.max_von_mises is None)
         return _Open(f"{_named(unsolved)} not solved ({verdict})",
                      f"a solution of {_named(unsolved, verb='')}")  # fmt: skip
-    if peaks:
+    if rows:
         reason = next(
             (outcome.no_histories for outcome in pin_outcomes if outcome.no_histories), ""
         )
-        text = f"no history of stress in {_named([p.case for p in peaks], verb='')}"
+        text = f"no history of stress in {_named([row.case for row in rows], verb='')}"
         return _Open(f"{text} ({reason})" if reason else text, "a history of stress")
     tasks = [t for t in plan.tasks if t.pin.name == pin and any(x.case in cases for x in t.loads)]
     if len(tasks) > 1:
@@ -187,13 +187,16 @@ def _left_out(
 ) -> tuple[str, ...]:
     elastic = {p.pin for p in points if p.method != "fkm-p-ram"}
     singular = dict.fromkeys(
-        p.pin for outcome in outcomes for p in outcome.peaks if p.verdict == "singular"
+        row.pin for outcome in outcomes for row in outcome.rows if row.verdict == "singular"
     )
     yields = [
         task.pin.name
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
         if task.pin.name in elastic
-        and any(meets_limit(p, task.material.yield_strength or inf) is False for p in outcome.peaks)
+        and any(
+            meets_limit(row.maximum, task.material.yield_strength or inf) is False
+            for row in outcome.rows
+        )
     ]
     tight = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.lugs))
     left = dict.fromkeys(t.pin.name for t in plan.tasks if _pressed(t.given) and not t.lugs)

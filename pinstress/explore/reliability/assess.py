@@ -31,6 +31,7 @@ from pinstress.explore.reliability.sampling import importance_draws, plain_draws
 from pinstress.explore.sweep.batches import shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import Parameter
+from pinstress.explore.sweep.possible import drawn, require_balance
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import (
@@ -69,6 +70,7 @@ def assess(
     parameters, space = random_numbers(study)
     evaluator = Evaluator(study, parameters, pins, cases)
     _require_strengths(study, evaluator)
+    require_balance(study, evaluator, drawn(study, parameters))
     designs = SolvedDesigns(evaluator, space, jobs, progress)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))

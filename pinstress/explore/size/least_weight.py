@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
+from assess.judgement import OUTCOME_ORDER, SAFE
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
@@ -19,7 +20,6 @@ from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
-from reports.data.decision import OUTCOME_ORDER, SAFE, as_described
 from reports.data.results import Results
 
 MAX_PASSES = 5
@@ -94,15 +94,15 @@ def _worse(
     """
     changed = {x.pin for x in pins if not x.kept and (x.values or x.scale is not None)}
     doubtful = {
-        p.pin for p in results.pins if OUTCOME_ORDER[as_described(p)] < OUTCOME_ORDER[SAFE]
+        p.pin for p in results.pins if OUTCOME_ORDER[p.as_described] < OUTCOME_ORDER[SAFE]
     } & changed
     if not doubtful:
         return {}
     start = run(_written(study, aim, []), pins=sorted(doubtful), jobs=jobs)
-    before = {(p.pin, p.case): as_described(p) for p in start.pins}
+    before = {(p.pin, p.case): p.as_described for p in start.pins}
     out: dict[str, str] = {}
     for p in results.pins:
-        was, now = before.get((p.pin, p.case)), as_described(p)
+        was, now = before.get((p.pin, p.case)), p.as_described
         if p.pin in doubtful and was is not None and OUTCOME_ORDER[now] < OUTCOME_ORDER[was]:
             out[p.pin] = f"the lightest pin that was found is {now} in {p.case}, this one {was}"
     return out

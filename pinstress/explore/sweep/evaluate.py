@@ -16,20 +16,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
+from assess.judgement import NOT_DECIDED
 from fea.core.material import Material
 from fea.core.peak import Maximum, Verdict
 from fea.core.requirement import Requirement
-from fea.harmonic.kept_fields import EveryMesh
 from fea.support.lugs.lug import Lug
 from geometry import ArgumentError
 from loads import Linkage
+from pinbase.memo import Memo
+from pinbase.records import pack
 from pinstress.analysis.plan import prepare, requirement_of
-from pinstress.analysis.serialise import pack
 from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number, with_value
-from pinstress.explore.sweep.outcomes import DesignAnswer, bare_answer, outcome_of, stress_at
+from pinstress.explore.sweep.outcomes import bare_row, judged_row, outcome_words, stress_at
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.impulses import ImpulseLoads
@@ -38,9 +39,9 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw
-from reports.data.decision import NOT_DECIDED
+from reports.data.results import PinResult
 
-MAX_REMEMBERED_LOADS, MAX_REMEMBERED_PEAKS = 64, 4096  # that are remembered, loads of each case
+MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # that are remembered, loads of each case
 TABLES_WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
 IGNORED_TABLES = ("vary", "published", "beam_check", "motion_check", "report")
 
@@ -107,7 +108,7 @@ class Evaluator:
     pins, cases: names; all by default.
     parameters: in the order of the values of `rows`.
     table: the (pin, case) of a design's rows, in their order.
-    meshes: solutions of pins that are not in contact.
+    memo: of meshes, unit fields and flexibilities of its pins.
     files: those that the study names, as far as the creator noted them
     (pinstress.explore.sweep.batches).
 
@@ -138,8 +139,8 @@ class Evaluator:
         self._loads = Recent[tuple[object, ...], CaseLoads | InputError](
             MAX_REMEMBERED_LOADS * len(self._cases)
         )
-        self.meshes = EveryMesh()
-        self._answers = Recent[str, tuple[DesignAnswer, ...]](MAX_REMEMBERED_PEAKS)
+        self.memo = Memo()
+        self._rows = Recent[str, tuple[PinResult, ...]](MAX_REMEMBERED_ROWS)
         self._of_loads = {
             case: [k for k, number in enumerate(self.numbers) if self._moves(number, case)]
             for case in self._cases
@@ -153,7 +154,7 @@ class Evaluator:
         numbers = [float(value) for value in values]
         try:
             study = self.changed(numbers)
-            loads = self._loads_of(study, numbers)
+            loads = self.loads_of(study, numbers)
         except (InputError, MemoryError) as error:
             return [_failed(self.study, pin, case, error) for pin, case in self.table]
         rows: dict[tuple[str, str], DesignRow] = {}
@@ -197,7 +198,11 @@ class Evaluator:
             return inner[0] in free
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
-    def _loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+    def loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
+        """Return the loads of a design by case, or why a case has none.
+
+        study: with the values (p,) of the parameters, SI.
+        """
         loads: dict[str, CaseLoads | InputError] = {}
         mechanism: Linkage | None = None
         for name in self._cases:
@@ -239,44 +244,44 @@ class Evaluator:
     def _solved(
         self, study: Study, task: Task, requirement: Requirement, loads: Mapping[str, CaseLoads]
     ) -> Iterable[tuple[str, DesignRow]]:
-        material, density = task.material, task.material.density
+        density = task.material.density
         mass = density * task.pin.volume if density else None
         try:
-            answers = self._answers_of(study, task, requirement, loads)
+            rows = self._rows_of(study, task, requirement, loads)
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             names = [loads.case for loads in task.loads]
             yield from ((c, _failed(study, task.pin.name, c, error)) for c in names)
             return
         required = study.table.analysis.required_safety_factor
-        for answer in answers:
-            peak, good = answer.peak, answer.peak.verdict == "converged"
+        for row in (judged_row(row, task, required) for row in rows):
+            peak, good = row.maximum, row.verdict == "converged"
             yield (
-                peak.case,
+                row.case,
                 DesignRow(
-                    peak.pin,
-                    peak.case,
-                    peak.max_von_mises,
-                    peak.error_estimate,
-                    peak.safety_factor(material.yield_strength),
+                    row.pin,
+                    row.case,
+                    row.max_von_mises,
+                    row.error_estimate,
+                    row.safety_factor,
                     peak.verdict,
                     peak.time,
                     mass,
-                    "" if good else peak.note,
+                    "" if good else row.note,
                     "" if good else _code(peak),
-                    *outcome_of(answer, task, required, study.system),
+                    *outcome_words(row, task, study.system),
                     peak.places.governs if peak.places else "",
                     *stress_at(peak),
                 ),
             )
 
-    def _answers_of(
+    def _rows_of(
         self, study: Study, task: Task, requirement: Requirement, loads: Mapping[str, CaseLoads]
-    ) -> tuple[DesignAnswer, ...]:
+    ) -> tuple[PinResult, ...]:
         key = _question(study, task, requirement, [loads[x.case].range for x in task.loads])
-        known = self._answers.get(key)
+        known = self._rows.get(key)
         if known is None:
-            solved = solutions(study, task, requirement, lambda _: None, self.meshes)
-            known = self._answers.put(key, tuple(bare_answer(task, s, loads) for s in solved))
+            solved = solutions(study, task, requirement, lambda _: None, self.memo)
+            known = self._rows.put(key, tuple(bare_row(task, s, loads) for s in solved))
         return known
 
 
@@ -297,7 +302,7 @@ def elastic(material: Material) -> Material:
 
 
 def _elastic_lug(lug: Lug) -> Lug:
-    """Return a lug without strengths, by which only its own share is judged (bare_answer drops
+    """Return a lug without strengths, by which only its own share is judged (bare_row drops
     that).
     """
     bushing = lug.bushing and replace(lug.bushing, material=elastic(lug.bushing.material))

@@ -7,62 +7,50 @@ that takes longer than the pin itself. Such a pin is at most "safe as described"
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from fea.core.peak import Maximum, meets_limit
-from fea.support.records import JointResult
+from assess.judgement import DEPENDS, against_yield
+from fea.core.peak import Maximum
 from fea.support.support import Solution
+from pinbase.records import in_units
 from pinstress.analysis.gather.gather import landing_range
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from pinstress.study.schema.units import UnitSystem
-from reports.data.decision import DEPENDS, in_words
-from reports.data.dependence import Judged, dependences
-from reports.data.in_units import in_units
-from reports.data.results import LandingRange, Units
+from reports.data.dependence import depends_on
+from reports.data.results import PinResult, Units
 from reports.format.words import depends_words
 
 AS_DESCRIBED = "as described"
 
 
-@dataclass(frozen=True)
-class DesignAnswer:
-    """The remembered answer of a solved pin in a case: no meshes, zones, edges or cells."""
-
-    peak: Maximum
-    joint: JointResult | None
-    landing: LandingRange | None
-
-
-def bare_answer(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> DesignAnswer:
-    """Return the remembered answer for one solution of a task."""
+def bare_row(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> PinResult:
+    """Return the row for one solution of a task, without meshes, zones, edges or cells; it can be
+    remembered for any strength.
+    """
     peak, joint = solution.peak, solution.joint
     joint = joint and replace(joint, along=None, bending_moments=())
     places = peak.places
     if places is not None and places.contact is not None:
         places = replace(places, contact=replace(places.contact, edges=(), bands=()))
     peak = replace(peak, history=(), singular_at=(), places=places)
-    return DesignAnswer(peak, joint, landing_range(loads, task, solution))
+    return PinResult(peak, joint=joint, landing=landing_range(loads, task, solution))
 
 
-def outcome_of(
-    answer: DesignAnswer, task: Task, required: float | None, system: UnitSystem
-) -> tuple[str, str]:
+def judged_row(row: PinResult, task: Task, required: float | None) -> PinResult:
+    """Return a row with its judgement and what that depends on."""
+    strength = task.material.yield_strength
+    row = replace(row, judgement=against_yield(row.maximum, strength, required))
+    return replace(row, depends_on=depends_on(row))
+
+
+def outcome_words(row: PinResult, task: Task, system: UnitSystem) -> tuple[str, str]:
     """Return the outcome, and in words, in the units of a study, what it depends on."""
-    strength, around = task.material.yield_strength, task.surroundings
-    peak, permitted = answer.peak, None if strength is None else strength / (required or 1.0)
-    decided = None if permitted is None else meets_limit(peak, permitted)
-    outcome = in_words(decided, required)
-    if not decided or strength is None or permitted is None or not peak.max_von_mises:
-        return outcome, ""
-    judged = Judged(peak.lower_end, peak.max_von_mises, peak.upper_end, strength, permitted, True)
-    contact = peak.places.contact if peak.places else None
-    if on := dependences(judged, contact, answer.joint, answer.landing):
+    if row.outcome == DEPENDS:
         units = Units(system.length, system.force, system.stress, system.time)
-        dependences_in_units = [in_units(d, system.factor) for d in on]
-        return DEPENDS, depends_words(dependences_in_units, units)
-    joint_open = around is not None and around.pin is not None
-    return (f"{outcome} {AS_DESCRIBED}" if joint_open else outcome), ""
+        return DEPENDS, depends_words([in_units(d, system.factor) for d in row.depends_on], units)
+    joint_open = task.surroundings is not None and task.surroundings.pin is not None
+    return (f"{row.outcome} {AS_DESCRIBED}" if row.decided and joint_open else row.outcome), ""
 
 
 def stress_at(peak: Maximum) -> tuple[float | None, float | None, float | None, float | None]:

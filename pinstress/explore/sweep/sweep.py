@@ -13,6 +13,7 @@ from pinstress.explore.sweep.batches import Batches, DesignProblem, SolvedBatch,
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.parameters import Parameter, parameters_of
+from pinstress.explore.sweep.possible import require_balance
 from pinstress.explore.sweep.sample import designs_of
 from pinstress.explore.sweep.table import assembled, table_of
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
@@ -87,7 +88,7 @@ def planned(
     assert study.table.vary is not None
     values = designs_of(study.table.vary, parameters, correlations)
     problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
-    evaluator_of(problem)
+    require_balance(study, evaluator_of(problem), values)
     return Sweep(study, parameters, values, problem)
 
 

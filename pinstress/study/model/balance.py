@@ -21,15 +21,15 @@ from pinstress.study.schema.cases import GivenCase
 MIN_REPORTED_SHARE = 1e-4  # share from which a part is reported beside a larger one
 
 
-def unheld(study: Study, task: Task) -> list[str]:
+def unheld(study: Study, task: Task) -> dict[str, str]:
     """Return why a pin could not be solved, by case."""
     how = "not held by its lugs" if task.lugs else "unconstrained"
-    return [
-        f"pin {task.pin.name} is {how} in case {case.case}: {balance.refusal}"
+    return {
+        case.case: f"pin {task.pin.name} is {how} in case {case.case}: {balance.refusal}"
         + _closed_by(study, task.pin, case, balance)
         for case, balance in _balances(study, task)
         if balance.refusal
-    ]
+    }
 
 
 def given_warnings(study: Study) -> list[str]:

@@ -4,18 +4,51 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from loads import Layout, Reactions, TableError, given_reactions, read_reactions
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.references import closed_message
 from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 
 def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
-    """Return the forces of a case, in pin axes.
+    """Return the forces of a case, in pin axes, with those that close the balance of a pin.
 
     Raises: TableError.
     """
+    return _closed(study, name, _stated(study, name, case))
+
+
+def _closed(study: Study, name: str, stated: Reactions) -> Reactions:
+    """Return the reactions with those of links that close the balance of their pin."""
+    for pin, table in study.table.pin.items():
+        others = [c for c in study.connections(pin) if c in stated.connections]
+        if table.balance is None or not others:
+            continue
+        if table.balance in others:
+            raise TableError(
+                closed_message(f"case.{name}: connection {table.balance}", pin),
+                "closes-the-balance",
+            )
+        columns = [stated.connections.index(c) for c in others]
+        force = -stated.forces[:, columns].sum(axis=1, keepdims=True)
+        torque = np.zeros_like(force)
+        torque[:, :, 2] = -stated.moments[:, columns, 2].sum(axis=1, keepdims=True)
+        stated = replace(
+            stated,
+            connections=(*stated.connections, table.balance),
+            bodies=(*stated.bodies, ""),
+            forces=np.concatenate([stated.forces, force], axis=1),
+            moments=np.concatenate([stated.moments, torque], axis=1),
+            turn=np.concatenate([stated.turn, np.zeros((len(stated.turn), 1))], axis=1),
+        )
+    return stated
+
+
+def _stated(study: Study, name: str, case: GivenCase) -> Reactions:
     if case.table is None:
         forces, moments = (
             {c: tuple(values) for c, values in (given or {}).items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 
 from assess.fatigue.flight import flight
@@ -54,6 +54,9 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
                     code="duplicate-connection",
                 )
             bears[connection] = name
+        if pin.balance is not None:
+            own = [connection for _, connection in pin.connections]
+            yield from _known(f"pin.{name}.balance", "connection of the pin", pin.balance, own)
     yield from _of_bearing(table)
     limited = table.analysis.limit_load
     for pin_name in limited if isinstance(limited, list) else ():
@@ -97,7 +100,7 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
             )
 
 
-def _known(where: str, what: str, name: str, names: Mapping[str, object]) -> Iterator[Wrong]:
+def _known(where: str, what: str, name: str, names: Collection[str]) -> Iterator[Wrong]:
     if name not in names:
         code = f"unknown-{what.split()[-1]}"
         yield Wrong(f"{where}: no {what} {as_text(name)}; ", partial(near, name, names), code=code)
@@ -112,11 +115,20 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
                 for connection in given or ():
                     what = "pin has a connection"
                     yield from _known(f"case.{name}.{key}", what, connection, bears)
+                    borne = bears.get(connection)
+                    if borne is not None and connection == table.pin[borne].balance:
+                        yield Wrong(closed_message(f"case.{name}.{key}.{connection}", borne),
+                                    code="closes-the-balance")  # fmt: skip
         elif isinstance(case, LegCase):
             if table.spatial_leg is None:
                 yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")
         elif table.mechanism is None:
             yield Wrong(f"case.{name}: kind {case.kind!r} needs a [mechanism]", code="no-mechanism")
+
+
+def closed_message(where: str, pin: str) -> str:
+    """Return the message for a force that the study gives although it follows from others."""
+    return f"{where}: follows from the other forces on pin {pin}, by pin.{pin}.balance; remove it"
 
 
 def _of_sequences(table: StudyTable) -> Iterator[Wrong]:

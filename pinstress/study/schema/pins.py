@@ -298,6 +298,10 @@ class PinTable(StrictTable):
     lug: dict[str, LugTable] = {}
     """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
     the pin is supported by its lugs (see `analysis.joints`). Not with `geometry`."""
+    balance: str | None = None
+    """Connection whose force in cases of given forces is minus the sum of the others, and whose
+    torque about the axis likewise; such cases do not state it. For forces that scatter
+    independently. Default: the cases state all forces."""
     replaceable: Switch = False
     """Whether the pin is meant to be replaced; then EN 1993-1-8, 3.13 limits bearing, bending and
     contact stress at limit load, too."""

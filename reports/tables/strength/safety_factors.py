@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from assess.judgement import DEPENDS
 from fea.support.records import JointRange
-from reports.data.decision import DEPENDS, limit, outcome, worst_first
+from reports.data.decision import limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results, Units
@@ -129,14 +130,14 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
            lambda row: joint_range(row.pin), rank=4, drop_if_empty=True),
     Column("joint_model", lambda row: row.joint and row.joint.model),
     Column("joint_lugs", lambda row: row.joint and lugs_word(row.joint)),
-    Column("outcome", lambda row: outcome(row.pin), "", "result",
+    Column("outcome", lambda row: row.pin.outcome, "", "result",
            lambda row: result_words(row.pin), numeric=False, in_json=True),
     Column("utilisation", lambda row: row.used, "", "utilisation",
            lambda row: utilisation_range(row.pin, limit(row.results)), rank=2),
     Column("margin_of_safety", lambda row: row.margin),
     _error("truncation"),
     Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
-           if outcome(row.pin) == DEPENDS else None),
+           if row.pin.outcome == DEPENDS else None),
     Column("governs", lambda row: row.pin.places and row.pin.places.governs, "", "at",
            numeric=False, rank=5, drop_if_empty=True),
     Column("surface", lambda row: _place(row, "surface", "max_von_mises"), "stress"),

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from fea.core.places import ContactEdge, ContactPlace, SectionPlace, SurfacePlace
+from pinbase.records import plain
 from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import finite
-from reports.format.plain import plain
 from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 
 

@@ -10,8 +10,9 @@ from fea.core.material import Material
 from fea.core.pin_loads import BODY_SURFACE, Floats, PinLoads, UnitLoad
 from fea.core.tractions import closing_tractions
 from fea.harmonic.assembly import Section
+from fea.harmonic.first_mesh import FirstMesh
 from fea.harmonic.model import HarmonicModel, body_force, rigid_motions
-from fea.harmonic.stress_recovery import reading
+from fea.harmonic.stress_recovery import NO_POINTS, reading
 from fea.harmonic.superposition import Circumference
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
@@ -202,8 +203,10 @@ def test_patterns_of_pressure_are_superposed_of_each_surface(
     first = pressure(0, 1.0, -2.0), pressure(2, 0.5, 3.0)
     later = pressure(2, 1.0, 1.0), pressure(1, -1.0, 2.0), UnitLoad(bands[0], "force", 1)
     model = HarmonicModel(PIN, section, steel, ())
-    model.solve_more(first)
-    found, exact = model.solve_more(later), model.solve((*first, *later))
+    mesh = FirstMesh()
+    mesh.fields(lambda: model, ("mesh",), (first, NO_POINTS, ()))
+    found = mesh.fields(lambda: model, ("mesh",), (later, NO_POINTS, ()))
+    exact = model.solve((*first, *later))
     assert found.loads == exact.loads
     for name in ("stress", "displacement"):
         one, other = getattr(found, name), getattr(exact, name)

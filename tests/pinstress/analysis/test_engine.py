@@ -9,8 +9,9 @@ import pytest
 import pinstress
 from fea.solve.solve import solve as solve_problem
 from fea.support.support import PinProblem
+from pinbase.memo import Memo
 from pinstress.analysis import solve as solving
-from pinstress.analysis.engine import Engine, Memo
+from pinstress.analysis.engine import Engine
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study, study_from
 from reports.tables.json_results import to_json

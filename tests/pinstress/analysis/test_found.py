@@ -17,6 +17,7 @@ import pinstress
 from pinstress.analysis.results import RunResults
 from reports.format.ranges import factor_range
 from tests.conftest import ROOT
+from tests.support.results.rows import with_values
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +67,7 @@ def test_a_notebook_shows_the_factor_with_its_verdict(found: RunResults) -> None
 def test_names_in_html_are_texts(found: RunResults) -> None:
     from dataclasses import replace
 
-    odd = replace(found, title="<b>", pins=(replace(found.pins[0], pin="<i>"),))
+    odd = replace(found, title="<b>", pins=(with_values(found.pins[0], pin="<i>"),))
     text = odd._repr_html_()
     assert "<i>" not in text
     assert "<i>" in Cells(text).found

@@ -17,6 +17,7 @@ from reports.page.scripts import plots_of
 from reports.plots.all import all_plots
 from tests.support.results.html_page import EVIL, parse
 from tests.support.results.made_up_run import leg
+from tests.support.results.rows import with_values
 
 LIBRARY = re.compile(r'<script type="text/plain" id="libraries">.*?</script>', re.S)
 ANIMATION = '<!DOCTYPE html><p title="&lt;">moves & "turns"</p>'
@@ -107,7 +108,7 @@ def test_page_says_the_outcome(written: Path) -> None:
 
 
 def test_names_are_shown_and_not_run(small: Results, written: Path, tmp_path: Path) -> None:
-    first = replace(small.pins[0], pin=EVIL, case=EVIL, note=EVIL, held=EVIL, left_out=(EVIL,))
+    first = with_values(small.pins[0], pin=EVIL, case=EVIL, note=EVIL, held=EVIL, left_out=(EVIL,))
     table = replace(small.reactions[0], case=EVIL, note=EVIL, shared=(EVIL,))
     table = replace(table, connections=(EVIL, *table.connections[1:]), published={EVIL: 1.0})
     shape = PinShape(EVIL, ((1.0, 1.0, 0.0, EVIL, EVIL),), EVIL, None)
@@ -211,7 +212,7 @@ def test_drawing_of_nothing_is_empty(results: Results) -> None:
 def test_folded_parts_of_many_pins_are_text_to_scripts(small: Results, tmp_path: Path) -> None:
     """Each in a noscript element, next to that of the message on disabled scripts."""
     first = small.pins[0]
-    pins = tuple(replace(first, pin=f"{EVIL}{k}") for k in range(MAX_PINS_AT_ONCE + 1))
+    pins = tuple(with_values(first, pin=f"{EVIL}{k}") for k in range(MAX_PINS_AT_ONCE + 1))
     many = replace(small, pins=pins, shapes=(), surfaces=())
     page = render(many, tmp_path)
     assert page.count("<noscript>") == page.count('<details class="fold"') + 1 > MAX_PINS_AT_ONCE

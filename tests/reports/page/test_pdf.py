@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from reports.data.decision import outcome, worst_first
+from reports.data.decision import worst_first
 from reports.data.envelope import governing_cases
 from reports.data.results import Results, TitleBlock
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.page.paper import MAX_DIMENSIONS, PINS_PER_MATRIX, document
 from reports.pdf.typeset import shown_plots, typeset
 from reports.plots.all import all_plots
+from tests.support.results.rows import with_values
 
 EVIL = '#panic("no") $x$ *b* _i_ \\ `c` <a> @b // /* [ ] { }'
 
 
 def test_rows_are_those_of_the_decision_worst_first(results: Results) -> None:
     found = document(results, {})["factors"]
-    assert found["outcomes"] == [outcome(pin) for pin in worst_first(results)]
+    assert found["outcomes"] == [pin.outcome for pin in worst_first(results)]
     at = found["head"].index("pin")
     assert [row[at] for row in found["body"]] == [pin.pin for pin in worst_first(results)]
 
@@ -33,7 +34,9 @@ def test_every_pin_shows_its_stress_and_its_meshes(results: Results) -> None:
 
 def test_every_case_and_pin_is_in_the_matrix_with_those_that_govern(results: Results) -> None:
     pins = tuple(
-        replace(row, pin=f"{row.pin}{k}") for k in range(PINS_PER_MATRIX) for row in results.pins
+        with_values(row, pin=f"{row.pin}{k}")
+        for k in range(PINS_PER_MATRIX)
+        for row in results.pins
     )
     found = document(replace(results, pins=pins), {})["envelope"]
     shown = {

@@ -22,6 +22,7 @@ from reports.page.viewer import (
     pin_views,
 )
 from tests.support.programs.packed import unpacked
+from tests.support.results.rows import with_values
 
 EVIL = "</script><script>alert(1)</script>"
 
@@ -133,7 +134,8 @@ def test_names_do_not_end_the_script(results: Results, surface: Surface, tmp_pat
     (case,) = surface.cases
     evil = replace(surface, cases=(replace(case, case=EVIL),))
     rows = tuple(
-        replace(p, case=EVIL) if (p.pin, p.case) == ("B", "landing") else p for p in results.pins
+        with_values(p, case=EVIL) if (p.pin, p.case) == ("B", "landing") else p
+        for p in results.pins
     )
     made = replace(results, pins=rows, surfaces=(evil,))
     assert json.loads(str(pin_views(made, "B")[0].data))["cases"][0]["name"] == EVIL

@@ -29,6 +29,7 @@ from reports.plots.theme import (
     on_paper,
 )
 from tests.support.results.made_up_run import leg, ranged
+from tests.support.results.rows import with_landing, with_values
 
 DIGITS = 1e-5  # relative: six are written
 
@@ -36,8 +37,8 @@ DIGITS = 1e-5  # relative: six are written
 @pytest.fixture(scope="module")
 def plots(results: Results) -> dict[str, Plot]:
     legs = (leg(np.asarray(results.drive[0].time)),)
-    landing = (ranged("A"), ranged("B", "singular", 2.0))
-    return all_plots(replace(results, legs=legs, landing=landing))
+    results = with_landing(results, ranged("A"), ranged("B", "singular", 2.0))
+    return all_plots(replace(results, legs=legs))
 
 
 def columns(plot: Spec) -> dict[str, Floats]:
@@ -131,7 +132,7 @@ def test_refinement_has_the_strain_energy(results: Results) -> None:
     steps = [
         replace(s, strain_energy=e) for s, e in zip(pin.history, (9.0, 9.9, 10.0), strict=True)
     ]
-    spec = pin_refinement_plot("D", [replace(pin, history=tuple(steps))], results.units).spec
+    spec = pin_refinement_plot("D", [with_values(pin, history=tuple(steps))], results.units).spec
     rows = spec["data"]["values"]
     assert [row["e"] for row in rows] == pytest.approx([-10.0, -1.0, 0.0], rel=DIGITS)
     assert len(spec["vconcat"]) == 2

@@ -20,17 +20,18 @@ from reports.tables.strength.envelope import cell_text, envelope_table, heat, ma
 from reports.tables.strength.safety_factors import write_safety_factors
 from reports.text.html import safety_factors_html
 from reports.text.safety_factors import print_safety_factors
+from tests.support.results.rows import with_values
 
 
 def of_cases(results: Results, count: int) -> Results:
     """Two pins; the factor of the first falls with the cases, that of the other rises."""
     first = results.pins[0]
     static = next(t for t in results.reactions if t.times is None)
-    made = replace(first, verdict="converged", singular_at=(), safety_factor_interval=None)
+    made = with_values(first, verdict="converged", singular_at=(), safety_factor_interval=None)
     return replace(
         results,
         pins=tuple(
-            replace(
+            with_values(
                 made,
                 pin=pin,
                 case=f"gust {k}",
@@ -46,9 +47,6 @@ def of_cases(results: Results, count: int) -> Results:
         shapes=(),
         surfaces=(),
         changes=(),
-        landing=(),
-        margins=(),
-        arms=(),
         drops=(),
         required_safety_factor=1.5,
     )
@@ -75,7 +73,8 @@ def test_many_cases_are_short_on_the_terminal_and_in_files(
     made = of_cases(results, 50)
     over = (Dependence("tilt", "guided", "joint", 9.0),)
     pins = (
-        replace(p, published_max_von_mises=None, decided=False, depends_on=over) for p in made.pins
+        with_values(p, published_max_von_mises=None, decided=False, depends_on=over)
+        for p in made.pins
     )
     made = replace(made, pins=tuple(pins))
     shown = StringIO()
@@ -120,8 +119,8 @@ def test_few_cases_are_shown_in_full(results: Results) -> None:
 
 def test_a_cell_without_a_number_is_a_dash_and_an_endless_one_is_full(results: Results) -> None:
     made = of_cases(results, 2)
-    one = replace(made.pins[0], safety_factor=None, verdict="rigid", decided=None)
-    two = replace(made.pins[1], safety_factor_interval=(0.0, 3.0))
+    one = with_values(made.pins[0], safety_factor=None, verdict="rigid", decided=None)
+    two = with_values(made.pins[1], safety_factor_interval=(0.0, 3.0))
     found = matrix(replace(made, pins=(one, two, *made.pins[2:])))
     assert found is not None
     (_, (first, second)), *_ = found.rows

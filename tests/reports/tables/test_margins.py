@@ -27,7 +27,9 @@ CHECKS = (
 
 
 def test_every_row_is_in_the_unit_that_it_names(results: Results) -> None:
-    in_si = replace(results, pins=(), margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
+    in_si = replace(
+        results, pins=(), spectrum_margins=tuple(PinMargin("P", "c", m) for m in CHECKS)
+    )
     value = {"stress": 1e6, "force": 1e3, "moment": 1e3, "time": 1.0, "length": 1.0}
     made = in_si.in_units(Units("m", "kN", "MPa", "s"), lambda d: value.get(d, 1.0))
     rows = margins_table(made).records()
@@ -47,17 +49,17 @@ def test_every_row_is_in_the_unit_that_it_names(results: Results) -> None:
 
 
 def test_the_table_has_the_same_rows_with_a_heading_for_each(results: Results) -> None:
-    made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
+    made = replace(results, spectrum_margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
     table = margins_table(made)
     cells = [dict(zip(table.keys, row, strict=True)) for row in table.cells()]
     assert cells == to_json(made)["margins"]
 
 
 def test_the_pdf_has_the_governing_margins(results: Results) -> None:
-    made = replace(results, margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
+    made = replace(results, spectrum_margins=tuple(PinMargin("P", "c", m) for m in CHECKS))
     table, found = governing_table(made), document(made, {})["margins"]
     assert found["grid"]["body"] == table.grid(made.units).body
-    assert document(replace(results, margins=()), {})["margins"] is None
+    assert document(replace(results, spectrum_margins=()), {})["margins"] is None
 
 
 def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
@@ -73,7 +75,7 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
         PinMargin("A", "two", used("shear", 50.0)),
         PinMargin("B", "two", CHECKS[-1]),
     )
-    made = replace(results, margins=margins)
+    made = replace(results, spectrum_margins=margins)
     by_case, worst = (x(made).grid(made.units) for x in (governing_table, worst_table))
     assert [row[:4] for row in by_case.body] == [
         ["B", "one", "shear", "+0.111"],
@@ -83,4 +85,4 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
     assert [row[:3] for row in worst.body] == [["B", "one", "shear"], ["A", "two", "shear"]]
     (line,) = not_made_words(made)
     assert "(pin B), material.steel.ultimate_strength missing: rupture" in line
-    assert not worst_table(replace(results, margins=margins[-1:])).rows
+    assert not worst_table(replace(results, spectrum_margins=margins[-1:])).rows

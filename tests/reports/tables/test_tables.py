@@ -29,6 +29,7 @@ from reports.tables.strength.safety_factors import (
 from reports.text.safety_factors import print_safety_factors
 from reports.text.summary import summary
 from tests.support.each import each
+from tests.support.results.rows import with_values
 
 SAFETY_FACTORS = [
     "pin",
@@ -63,7 +64,7 @@ def refuse(constant: str) -> float:
 
 
 def with_first_pin(results: Results, **changes: object) -> Results:
-    first = replace(results.pins[0], **changes)  # type: ignore[arg-type]
+    first = with_values(results.pins[0], **changes)
     return replace(results, pins=(first, *results.pins[1:]))
 
 
@@ -120,7 +121,8 @@ def test_json_holds_the_contract(results: Results) -> None:
 
 
 def test_json_takes_numpy_truths(results: Results) -> None:
-    odd = with_first_pin(results, decided=np.bool_(True), dofs=np.int64(7))
+    mesh = replace(results.pins[0].history[0], dofs=np.int64(7))  # type: ignore[arg-type]
+    odd = with_first_pin(results, decided=np.bool_(True), history=(mesh,))
     assert json.loads(json.dumps(to_json(odd)))["pins"][0]["meets_required"] is True
 
 

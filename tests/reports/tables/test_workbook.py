@@ -17,6 +17,7 @@ from reports.tables.all import MAX_SHEET_ROWS, load_tables, sheets, stress_table
 from reports.tables.column import Table
 from reports.tables.workbook import write_workbook
 from tests.conftest import ROOT
+from tests.support.results.rows import with_values
 
 NAMES = {"": "http://schemas.openxmlformats.org/spreadsheetml/2006/main"}
 Sheet = list[dict[str, str | float]]  # by row: cells by their column's letters
@@ -112,7 +113,7 @@ def test_headings_have_units(results: Results, tables: list[Table[Any]], tmp_pat
 def test_texts_are_never_run(results: Results, tmp_path: Path) -> None:
     """Not now, for they are no formulas, nor after a cell was edited, for a quote comes first."""
     evil = "=HYPERLINK(1)"
-    first = replace(results.pins[0], pin=evil, note="https://example.org", case="12")
+    first = with_values(results.pins[0], pin=evil, note="https://example.org", case="12")
     odd = replace(results, pins=(first, *results.pins[1:]))
     write_workbook(odd, stress_tables(odd), tmp_path / "t.xlsx")
     sheets, raw = read(tmp_path / "t.xlsx")

@@ -10,6 +10,7 @@ import numpy as np
 from fea.support.records import BandContact, JointRange, JointResult, Variation
 from reports.data.results import Results
 from reports.data.surface import Surface, SurfaceCase
+from tests.support.results.rows import with_values
 
 RANGE = (1100.0, 1900.0)
 
@@ -49,7 +50,7 @@ def joint_range() -> JointRange:
 def in_lugs(results: Results, joint: JointResult, **changes: object) -> Results:
     """The first pin of some results with this contact, and other changes."""
     changes |= {"error_parts": {"mesh": 5.0, "time": 0.0, "cells": 1.0}}
-    first = replace(results.pins[0], joint=joint, **changes)  # type: ignore[arg-type]
+    first = with_values(results.pins[0], joint=joint, **changes)
     return replace(results, pins=(first, *results.pins[1:]))
 
 

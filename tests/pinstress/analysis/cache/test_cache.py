@@ -11,26 +11,34 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fea.core.peak import Maximum, Refinement
+from fea.core.peak import Maximum
+from pinbase.records import pack
 from pinstress.analysis import cache as cache_module
-from pinstress.analysis import serialise as packing
 from pinstress.analysis.cache import Cache, user_cache
-from pinstress.analysis.stored import Entry, PinOutcome
-from reports.data.results import Field
+from pinstress.analysis.stored import PinOutcome
+from reports.data.results import PinResult
 from tests.support.each import each
 from tests.support.programs.folder_contents import contents, flipped
 
 
+def rigid(note: str = "why") -> PinOutcome:
+    """The outcome of a pin in one case, without a number."""
+    return PinOutcome((PinResult(Maximum("P", "c", "beam", "rigid", note)),))
+
+
 def large(size: int) -> PinOutcome:
     """An entry of about so many bytes."""
-    return PinOutcome((Maximum("P", "c", "beam", "rigid", "w" * size),))
+    return rigid("w" * size)
 
 
 @each("damage", [flipped, lambda d: d[:-1], lambda d: d[:40], lambda _: b"", lambda d: d + b"\0"])
 def test_a_damaged_entry_is_none_and_is_replaced(
     tmp_path: Path, damage: Callable[[bytes], bytes]
 ) -> None:
-    cache, value = Cache(tmp_path, ""), PinOutcome((Maximum("P", "c", "beam", "rigid", "why"),))
+    cache, value = (
+        Cache(tmp_path, ""),
+        rigid(),
+    )
     key = cache.key("question")
     cache.write(key, value)
     assert cache.read(key, PinOutcome) == value
@@ -113,36 +121,6 @@ def test_where_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert list(tmp_path.iterdir()) == []  # nothing is made before it is written
 
 
-def test_packing_keeps_every_bit() -> None:
-    numbers = np.array([[0.1, -0.0, np.nan], [np.inf, 5e-324, 1 / 3]], order="F")
-    field = Field("P ü", "c", numbers, np.arange(8).reshape(2, 4), numbers, numbers, numbers[0],
-                  numbers[1], "quad", None, (0.1 + 0.2, (1.0, -0.0, 1e300)))  # fmt: skip
-    entry = Entry(PinOutcome((Maximum("P", "c", "beam", "rigid", "why"),)), (field,))
-    data = packing.pack(entry)
-    back = packing.unpack(Entry, data)
-    assert packing.pack(back) == data
-    assert back.solved == entry.solved
-    assert back.fields[0].points.tobytes("A") == numbers.tobytes("A")
-    assert repr(back.fields[0].outside) == repr(field.outside)
-
-
-@each(
-    "wrong",
-    [
-        Maximum("P", "c", "beam", "perhaps", ""),  # type: ignore[arg-type]
-        Maximum("P", "c", "beam", "rigid", "", max_von_mises="1"),  # type: ignore[arg-type]
-        Maximum("P", "c", "beam", "rigid", "", location=(1.0, 2.0)),  # type: ignore[arg-type]
-        Maximum("P", "c", "beam", "rigid", 1),  # type: ignore[arg-type]
-        Refinement(1, 1.0, 1.0),
-        ("P",),
-        None,
-    ],
-)
-def test_unpacking_checks_types(wrong: object) -> None:
-    with pytest.raises(ValueError, match=r"expected|argument"):
-        packing.unpack(Maximum, packing.pack(wrong))
-
-
 class Payload:
     """What a pickle of it does when it is read."""
 
@@ -155,9 +133,9 @@ class Payload:
 
 def test_nothing_is_pickled(tmp_path: Path) -> None:
     with pytest.raises(TypeError, match="cannot be packed"):
-        packing.pack(np.array([{}], dtype=object))
+        pack(np.array([{}], dtype=object))
     with pytest.raises(TypeError, match="cannot be packed"):
-        packing.pack(Path("x"))
+        pack(Path("x"))
     cache, trap = Cache(tmp_path, ""), tmp_path / "trap"
     key = cache.key("plot")
     file = io.BytesIO()

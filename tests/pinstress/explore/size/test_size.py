@@ -20,7 +20,7 @@ from pinstress.explore.size.scaled_study import moved, resized, resized_study
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import load_study, parse_study
 from pinstress.study.schema.units import UNIT_SYSTEMS
-from reports.data.decision import factor_ends, outcome
+from reports.data.decision import factor_ends
 from tests.conftest import ROOT
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, QUICK, Refused, sizes_nothing
@@ -185,7 +185,7 @@ def test_a_floating_pin_of_a_linkage_is_sized_and_a_run_confirms_it(
     (row,) = run(load_study(target)).pins
     low, _ = factor_ends(row)
     assert 4.0 <= low <= 4.0 * (1.0 + FACTOR_TOLERANCE)
-    assert outcome(row) == "depends"
+    assert row.outcome == "depends"
     assert f"{row.safety_factor:.2f}" in said.out
 
 

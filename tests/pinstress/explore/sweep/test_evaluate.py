@@ -7,7 +7,7 @@ import math
 import pytest
 
 import pinstress
-from fea.harmonic.kept_fields import EveryMesh
+from pinbase.memo import Memo
 from pinstress import InputError, Study, changed_study, load_study, shipped_studies, study_from
 from pinstress.analysis.solve import solutions
 from pinstress.explore.sweep.evaluate import Evaluator, Recent
@@ -47,10 +47,10 @@ def test_rows_are_those_of_a_run_of_the_changed_study() -> None:
 def test_loads_and_strength_alone_mesh_nothing_again() -> None:
     evaluator, (force, strength) = _evaluator(study_from(ONE_PIN), FORCE, STRENGTH)
     evaluator.rows([force, strength])
-    meshes = evaluator.meshes.solved
+    meshes = evaluator.memo.made
     assert meshes == 3
     rows = [evaluator.rows([force * f, strength * s])[0] for f in (0.5, 2.0) for s in (1.0, 1.5)]
-    assert evaluator.meshes.solved == meshes
+    assert evaluator.memo.made == meshes
     assert len({row.safety_factor for row in rows}) == 4
 
 
@@ -72,7 +72,7 @@ def test_the_order_of_designs_changes_no_bit() -> None:
     designs = [(d * diameter, f * force) for d in (1.0, 1.2) for f in (1.0, 1.4)]
     forward = [evaluator.rows(d) for d in designs]
     other, _ = _evaluator(study, DIAMETER, FORCE)
-    other.meshes._most = 0
+    other.memo = Memo(0)
     assert [other.rows(d) for d in reversed(designs)] == forward[::-1]
 
 
@@ -154,11 +154,11 @@ def test_what_was_asked_for_last_is_remembered() -> None:
 def test_meshes_are_kept_within_their_memory() -> None:
     """All that is kept of them counts, of which stress is a fifth."""
     evaluator, (diameter, force) = _evaluator(study_from(ONE_PIN), DIAMETER, FORCE)
-    evaluator.meshes = EveryMesh(2_000_000)
+    evaluator.memo = Memo(2_000_000)
     for k in range(8):
         evaluator.rows([diameter * (1.0 + 0.01 * k), force])
-    solved = evaluator.meshes.solved
+    solved = evaluator.memo.made
     evaluator.rows([diameter * 1.07, 2.0 * force])
-    assert evaluator.meshes.solved == solved  # the last one is known
+    assert evaluator.memo.made == solved  # the last one is known
     evaluator.rows([diameter, 2.0 * force])
-    assert evaluator.meshes.solved > solved
+    assert evaluator.memo.made > solved

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from geometry import CutPin, Flat, Hole, Passage, Pin, Segment, Slot
+from pinbase.records import in_units
 from pinstress.analysis.gather.gather import cut_shapes
 from pinstress.study.model.pins import outline
-from reports.data.in_units import in_units
 from reports.data.results import PinShape
 from reports.format.drawing.cuts import words
 from reports.page.pin_drawing import draw_pin

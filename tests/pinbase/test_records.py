@@ -1,8 +1,9 @@
-"""Results are made in SI and converted at once, by the dimensions of their fields."""
+"""Records in JSON, in other units by the dimensions of their fields, and in bytes and back."""
 
 from __future__ import annotations
 
 import dataclasses
+import json
 from dataclasses import replace
 from typing import Any
 
@@ -10,17 +11,23 @@ import numpy as np
 import pytest
 
 from fea.core.mesh_result import SingularIntensity
-from fea.core.peak import SingularZone
+from fea.core.peak import Maximum, Refinement, SingularZone
+from pinbase.records import in_units, pack, plain, unpack
+from pinstress.analysis.stored import Entry, PinOutcome
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data import results as data
-from reports.data.in_units import in_units
+from reports.data import row
 from reports.data.results import (
     Dimensioned,
     DriveEffort,
     DriveTable,
+    Field,
+    GoverningLoad,
+    PinResult,
     ReactionTable,
-    Results,
 )
+from tests.support.each import each
+from tests.support.results.made_up_run import make_results
 
 INCHES, MILLIMETRES = UNIT_SYSTEMS["in-lbf-s"], UNIT_SYSTEMS["mm-N-s"]
 
@@ -39,8 +46,9 @@ def numbers(value: Any) -> list[float]:
     return [value] if isinstance(value, float) else []
 
 
-def test_there_and_back_is_the_same(results: Results) -> None:
+def test_there_and_back_is_the_same() -> None:
     """Nothing is converted one way only: SI values of the inverse units undo it."""
+    results = make_results()
     there = in_units(results, MILLIMETRES.factor)
     back = in_units(there, lambda dimension: 1.0 / MILLIMETRES.factor(dimension))
     assert numbers(back) == pytest.approx(numbers(results), rel=1e-12)
@@ -51,14 +59,13 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
     """A new field that holds numbers cannot be left in SI by oversight."""
     plain = {
         f"{name}.{f.name}"
-        for name, kind in vars(data).items()
+        for name, kind in (vars(data) | vars(row)).items()
         if dataclasses.is_dataclass(kind)
         for f in dataclasses.fields(kind)
         if str(f.type).split(" | ")[0] in ("Floats", "float", "dict[str, Floats]")
     }
     assert plain == {
-        "PinResult.seconds",
-        "PinResult.safety_factor",
+        "Judgement.safety_factor",
         "PinSensitivities.factor",
         "Sensitivity.factor_with_step",
         "PinResult.published_max_von_mises",  # as published, in the study's units
@@ -74,7 +81,7 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
         "LandingRange.safety_factor",
         "LandingRange.error",
         "Dependence.factor",
-        "PinResult.required",
+        "Judgement.required",
         "PointFatigue.damage",  # per unit of the spectrum, in which lives are counted
         "PointFatigue.life",
         "PointFatigue.utilisation",
@@ -145,3 +152,65 @@ def test_a_product_of_units() -> None:
     assert found.values == pytest.approx(1e3)
     assert found.unit == "N mm s"
     assert in_units(Dimensioned(np.ones(1), "rad/s", "rad/s"), INCHES.factor).values == 1.0
+
+
+def test_packing_keeps_every_bit() -> None:
+    numbers = np.array([[0.1, -0.0, np.nan], [np.inf, 5e-324, 1 / 3]], order="F")
+    field = Field("P ü", "c", numbers, np.arange(8).reshape(2, 4), numbers, numbers, numbers[0],
+                  numbers[1], "quad", None, (0.1 + 0.2, (1.0, -0.0, 1e300)))  # fmt: skip
+    row = PinResult(Maximum("P", "c", "beam", "rigid", "why"))
+    entry = Entry(PinOutcome((row,)), (field,))
+    data = pack(entry)
+    back = unpack(Entry, data)
+    assert pack(back) == data
+    assert back.solved == entry.solved
+    assert back.fields[0].points.tobytes("A") == numbers.tobytes("A")
+    assert repr(back.fields[0].outside) == repr(field.outside)
+
+
+@each(
+    "wrong",
+    [
+        Maximum("P", "c", "beam", "perhaps", ""),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "rigid", "", max_von_mises="1"),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "rigid", "", location=(1.0, 2.0)),  # type: ignore[arg-type]
+        Maximum("P", "c", "beam", "rigid", 1),  # type: ignore[arg-type]
+        Refinement(1, 1.0, 1.0),
+        ("P",),
+        None,
+    ],
+)
+def test_unpacking_checks_types(wrong: object) -> None:
+    with pytest.raises(ValueError, match=r"expected|argument"):
+        unpack(Maximum, pack(wrong))
+
+
+def test_a_record_is_not_read_as_another_with_the_same_fields() -> None:
+    """Nor do both have the same key in the cache."""
+
+    @dataclasses.dataclass(frozen=True)
+    class One:
+        value: float
+
+    @dataclasses.dataclass(frozen=True)
+    class Other:
+        value: float
+
+    assert pack(One(1.0)) != pack(Other(1.0))
+    with pytest.raises(ValueError, match="expected"):
+        unpack(One, pack(Other(1.0)))
+
+
+def test_json_has_no_numbers_that_are_none() -> None:
+    load = GoverningLoad("B", "strut", np.array([1.0, np.nan, 3.0]), np.zeros(3))
+    found = plain({1: load, "n": (np.int64(2), np.bool_(True), np.inf, None, "x", 0.1)})
+    text = json.dumps(found, allow_nan=False)
+    assert json.loads(text) == {
+        "1": {
+            "connection": "B",
+            "body": "strut",
+            "force": [1.0, None, 3.0],
+            "moment": [0.0, 0.0, 0.0],
+        },
+        "n": [2, True, None, None, "x", 0.1],
+    }

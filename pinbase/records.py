@@ -1,0 +1,198 @@
+"""Records are frozen dataclasses of numbers, arrays, texts and other records. Here they are walked:
+to JSON, to other units, and to bytes and back.
+
+The types of their fields say what a value is. Numbers have their dimension in an annotation
+(pinbase.dimensions): a name, or several with exponents, "stress length^0.5". A class whose
+dimensions differ from object to object has a property `dimension_of`, which maps the dimension of
+the annotation to that of the object; it holds for all that the object holds.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+import types
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from functools import cache
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+T = TypeVar("T")
+Array = NDArray[Any]
+Unit = Callable[[str], float]
+
+# The same in every system
+SYSTEM_INDEPENDENT_DIMENSIONS = "1", "degrees", "rad", "rad/s", "rad/s^2"
+JSON_ENTRY = "text"  # the name of the JSON in an npz file; arrays are called by their numbers
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON has it.
+
+    Non-finite numbers become null, records objects of their fields, NumPy numbers ordinary ones.
+    """
+    if is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def in_units(value: T, unit: Unit) -> T:
+    """Return a record with its numbers, and those of all it holds, in other units.
+
+    unit: returns the SI value of the unit of a dimension.
+    """
+    dimension_of: Mapping[str, str] = getattr(value, "dimension_of", {})
+
+    def own(dimension: str) -> float:
+        return _factor(dimension_of.get(dimension, dimension), unit)
+
+    changed = {
+        name: _converted(hint, getattr(value, name), own if dimension_of else unit)
+        for name, hint in _types(type(value)).items()  # type: ignore[arg-type]
+        if _has_dimension(hint)
+    }
+    return replace(value, **changed) if changed else value  # type: ignore[type-var]
+
+
+def pack(value: object) -> bytes:
+    """Return a value as bytes; equal values give equal bytes.
+
+    They are an npz file of the arrays and a JSON text with the rest, numbers bit for bit.
+    value: records, tuples, lists, dicts by text, arrays, numbers, texts and None.
+
+    Raises: TypeError for anything else.
+    """
+    arrays: list[Array] = []
+    text = json.dumps(_written(value, arrays), separators=(",", ":"))
+    file = io.BytesIO()
+    named: dict[str, Array] = {f"{i}": array for i, array in enumerate(arrays)}
+    named[JSON_ENTRY] = np.frombuffer(text.encode(), np.uint8)
+    np.savez(file, **named)  # type: ignore[arg-type]
+    return file.getvalue()
+
+
+def unpack(kind: type[T], data: bytes) -> T:
+    """Return the packed value, a `kind`; all of it is checked against the types of the records.
+
+    Raises: ValueError for a value of another type; the errors of numpy and zipfile for other data.
+    """
+    with np.load(io.BytesIO(data), allow_pickle=False) as file:
+        arrays = {name: file[name] for name in file.files}
+    value: T = _read(kind, json.loads(arrays.pop(JSON_ENTRY).tobytes()), arrays)
+    return value
+
+
+@cache
+def _types(kind: type) -> dict[str, Any]:
+    """Return the types of the fields of a record by name, with their dimensions."""
+    hints = get_type_hints(kind, include_extras=True)
+    return {f.name: hints[f.name] for f in fields(kind)}
+
+
+def _present(hint: Any) -> Any:
+    """Return the type of a value that is not None."""
+    if get_origin(hint) in (Union, types.UnionType):
+        (hint,) = (arm for arm in get_args(hint) if arm is not types.NoneType)
+    return hint
+
+
+def _each(hint: Any, values: Iterable[Any]) -> Iterable[tuple[Any, Any]]:
+    """Return the items of a tuple, each after its type."""
+    inner = get_args(hint)
+    if inner[1:] == (...,):
+        return ((inner[0], value) for value in values)
+    return zip(inner, values, strict=True)
+
+
+@cache
+def _has_dimension(hint: Any) -> bool:
+    """Return whether there may be a dimension somewhere in a type."""
+    if is_dataclass(hint) or get_origin(hint) is Annotated:
+        return True
+    return any(_has_dimension(arm) for arm in get_args(hint))
+
+
+def _factor(dimension: str, unit: Unit) -> float:
+    """Return the product of the units of a dimension such as "stress length^0.5"."""
+    if dimension in SYSTEM_INDEPENDENT_DIMENSIONS:
+        return 1.0
+    product = 1.0
+    for part in dimension.split():
+        name, _, exponent = part.partition("^")
+        product *= unit(name) ** float(exponent or 1.0)
+    return product
+
+
+def _converted(hint: Any, value: Any, unit: Unit) -> Any:
+    """Return a value of a type in other units."""
+    if value is None or not _has_dimension(hint):
+        return value
+    hint = _present(hint)
+    if get_origin(hint) is Annotated:
+        factor = _factor(get_args(hint)[1], unit)
+        # an array keeps its precision
+        return value if isinstance(value, np.ndarray) and factor == 1.0 else value / factor
+    if get_origin(hint) is tuple:
+        return tuple(_converted(kind, item, unit) for kind, item in _each(hint, value))
+    if isinstance(value, Mapping):
+        return {key: _converted(get_args(hint)[1], item, unit) for key, item in value.items()}
+    return in_units(value, unit)
+
+
+def _written(value: object, arrays: list[Array]) -> object:
+    """Return a value as JSON has it, each array as its number in `arrays`."""
+    if isinstance(value, np.generic):
+        return value.item()
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, np.ndarray) and value.dtype.kind in "biuf":  # savez pickles objects
+        arrays.append(value)
+        return len(arrays) - 1
+    if is_dataclass(value) and not isinstance(value, type):
+        content = [_written(getattr(value, f.name), arrays) for f in fields(value)]
+        return [type(value).__name__, *content]
+    if isinstance(value, tuple | list):
+        return [_written(item, arrays) for item in value]
+    if isinstance(value, dict):
+        return {str(key): _written(item, arrays) for key, item in value.items()}
+    raise TypeError(f"a {type(value).__name__} cannot be packed")
+
+
+def _read(hint: Any, value: Any, arrays: dict[str, Array]) -> Any:
+    """Return what was written of a value of a type.
+
+    Raises: ValueError for another value.
+    """
+    kind = _present(hint)
+    if value is None and kind is not hint:
+        return None
+    if get_origin(kind) is Annotated:
+        return _read(get_args(kind)[0], value, arrays)
+    origin, inner = get_origin(kind), get_args(kind)
+    if origin is Literal and value in inner:
+        return value
+    if origin is np.ndarray and type(value) is int:
+        array = arrays[str(value)]
+        if array.dtype == np.dtype(get_args(inner[1])[0]):
+            return array
+    if origin is tuple and isinstance(value, list):
+        return tuple(_read(item_kind, item, arrays) for item_kind, item in _each(kind, value))
+    if is_dataclass(kind) and isinstance(value, list):
+        name, *content = value
+        if name == kind.__name__:  # type: ignore[union-attr]
+            kinds = _types(kind).values()  # type: ignore[arg-type]
+            items = zip(kinds, content, strict=True)
+            return kind(*(_read(k, item, arrays) for k, item in items))  # type: ignore[operator]
+    if type(value) is kind or (kind is float and type(value) is int):
+        return value
+    raise ValueError(f"{kind} expected, not {value!r:.60}")

@@ -1,0 +1,283 @@
+"""Rows of results: one pin in one case."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Annotated, Literal
+
+from assess.judgement import BELOW_YIELD, DEPENDS, SAFE, Judgement
+from assess.margin import Margin
+from assess.opinion.opinions import Opinion
+from assess.plastic.records import LimitLoad
+from assess.strength.bending_arms import BendingArms
+from fea.core.peak import Maximum, Refinement, SingularZone
+from fea.core.places import Places
+from fea.support.records import JointResult
+from pinbase.dimensions import (
+    Floats,
+    Forces,
+    Length,
+    Moments,
+    Stresses,
+    Time,
+    Times,
+    Velocities,
+    Velocity,
+)
+from reports.data.mechanics import DrivePosition, shown_position
+
+
+@dataclass(frozen=True)
+class GoverningLoad:
+    """The load of a body on the pin at a connection at the governing instant.
+
+    force, moment: (3,), world axes.
+    """
+
+    connection: str
+    body: str
+    force: Forces
+    moment: Moments
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """A value given as a range or seldom known that changes the outcome of a row.
+
+    what: "clearance", "impulse time", "beneath". value: in words where it is not a number
+    ("guided").
+    over: the owner of the range, or "beneath" for the stress beneath contact as the study has it;
+    for that stress over a range, `value` is what changes ("clearance").
+    factor: of safety at that value.
+    given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
+    one at which it changes, of `dimension`; None where it is not a number.
+    reach: depth below pressed cells at which the stress exceeds the permitted one.
+    """
+
+    what: str
+    value: str
+    over: Literal["joint", "landing", "beneath"]
+    factor: float
+    given: Annotated[float, "own"] | None = None
+    at: Annotated[float, "own"] | None = None
+    flips_at: Annotated[float, "own"] | None = None
+    dimension: str = "1"
+    reach: Length | None = None
+
+    @property
+    def dimension_of(self) -> dict[str, str]:
+        return {"own": self.dimension}
+
+
+@dataclass(frozen=True)
+class LandingRange:
+    """The results of one pin over the ranges of a landing's impulse, at P points.
+
+    impulse_time, velocity_change, force, max_von_mises: (P,). pulses: (P,).
+    safety_factor: (P,), None without a yield strength.
+    nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
+    spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
+    """
+
+    pin: str
+    case: str
+    impulse_time: Times
+    velocity_change: Velocities
+    force: Forces
+    max_von_mises: Stresses
+    safety_factor: Floats | None
+    nominal: tuple[Time, Velocity]
+    verdict: str
+    spread: tuple[float, float] | None = None
+    pulses: tuple[str, ...] = ()
+    nominal_pulse: str = ""
+    error: float = 0.0
+
+
+@dataclass(frozen=True)
+class PinResult:
+    """A row of the results: one pin in one case. Numbers are None for `rigid` and `failed`.
+
+    maximum: the maximum stress, with its error and verdict.
+    judgement: of that maximum against yield.
+    joint: contact with the lugs at the governing instant, if lugs support the pin.
+    limit_load: past yield, if requested.
+    landing: the results over the ranges of a landing's impulse, if it has any.
+    margins: of every check at every place and level; worst: the worst place of each that counts.
+    arms: of the bending moment, None where the formulas do not apply.
+    second_opinion: of CalculiX, if any.
+    held: the supports of the pin, in words.
+    left_out: given forces that were not applied because their band is clamped.
+    position: of the drive; position_unit: as in ReactionTable.
+    loads: at the governing instant.
+    depends_on: values within the study's ranges that change whether the maximum is permitted.
+    published_*: the publication's value, in the study's units.
+    """
+
+    maximum: Maximum
+    judgement: Judgement = field(default_factory=Judgement)
+    joint: JointResult | None = None
+    limit_load: LimitLoad | None = None
+    landing: LandingRange | None = None
+    margins: tuple[Margin, ...] = ()
+    worst: tuple[Margin, ...] = ()
+    arms: BendingArms | None = None
+    second_opinion: Opinion | None = None
+    held: str = ""
+    left_out: tuple[str, ...] = ()
+    position: DrivePosition | None = None
+    position_unit: str = ""
+    loads: tuple[GoverningLoad, ...] = ()
+    depends_on: tuple[Dependence, ...] = ()
+    published_max_von_mises: float | None = None
+    published_safety_factor: float | None = None
+
+    @property
+    def pin(self) -> str:
+        """The name of the pin."""
+        return self.maximum.pin
+
+    @property
+    def case(self) -> str:
+        """The name of the case."""
+        return self.maximum.case
+
+    @property
+    def model(self) -> str:
+        """The model that gave the maximum."""
+        return self.maximum.model
+
+    @property
+    def why(self) -> str:
+        """Which model was used, and the reason."""
+        return self.maximum.why
+
+    @property
+    def verdict(self) -> str:
+        """The verdict on the accuracy of the maximum."""
+        return self.maximum.verdict
+
+    @property
+    def note(self) -> str:
+        """A sentence on the verdict."""
+        return self.maximum.note
+
+    @property
+    def max_von_mises(self) -> float | None:
+        """The largest von Mises stress: of surface and section, outside of singular zones."""
+        return self.maximum.max_von_mises
+
+    @property
+    def error_estimate(self) -> float | None:
+        """The error of the maximum, as a stress."""
+        return self.maximum.error_estimate
+
+    @property
+    def max_von_mises_interval(self) -> tuple[float, float] | None:
+        """The maximum over half and twice the distance excluded at a singularity that governs."""
+        return self.maximum.interval
+
+    @property
+    def error_parts(self) -> dict[str, float]:
+        """The stresses of which the error is the sum, by source: mesh, time, .."""
+        return {} if self.maximum.parts is None else asdict(self.maximum.parts)
+
+    @property
+    def location(self) -> tuple[float, float, float] | None:
+        """The point (x, y, z) of the maximum in the pin's own axes."""
+        return self.maximum.location
+
+    @property
+    def time(self) -> float | None:
+        """The governing instant; None without a motion or a maximum."""
+        return self.maximum.time if self.maximum.location else None
+
+    @property
+    def singular_at(self) -> tuple[SingularZone, ...]:
+        """The singularities of stress; where one governs (`singular`), all are excluded."""
+        return self.maximum.singular_at
+
+    @property
+    def places(self) -> Places | None:
+        """The stress of surface, section and contact; None where the model has none."""
+        return self.maximum.places
+
+    @property
+    def history(self) -> tuple[Refinement, ...]:
+        """The meshes that were solved."""
+        return self.maximum.history
+
+    @property
+    def dofs(self) -> int:
+        """The unknowns of the finest mesh."""
+        return self.maximum.dofs
+
+    @property
+    def seconds(self) -> float:
+        """The solution time of all meshes, s."""
+        return self.maximum.seconds
+
+    @property
+    def safety_factor(self) -> float | None:
+        """The factor of safety against yield; None without a yield strength or a stress."""
+        return self.judgement.safety_factor
+
+    @property
+    def safety_factor_interval(self) -> tuple[float, float | None] | None:
+        """The factors over the interval of the maximum; the upper one None if it has no bound."""
+        return self.judgement.interval
+
+    @property
+    def yields(self) -> bool | None:
+        """Whether the maximum exceeds the yield strength."""
+        return self.judgement.yields
+
+    @property
+    def required(self) -> float | None:
+        """The required factor of safety, None where none is required."""
+        return self.judgement.required
+
+    @property
+    def decided(self) -> bool | None:
+        """Whether the pin as described meets the required factor, or does not yield where none is
+        required; None where the error leaves that open.
+        """
+        return self.judgement.decided
+
+    @property
+    def as_described(self) -> str:
+        """The outcome for a pin that is exactly as its study describes it (assess.judgement)."""
+        return self.judgement.outcome
+
+    @property
+    def outcome(self) -> str:
+        """The outcome: whether the pin meets its required factor, or depends on what is open."""
+        described = self.as_described
+        return DEPENDS if described in (SAFE, BELOW_YIELD) and self.depends_on else described
+
+    @property
+    def hand_checks(self) -> tuple[Margin, ...]:
+        """The nominal stresses by hand against yield, each at all of its places."""
+        return tuple(margin for margin in self.margins if margin.listed_by_hand)
+
+    @property
+    def yield_strength(self) -> float | None:
+        """The yield strength of the material; None where it has none, or the row has no stress."""
+        if self.safety_factor is None or not self.max_von_mises:
+            return None
+        return self.safety_factor * self.max_von_mises
+
+    @property
+    def meets_required(self) -> bool | None:
+        """Whether the row is safe over all that is known to be uncertain.
+
+        None where no factor is required, or the error leaves it open.
+        """
+        if self.required is None:
+            return None
+        return False if self.decided and self.depends_on else self.decided
+
+    @property
+    def dimension_of(self) -> dict[str, str]:
+        """The dimension of the position (pinbase.records.in_units)."""
+        return shown_position(self.position_unit)

@@ -1,0 +1,32 @@
+"""Stress at turned points: that of every unit load by itself, summed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea.core.pin_loads import LoadAmounts, UnitLoad
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.stress_at import stress_at
+
+
+def test_loads_of_harmonics_in_any_order_are_superposed() -> None:
+    random = np.random.default_rng(3)
+    loads = tuple(UnitLoad(f"s{k}", "pressure", n) for k, n in enumerate((2, 0, 1, 2, 5)))
+    points, instants = 7, 3
+    stress = random.normal(size=(points, 6, len(loads)))
+    x = random.normal(size=(points, 2))
+    fields = MeridianFields(x, loads, stress, np.zeros((0, 3, len(loads))), points, 0)
+    # The first of the solved loads does not act.
+    acting = {load: random.normal(size=(instants, 2)) for load in loads[1:]}
+    rows, angles = np.array([4, 0, 4, 6, 1]), np.array([0.0, 0.4, 0.4, -2.0, 0.4])
+    at = stress_at(fields, LoadAmounts("c", acting, instants))(rows, angles, np.array([2, 0]))
+    for j, (row, angle) in enumerate(zip(rows, angles, strict=True)):
+        for t, instant in enumerate((2, 0)):
+            total = np.zeros(6)
+            for k, load in enumerate(loads[1:], 1):
+                for phase in range(2):
+                    psi = load.n * angle - 0.5 * np.pi * phase
+                    c, s = np.cos(psi), np.sin(psi)
+                    varies = np.array([c, c, c, s, c, s])  # rr, tt, zz, tz, rz, rt
+                    total += acting[load][instant, phase] * varies * stress[row, :, k]
+            assert np.abs(at[j, t] - total).max() < 1e-12

@@ -1,0 +1,54 @@
+"""Rows of results with any values, also such as no run has together."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from assess.judgement import Judgement
+from fea.core.peak import ErrorParts, Maximum
+from fea.core.pin_loads import PinLoads
+from reports.data.results import LandingRange, PinResult, Results
+
+MAXIMUM_NAMES = {f.name: f.name for f in fields(Maximum)} | {"max_von_mises_interval": "interval"}
+JUDGEMENT_NAMES = {f.name: f.name for f in fields(Judgement)} | {
+    "safety_factor_interval": "interval"
+}
+
+
+def with_values(row: PinResult, **values: Any) -> PinResult:
+    """The row with other values of its fields, or of the properties that the maximum or its
+    judgement gives.
+    """
+    if "time" in values:
+        time = values.pop("time")
+        at = None if time is None else np.array([time])
+        values["governing"] = PinLoads("", (), np.zeros((1, 0, 3)), times=at)
+    if "error_parts" in values:
+        values["parts"] = ErrorParts(**values.pop("error_parts"))
+    of_maximum = {MAXIMUM_NAMES[k]: values.pop(k) for k in [*values] if k in MAXIMUM_NAMES}
+    of_judgement = {JUDGEMENT_NAMES[k]: values.pop(k) for k in [*values] if k in JUDGEMENT_NAMES}
+    return replace(
+        row,
+        maximum=replace(row.maximum, **of_maximum),
+        judgement=replace(row.judgement, **of_judgement),
+        **values,
+    )
+
+
+def row_with(pin: str, case: str, **values: Any) -> PinResult:
+    """A row with the values of its other fields and properties."""
+    return with_values(PinResult(Maximum(pin, case, "solid", "converged", "")), **values)
+
+
+def with_landing(results: Results, *ranges: LandingRange) -> Results:
+    """The results with the ranges of a landing in the rows of their pins and cases, which come
+    last if there are none.
+    """
+    rows = {(p.pin, p.case): p for p in results.pins}
+    for r in ranges:
+        row = rows.get((r.pin, r.case)) or row_with(r.pin, r.case)
+        rows[r.pin, r.case] = replace(row, landing=r)
+    return replace(results, pins=tuple(rows.values()))
