@@ -39,7 +39,17 @@ from benchmarks.pins import (
     tension,
 )
 from benchmarks.record import record
-from benchmarks.runs import designs_page, gear, least_weight, page, reliability, speed, sweep
+from benchmarks.runs import (
+    cluster,
+    designs_page,
+    gear,
+    least_weight,
+    linkages,
+    page,
+    reliability,
+    speed,
+    sweep,
+)
 from benchmarks.solids import calculix, ngsolve_peer
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel
 
@@ -66,6 +76,7 @@ ACCURACY = {
 TIMES = {
     "motion": speed.motion,
     "scissor": scissor.scissor,
+    "linkages": linkages.linkages,
     "motion-accuracy": motion_accuracy.motion_accuracy,
     "assembly": speed.assembly,
     "solvers": linear_solvers.linear_solvers,
@@ -86,6 +97,7 @@ TIMES = {
     "models": models.models,
     "shoulders": shoulders.shoulders,
     "sweep": sweep.sweep,
+    "cluster": cluster.cluster,
     "calculix": calculix.calculix,
     "ngsolve": ngsolve_peer.ngsolve,
     "peers-motion": peers_motion.peers_motion,

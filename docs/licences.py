@@ -22,9 +22,7 @@ EXTRAS = "cluster", "fatigue", "pdf"  # which users install
 OLDEST = {"extra": "", "python_version": "3.11", "python_full_version": "3.11.0"}
 # Only for other systems than Linux; as the metadata of their wheels say.
 ELSEWHERE = {
-    "cffi": "MIT-0",
     "colorama": "BSD License",
-    "pycparser": "BSD-3-Clause",
     "pyobjc-core": "MIT",
     "pyobjc-framework-cocoa": "MIT",
 }

@@ -9,14 +9,17 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 
 from geometry import CodedError
 from geometry.mesh.gmsh_session import GMSH_LOCK
 from pinbase.arrays import Floats, Ints
 from pinbase.platform import offered
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 Solve = Callable[[Floats], Floats]
 
@@ -26,6 +29,7 @@ Solve = Callable[[Floats], Floats]
 MAX_REFINEMENT_CHANGE = 1e-3
 # Residual over |K| |x| + |b|: 1e-16 with a working solver, whatever the matrix.
 MAX_BACKWARD_ERROR = 1e-10
+LOWER_FACTOR, PERMUTATION = 4, 7  # parts of a solution, by cvxopt's numbers
 INDEFINITE_MESSAGE = (
     "the stiffness matrix is not positive definite: the pin is not fully constrained, its mesh has "
     "inverted elements, or a part of it is so slender or thin that round-off exceeds its stiffness"
@@ -47,10 +51,8 @@ class Analysis:
 
     def __init__(self, pattern: sp.csr_matrix, node: Ints | None = None) -> None:
         order = None if node is None else _dissection(pattern, node)
-        if has_cholmod():
-            self._factor = _Cholmod(pattern, order).factor
-        else:
-            self._factor = partial(_superlu, order=order)
+        self._cholmod = _Cholmod(pattern, order) if has_cholmod() else None
+        self._factor = self._cholmod.factor if self._cholmod else partial(_superlu, order=order)
 
     def factorize(self, K: sp.csr_matrix, check: bool = True) -> Solve:
         """A function that solves K x = b for b (n,) or (n, k).
@@ -72,6 +74,19 @@ class Analysis:
             return x
 
         return checked
+
+    def work(self, K: sp.csr_matrix, b: Floats) -> Floats:
+        """The works b^T K^-1 b (k, k), symmetric, of forces b (n, k).
+
+        With K = L L^T it takes L^-1 b, half of a solution. Raises: as `factorize`.
+        """
+        solve = self.factorize(K)
+        if self._cholmod is None:
+            work = b.T @ solve(b)
+            return np.asarray(0.5 * (work + work.T))
+        solve(b @ np.linspace(1.0, 2.0, b.shape[1]))  # checks the factor by a sum of all forces
+        half = self._cholmod.half(b)
+        return np.asarray(half.T @ half)
 
 
 def _check_solution(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> None:
@@ -138,6 +153,12 @@ class ConstrainedSystem:
         with self._lock:
             return self._analysis.factorize(held)(forces * free[:, None])
 
+    def work(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
+        """The works (K, K) of forces (n, K) on the displacements under each other; K is changed."""
+        held, forces = self._constrained(K, free), forces * free[:, None]
+        with self._lock:
+            return self._analysis.work(held, forces)
+
     def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
         """A function that solves for forces that are zero on constrained unknowns, unchecked."""
         return self._analysis.factorize(self._constrained(K, free), check=False)
@@ -199,6 +220,15 @@ class _Cholmod:
 
         return solve
 
+    def half(self, b: Floats) -> Floats:
+        """L^-1 b (n, k), rows in the order of elimination, of the matrix factored last."""
+        from cvxopt import cholmod, matrix
+
+        x = matrix(np.asfortranarray(b))
+        for part in (PERMUTATION, LOWER_FACTOR):
+            cholmod.solve(self._factor, x, sys=part)
+        return np.array(x)
+
 
 def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     """A nested-dissection order of the unknowns by the graph of their nodes, or None.
@@ -208,6 +238,7 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     if not has_metis():
         return None
     import pymetis
+    import scipy.sparse as sp
 
     n = len(node)
     _, node = np.unique(node, return_inverse=True)

@@ -75,7 +75,11 @@ def stress_points(
         return StressPoints.in_space(surface.points, surface.stress, read, amounts)
     substitutes = CutSubstitutes(surface, read, pressed, nu)
     every = StressPoints.in_space(substitutes.points, substitutes.stress, read, amounts)
-    at = replaced(every.at, lambda rows, _, t: substitutes.rows(rows, t))
+
+    def replacing(rows: Ints, _: Floats, instants: Ints) -> Ints:
+        return np.stack([substitutes.rows(rows, t) for t in instants.tolist()], axis=1)
+
+    at = replaced(every.at, replacing)
     return StressPoints(surface.points, read, False, len(amounts), at)
 
 

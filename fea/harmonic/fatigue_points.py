@@ -23,10 +23,11 @@ from fea.harmonic.fields import MeridianFields
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
 from fea.harmonic.stress_at import stress_at
 from fea.harmonic.surface_stress import EDGE_STATIONS
-from pinbase.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints
 
-# Substitutes that are tried first; more change the time, never the result. Chosen by judgement.
-NEAREST_SUBSTITUTES = 24
+# Substitutes that are tried before all others, and pairs of points and instants at once: they
+# change time and memory, never the result. Chosen by judgement.
+SUBSTITUTES_FIRST, SUBSTITUTE_BATCH = (8, 64), 4096
 
 
 def stress_points(
@@ -61,29 +62,37 @@ class Substitutes:
         amid = np.flatnonzero(of.relieved >= 0)
         self._may = np.setdiff1d(np.concatenate([outline, amid]), of.fields.unread)
         self._order = np.full((len(self._x), len(self._may)), -1)
-        self._known: dict[int, Mask] = {}
 
-    def rows(self, rows: Ints, angles: Floats, instant: int) -> Ints:
-        """The points (J,) that replace points (J,) at angles (J,), rad, at an instant."""
-        arc, out = (
-            np.rint(angles / (2.0 * np.pi) * ARC_COUNT).astype(np.int64) % ARC_COUNT,
-            rows.copy(),
-        )
-        some = np.flatnonzero(self.free.masked(rows))
-        lost = some[~self.free.read_at(rows[some], instant, arc[some])]
-        # The nearest substitute that is readable at the same angle; without one the point stays.
-        # Mostly that is among the first.
-        for count in (NEAREST_SUBSTITUTES, len(self._may)):
-            nearest, readable = self._nearest(rows[lost], count), self._readable(instant)
-            can = readable[nearest, arc[lost][:, None]]
-            known = can.any(axis=1)
-            first = nearest[np.arange(len(lost)), can.argmax(axis=1)]
-            out[lost[known]] = self._may[first[known]]
-            lost = lost[~known]
+    def rows(self, rows: Ints, angles: Floats, instants: Ints) -> Ints:
+        """The points (J, T) that replace points (J,) at angles (J,), rad, at instants (T,)."""
+        arc = np.rint(angles / (2.0 * np.pi) * ARC_COUNT).astype(np.int64) % ARC_COUNT
+        out = np.tile(rows[:, None], len(instants))
+        point, t = (x.ravel() for x in np.indices(out.shape))
+        some = np.flatnonzero(self.free.masked(rows)[point])
+        point, t = point[some], t[some]
+        lost = np.flatnonzero(~self.free.read_at(rows[point], instants[t], arc[point]))
+        for k in range(0, len(lost), SUBSTITUTE_BATCH):
+            at = point[lost[k : k + SUBSTITUTE_BATCH]], t[lost[k : k + SUBSTITUTE_BATCH]]
+            out[at] = self._substitutes(rows[at[0]], instants[at[1]], arc[at[0]])
+        return out
+
+    def _substitutes(self, rows: Ints, instants: Ints, arcs: Ints) -> Ints:
+        """The nearest points that are read at the same instants and arcs, (J,) each.
+
+        Without one a point stays.
+        """
+        out, left = rows.copy(), np.arange(len(rows))
+        for count in (*SUBSTITUTES_FIRST, len(self._may)):  # mostly one of the first is
+            nearest = self._may[self._nearest(rows[left], count)]
+            alike = (np.repeat(x[left], nearest.shape[1]) for x in (instants, arcs))
+            can = self.free.read_at(nearest.ravel(), *alike).reshape(nearest.shape)
+            known, first = can.any(axis=1), can.argmax(axis=1)
+            out[left[known]] = nearest[known, first[known]]
+            left = left[~known]
         return out
 
     def _nearest(self, rows: Ints, count: int) -> Ints:
-        """The possible substitutes (J, count), the nearest first, of points (J,)."""
+        """The numbers (J, count) of possible substitutes of points (J,), the nearest first."""
         here, place = np.unique(rows, return_inverse=True)
         new = here[self._order[here, 0] < 0]
         if len(new):
@@ -91,27 +100,25 @@ class Substitutes:
             self._order[new] = np.argsort(apart, axis=1, kind="stable")
         return self._order[here, :count][place]
 
-    def _readable(self, instant: int) -> Mask:
-        """The arcs (M, ARC_COUNT) on which possible substitutes are read at an instant."""
-        if instant not in self._known:
-            at = np.full(len(self._may), instant)
-            self._known[instant] = self.free.read(self._may, at)
-        return self._known[instant]
 
-
-def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, int], Ints]) -> StressAt:
+def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, Ints], Ints]) -> StressAt:
     """A function that gives stress (J, T, 6) with substitutes for points where they are not read.
 
-    substitutes_of: gives the points that replace others at an instant.
+    substitutes_of: gives the points (J, T) that replace others at instants.
     """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
         out = stress(rows, angles, instants)
-        for k, t in enumerate(instants.tolist()):
-            substitutes = substitutes_of(rows, angles, t)
-            some = np.flatnonzero(substitutes != rows)
-            if len(some):
-                out[some, k] = stress(substitutes[some], angles[some], np.array([t]))[:, 0]
+        substitutes = substitutes_of(rows, angles, instants)
+        j, t = np.nonzero(substitutes != rows[:, None])
+        if len(j):
+            # Substitutes repeat themselves: each is read once at an angle, at all instants.
+            turn = np.unique(angles, return_inverse=True)[1][j]
+            pairs, first, place = np.unique(
+                np.stack([substitutes[j, t], turn]), axis=1, return_index=True, return_inverse=True
+            )
+            read = stress(pairs[0], angles[j[first]], instants)
+            out[j, t] = read[place.ravel(), t]
         return out
 
     return at

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial, reduce
+from functools import partial
 
 from fea.core.pin_loads import UnitLoad
 from fea.harmonic.fields import MeridianFields
-from fea.harmonic.model import HarmonicModel, Moved
+from fea.harmonic.model import HarmonicModel, Moved, superposed
 from pinbase.arrays import Floats
 from pinbase.memo import Memo
 
@@ -27,7 +27,7 @@ class FirstMesh:
 
     def __init__(self, memo: Memo | None = None) -> None:
         self._memo = memo or Memo()
-        self._moved: dict[Key, Moved] = {}
+        self._moved: dict[Key, list[Moved]] = {}
         self._fields: dict[Key, MeridianFields] = {}
 
     def fields(
@@ -48,13 +48,12 @@ class FirstMesh:
 
     def _superposed(self, model: HarmonicModel, key: Key, loads: tuple[UnitLoad, ...]) -> Moved:
         """The displacements under loads, superposed from those on single surfaces."""
-        known = self._moved.get(key)
-        alone = tuple(dict.fromkeys(one for load in loads for one in load.single_surface_loads))
-        new = alone if known is None else tuple(x for x in alone if x not in known.loads)
-        parts = [] if known is None else [known]
+        parts = self._moved.setdefault(key, [])
+        known = {load for part in parts for load in part.loads}
+        alone = dict.fromkeys(one for load in loads for one in load.single_surface_loads)
+        new = [load for load in alone if load not in known]
         for n in sorted({load.n for load in new}):
             together = tuple(load for load in new if load.n == n)
-            moved = self._memo.get(("moved", together, *key), partial(model.moved, together))
-            parts.append(moved)
-        self._moved[key] = reduce(Moved.joined, parts)
-        return self._moved[key].summed(loads)
+            solve = partial(model.moved, together)
+            parts.append(self._memo.get(("moved", together, *key), solve))
+        return superposed(parts, loads)

@@ -15,6 +15,7 @@ There are three kinds of points:
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -237,22 +238,22 @@ class FreeSurface:
     def read(self, points: Ints, instants: Ints, arcs: Ints | slice = ALL_INSTANTS) -> Mask:
         """The arcs (J, A) on which pairs of points and instants are read; all arcs by default."""
         out = np.empty((len(points), len(ARC_ANGLES[arcs])), dtype=bool)
-        # Instants are few, and mostly follow each other: no search for those that differ.
-        order = np.argsort(instants, kind="stable")
-        for here in np.split(order, np.flatnonzero(np.diff(instants[order])) + 1):
-            if len(here):
-                table = self._table(int(instants[here[0]]))[:, arcs]
-                first, *others = self._shut_by.rows[points[here]].T
-                shut = table[first]
-                for row in others:
-                    shut |= table[row]
-                out[here] = ~shut
+        for instant, here in _by_instant(instants):
+            table = self._table(instant)[:, arcs]
+            first, *others = self._shut_by.rows[points[here]].T
+            shut = table[first]
+            for row in others:
+                shut |= table[row]
+            out[here] = ~shut
         return out
 
-    def read_at(self, points: Ints, instant: int, arcs: Ints) -> Mask:
-        """Whether points (J,) are read at an instant, each on one arc (J,)."""
-        shut = self._table(instant)[self._shut_by.rows[points].T, arcs]
-        return np.asarray(~np.logical_or.reduce(shut))
+    def read_at(self, points: Ints, instants: Ints, arcs: Ints) -> Mask:
+        """Whether points (J,) are read at instants (J,), each on one arc (J,)."""
+        out = np.empty(len(points), dtype=bool)
+        for instant, here in _by_instant(instants):
+            rows = self._shut_by.rows[points[here]]
+            out[here] = ~self._table(instant)[rows.T, arcs[here]].any(axis=0)
+        return out
 
     def _table(self, instant: int) -> Mask:
         """The arcs that are shut at an instant, by the rows of ShutBy."""
@@ -264,6 +265,14 @@ class FreeSurface:
                 self._tables[key] = self._shut_by.table(self.pressed, instant)
             self._table_of[instant] = self._tables[key]
         return self._table_of[instant]
+
+
+def _by_instant(instants: Ints) -> Iterator[tuple[int, Ints]]:
+    """Each of the instants (J,) that differ, and where it is."""
+    order = np.argsort(instants, kind="stable")
+    for here in np.split(order, np.flatnonzero(np.diff(instants[order])) + 1):
+        if len(here):
+            yield int(instants[here[0]]), here
 
 
 def reader(fields: MeridianFields, loads: Loads, nu: float) -> Circumference:

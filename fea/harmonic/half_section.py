@@ -6,7 +6,6 @@ from collections.abc import Iterable
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay, cKDTree
 
 from fea.core.pin_loads import Loads
@@ -61,8 +60,19 @@ class MeridianPlane:
         rows = np.arange(len(self.fields.displacement))
         angles = np.array([angle, angle + np.pi])
         sides = von_mises(Circumference(self.fields, loads).stress(rows, instant, angles))
-        values = np.asarray(LinearNDInterpolator(self._between, sides)(points))
-        lost = np.isnan(values).any(axis=-1)  # outside of the triangles by round-off
+        values, lost = self._interpolated(sides, points)  # outside of the triangles by round-off
         if lost.any():
             values[lost] = sides[cKDTree(self._between.points).query(points[lost])[1]]
         return np.asarray(np.moveaxis(values, -1, 0))
+
+    def _interpolated(self, values: Floats, points: Floats) -> tuple[Floats, Mask]:
+        """Linear interpolation (.., K) of values (N, K) at the nodes, and a mask (..) of the points
+        that are in no triangle.
+        """
+        mesh = self._between
+        triangle = mesh.find_simplex(points)
+        slopes = mesh.transform[triangle]
+        first = np.einsum("...ij,...j->...i", slopes[..., :2, :], points - slopes[..., 2, :])
+        weights = np.concatenate([first, 1.0 - first.sum(axis=-1, keepdims=True)], axis=-1)
+        at_corners = values[mesh.simplices[triangle]]
+        return np.einsum("...c,...ck->...k", weights, at_corners), triangle < 0

@@ -20,7 +20,7 @@ from fea.harmonic.assembly import Section, around
 from fea.harmonic.boundary import Outline
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.pressure_edge import unread
-from fea.harmonic.stress_recovery import NO_POINTS, reading
+from fea.harmonic.stress_recovery import NO_POINTS, Reading, reading
 from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh
 from pinbase.arrays import Floats, Ints
@@ -54,6 +54,18 @@ class HarmonicBody:
 
     def displace(self, n: int, forces: Floats, moved: Floats | None = None) -> Floats:
         """Unknowns (unknowns, K) of harmonic n under forces on them and motions of clamps."""
+        system, K, free = self._equations(n)
+        if moved is None:
+            return system.solve(K, free, forces)
+        return system.solve(K, free, forces - K @ moved) + moved
+
+    def work(self, n: int, forces: Floats) -> Floats:
+        """Works (K, K) of forces (unknowns, K) of harmonic n on the displacements under each."""
+        system, K, free = self._equations(n)
+        return system.work(K, free, forces)
+
+    def _equations(self, n: int) -> tuple[ConstrainedSystem, sp.csr_matrix, Floats]:
+        """The system, its matrix of harmonic n, and 0 for unknowns that are zero, else 1."""
         fixed = np.concatenate([self._on_axis(n), self._constrained(n)])
         K = self.space.stiffness(self.materials, n)
         if n < 2:
@@ -62,9 +74,7 @@ class HarmonicBody:
         free[fixed] = 0.0
         if self._system is None:
             self._system = ConstrainedSystem(K)
-        if moved is None:
-            return self._system.solve(K, free, forces)
-        return self._system.solve(K, free, forces - K @ moved) + moved
+        return self._system, K, free
 
     def motions(self, n: int, surfaces: Sequence[str], turns: Sequence[bool]) -> Floats:
         """Unknowns (unknowns, K) of harmonic n where clamps are shifted or turned by one.
@@ -141,34 +151,32 @@ class Moved:
         """The harmonic of each load, (K,)."""
         return np.array([load.n for load in self.loads])
 
-    def joined(self, other: Moved) -> Moved:
-        """These displacements and those under other loads."""
-        both = ((getattr(x, name) for x in (self, other)) for name in ("u", "applied", "tractions"))
-        return Moved(self.loads + other.loads, *(np.concatenate([*x], axis=-1) for x in both))
 
-    def summed(self, loads: tuple[UnitLoad, ...]) -> Moved:
-        """The displacements under loads that are sums of these (UnitLoad.single_surface_loads)."""
-        if loads == self.loads:
-            return self
-        share = shares(self.loads, loads)
-        none = (
-            np.zeros((*x.shape[:-1], len(loads))) for x in (self.u, self.applied, self.tractions)
-        )
-        total, wanted = Moved(loads, *none), np.array([load.n for load in loads])
-        for n in np.unique(wanted):
-            here, columns = np.flatnonzero(self.harmonics == n), np.flatnonzero(wanted == n)
-            part = share[np.ix_(here, columns)]
-            for name in ("u", "applied", "tractions"):
-                getattr(total, name)[..., columns] = getattr(self, name)[..., here] @ part
-        return total
+def superposed(parts: Sequence[Moved], loads: tuple[UnitLoad, ...]) -> Moved:
+    """The displacements under loads that are sums of those in parts, each of one harmonic.
+
+    The sums are those of UnitLoad.single_surface_loads.
+    """
+    zeros = (
+        np.zeros((*x.shape[:-1], len(loads)))
+        for x in (parts[0].u, parts[0].applied, parts[0].tractions)
+    )
+    total = Moved(loads, *zeros)
+    for part in parts:
+        columns = np.flatnonzero(total.harmonics == part.loads[0].n)
+        share = shares(part.loads, [loads[k] for k in columns])
+        for name in ("u", "applied", "tractions"):
+            getattr(total, name)[..., columns] += getattr(part, name) @ share
+    return total
 
 
 def shares(alone: Sequence[UnitLoad], loads: Sequence[UnitLoad]) -> Floats:
-    """The amount (A, K) of each load that acts on one surface in other loads."""
+    """The amount (A, K) of some of the loads on single surfaces that other loads are made of."""
     number, out = {load: k for k, load in enumerate(alone)}, np.zeros((len(alone), len(loads)))
     for k, load in enumerate(loads):
         for one, amount in load.single_surface_loads.items():
-            out[number[one], k] = amount
+            if one in number:
+                out[number[one], k] = amount
     return out
 
 
@@ -191,6 +199,7 @@ class HarmonicModel(HarmonicBody):
     ) -> None:
         super().__init__(pin, Section(section), material, clamps, pivot)
         self.material = material
+        self._readings: dict[tuple[bytes, tuple[tuple[float, float], ...]], Reading] = {}
 
     def solve(
         self,
@@ -224,7 +233,12 @@ class HarmonicModel(HarmonicBody):
         self, moved: Moved, extra: Floats, ends: Iterable[tuple[float, float]]
     ) -> MeridianFields:
         """The unit fields, read at the points of this mesh."""
-        read = reading(self.space, self.outline, self.material, self.clamps, extra, ends)
+        key = extra.tobytes(), tuple(ends)
+        if key not in self._readings:  # the first mesh is read again for other loads
+            self._readings[key] = reading(
+                self.space, self.outline, self.material, self.clamps, extra, key[1]
+            )
+        read = self._readings[key]
         displacement, stress = read.of(moved.harmonics, moved.u, moved.tractions)
         return MeridianFields(
             read.points,

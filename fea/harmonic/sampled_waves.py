@@ -15,6 +15,7 @@ from pinbase.arrays import Floats, Ints, Mask
 SAMPLES_PER_WAVE = 5  # per degree of the polynomial; more than 2 determine it
 # rad, between samples about a crest: a parabola through those of whole arcs would be 1e-4 off.
 CREST_SAMPLE_STEP = 0.1 * float(ARC_ANGLES[1])
+CACHED_BATCH = 32  # rows that are sampled at once, in the cache: half the time of thousands
 ON_SAMPLE_TOLERANCE = 1e-9  # of an arc: a nearer angle is that of a sample
 
 
@@ -55,8 +56,14 @@ def sampled(n: Ints, back: Floats, forth: Floats, degree: int) -> Floats:
 def at_angles(n: Ints, back: Floats, forth: Floats, angles: Floats) -> Floats:
     """Von Mises squared (J, A), Pa^2, at angles (A,), rad."""
     turns = n[:, None] * angles
-    five = np.concatenate([back, forth], axis=2) @ np.concatenate([np.cos(turns), np.sin(turns)])
-    return np.asarray(np.square(five, out=five).sum(axis=1))
+    waves = np.concatenate([np.cos(turns), np.sin(turns)])
+    both, out = np.concatenate([back, forth], axis=2), np.empty((len(back), len(angles)))
+    for k in range(0, len(both), CACHED_BATCH):
+        part = both[k : k + CACHED_BATCH]
+        rows = part.reshape(part.shape[0] * part.shape[1], len(waves))
+        five = (rows @ waves).reshape(*part.shape[:2], len(angles))
+        np.square(five, out=five).sum(axis=1, out=out[k : k + CACHED_BATCH])
+    return out
 
 
 def closer_crest(

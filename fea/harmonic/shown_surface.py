@@ -135,10 +135,12 @@ class _Free:
         return out, pressed
 
     def envelope(self, instant: int) -> Floats:
-        read = np.ones((len(self.skin), len(self.angles), self.around.count), dtype=bool)
+        # Found instant by instant, hence stored so.
+        read = np.ones((self.around.count, len(self.skin), len(self.angles)), dtype=bool)
         some = np.flatnonzero(self.free.masked(self.skin))
         for t in range(self.around.count):
-            read[some, :, t] = self._read(some, t)
+            read[t, some] = self._read(some, t)
+        read = read.transpose(2, 1, 0)
         most = np.maximum.reduceat(self.around.envelope(self.skin, self.angles, read), self.rows)
         shown, pressed = self.stress(instant)
         now = np.where(pressed, -1.0, von_mises(shown))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from fea.core.pin_loads import Loads
@@ -23,7 +25,7 @@ def stress_at(fields: MeridianFields, loads: Loads) -> StressAt:
     units = [k for k, load in enumerate(fields.loads) if load in acting]
     units.sort(key=lambda k: fields.loads[k].n)
     n, first = np.unique([fields.loads[k].n for k in units], return_index=True)
-    waves = [slice(*ends) for ends in zip(first, [*first[1:], len(units)], strict=True)]
+    waves = [slice(*ends) for ends in itertools.pairwise([*first, len(units)])]
     amounts = np.zeros((len(units), 2, len(loads)))
     for i, k in enumerate(units):
         amounts[i] = acting[fields.loads[k]].T

@@ -58,11 +58,13 @@ class Reading:
         inner, rough, inside = np.split(fitted, np.cumsum([len(self.inner), len(self.rough)]))
         at_nodes = np.zeros((len(self.space.nodes), 6, K))
         at_nodes[self.rough] = rough
-        from_inside = np.einsum(
-            "qi,eiak->eqak", shapes(EDGE_STATIONS), at_nodes[self.outline.nodes]
-        )
         on_outline = skin(self.space, self.outline, self.material, n, u, traction)
-        on_skin = np.where(self.extrapolated[..., None, None], from_inside, on_outline.stress)
+        on_skin, edges = on_outline.stress, np.flatnonzero(self.extrapolated.any(axis=1))
+        from_inside = np.einsum(
+            "qi,eiak->eqak", shapes(EDGE_STATIONS), at_nodes[self.outline.nodes[edges]]
+        )
+        some = self.extrapolated[edges][..., None, None]
+        on_skin[edges] = np.where(some, from_inside, on_skin[edges])
         displacements = [on_outline.displacement.reshape(-1, 3, K), u[self.inner]]
         stresses = [on_skin.reshape(-1, 6, K), inner, inside]
         stresses.extend(jump.stress(sampled, traction) for jump in self.jumps)

@@ -47,7 +47,9 @@ Instants = slice | Ints
 FIRST_PAIRS = 16  # pairs of points and instants that are evaluated first
 PAIR_BATCH = 4096  # pairs sampled at once: limits the memory of the samples
 POINT_BATCH = 64  # points bounded together
-CACHED_POINT_BATCH = 16  # points of an envelope at once: their samples stay in the CPU cache
+# Points and angles of an envelope at once: their samples stay in the cache. Tuned on 240 instants
+# of 13 harmonics, where 16 points at all 120 angles took three times as long.
+CACHED_POINT_BATCH, CACHED_ANGLE_BATCH = 4, 24
 LOW_HARMONICS = 4  # lowest harmonics, which are sampled together for a tighter bound
 # Unit loads of one harmonic up to which quadratic forms take fewer operations than summed stresses.
 MAX_QUADRATIC_FORM_LOADS = 4
@@ -413,13 +415,13 @@ class Circumference:
 
         points: (J,) numbers.
         angles: (A,) rad.
-        read: (J, A, T) where it counts, everywhere by default. -1 where it never does.
+        read: (A, J, T) where it counts, everywhere by default. -1 where it never does.
         """
         parts = (
             slice(k, k + CACHED_POINT_BATCH) for k in range(0, len(points), CACHED_POINT_BATCH)
         )
         out = [
-            self._squares_over_time(points[part], angles, None if read is None else read[part])
+            self._squares_over_time(points[part], angles, None if read is None else read[:, part])
             for part in parts
         ]
         square = np.concatenate([np.zeros((0, len(angles))), *out])
@@ -432,22 +434,31 @@ class Circumference:
         """
         turns = np.outer(angles, self._n[[wave.start for wave in self._waves]])
         c, s = np.cos(turns), np.sin(turns)
-        total = np.zeros((len(angles), len(points), self.count))
+        parts = []
         for part, signed in ((COS, (c, s)), (SIN, (s, -c))):
-            five = self._five[points, part]
+            five = np.ascontiguousarray(self._five[points, part].swapaxes(0, 1))
+            five = five.reshape(five.shape[0] * five.shape[1], five.shape[2])
             amounts = [
-                five[:, :, wave] @ phase[:, wave].T
-                for phase in (self._first, self._second)
+                (five[:, wave] @ phase[wave]).ravel()
+                for phase in (self._first.T, self._second.T)
                 for wave in self._waves
             ]
             if amounts:
-                at = np.tensordot(np.concatenate(signed, axis=1), np.stack(amounts), axes=1)
-                # Each of the five numbers is combined from all harmonics at each angle, squared and
-                # summed.
-                total += np.square(at, out=at).sum(axis=2)
-        if read is not None:
-            total[~read.swapaxes(0, 1)] = -1.0
-        return np.asarray(total.max(axis=2).T)
+                parts.append((np.concatenate(signed, axis=1), np.stack(amounts)))
+        out = np.empty((len(points), len(angles)))
+        for k in range(0, len(angles), CACHED_ANGLE_BATCH):
+            here = slice(k, k + CACHED_ANGLE_BATCH)
+            total = np.zeros((len(angles[here]), len(points) * self.count))
+            for factors, amount in parts:
+                # Each of the five numbers is combined from all harmonics at each angle, squared
+                # and summed.
+                at = (factors[here] @ amount).reshape(len(total), -1, total.shape[1])
+                total += np.square(at, out=at).sum(axis=1)
+            square = total.reshape(len(total), len(points), self.count)
+            if read is not None:
+                square[~read[here]] = -1.0
+            out[:, here] = square.max(axis=2).T
+        return out
 
     def stress(self, points: Ints, instant: int, angles: Floats) -> Floats:
         """Stress (J, A, 6), Pa, at an instant: rr, tt, zz, tz, rz, rt.

@@ -8,7 +8,6 @@ differences is smallest at s; A and B follow from s by linear least squares.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from pinbase.arrays import Floats
 
@@ -38,6 +37,8 @@ def growth_exponent(distance: Floats, stress: Floats, following: float = 0.0) ->
         terms = np.stack([d**-s, d**following], axis=1) / stress[:, None]
         parts = np.linalg.lstsq(terms, np.ones(len(d)), rcond=None)[0]
         return float(np.mean((terms @ parts - 1.0) ** 2)), float(parts[0])
+
+    from scipy.optimize import minimize_scalar  # takes long to import
 
     # The amplitudes follow from s, so the search is over s alone.
     best = minimize_scalar(lambda s: fitted(s)[0], bounds=EXPONENT_LIMITS, method="bounded")

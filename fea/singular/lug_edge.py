@@ -26,8 +26,6 @@ from __future__ import annotations
 
 import math
 
-from scipy.optimize import brentq
-
 from fea.core.material import Material
 from geometry import ArgumentError
 
@@ -62,6 +60,8 @@ def edge_exponent(pin: float, lug: float, angle: float = RIGHT_ANGLE) -> float:
     share = lug / (pin + lug)
     if _h(1.0 - MIN_EXPONENT, share, angle) >= 0.0:
         return 0.0
+    from scipy.optimize import brentq  # takes long to import
+
     return float(brentq(lambda s: _h(1.0 - s, share, angle), MIN_EXPONENT, 0.5, xtol=1e-15))
 
 
@@ -72,6 +72,8 @@ def next_power(pin: Material, lug: Material) -> float:
     """
     pin_part, lug_part = pin.plane_compliance, lug.plane_compliance
     share = lug_part / (pin_part + lug_part)
+    from scipy.optimize import brentq
+
     return float(brentq(lambda L: _h(L, share, RIGHT_ANGLE), 1.2, 2.0, xtol=1e-12)) - 1.0
 
 

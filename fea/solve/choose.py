@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from fea.beam.error_model import PLAIN_SECTION_ERROR
 from fea.beam.model import BeamField
@@ -21,18 +22,16 @@ from fea.core.linear_solver import SolveError
 from fea.core.model import Model
 from fea.core.peak import Reason
 from fea.core.requirement import DECIDED_TEXT, Requirement, decided
-from fea.cut.evaluate import LocalSolids
-from fea.cut.region import RingedCutPin, corner_refusal, loaded_bands, refusal, unringed
 from fea.harmonic.evaluate import Harmonic
 from fea.harmonic.first_mesh import FirstMesh
-from fea.solid.evaluate import Solid
 from fea.solve.by_beam import by_beam
 from fea.solve.refine import refine, zones_of
-from fea.support.contact.held import RESOLUTIONS, ROUGH, ContactSupport, HeldContact, cells_matter
-from fea.support.foundation.held import FoundationSupport, HeldFoundation
 from fea.support.prescribed import PrescribedSupport
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, Support
 from geometry import ArgumentError, CutPin, Pin
+
+if TYPE_CHECKING:  # the steps import the supports and models that they use
+    from fea.cut.evaluate import LocalSolids
 
 CONTACT_REASON = Reason("contact, harmonic: the pin is held by its lugs", ("contact",))
 CUT_CONTACT_REASON = Reason(
@@ -115,6 +114,9 @@ def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
 
 
 def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
+    from fea.support.contact.held import RESOLUTIONS, ROUGH, ContactSupport
+    from fea.support.foundation.held import FoundationSupport
+
     joints, foundation = requirement.joints, FoundationSupport()
     if joints == "foundation":
         yield Rung(foundation, _foundation_requested)
@@ -178,6 +180,8 @@ def _local(at: Attempt) -> dict[str, Solution]:
 
 
 def _solid(at: Attempt) -> dict[str, Solution]:
+    from fea.solid.evaluate import Solid
+
     why = None
     if isinstance(at.failure, Refused):
         text = f"solid: the pin is not a body of revolution, and {at.failure}"
@@ -193,6 +197,9 @@ def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
 
     Raises: Refused where it does not apply.
     """
+    from fea.cut.evaluate import LocalSolids
+    from fea.cut.region import corner_refusal, loaded_bands, refusal, unringed
+
     pin, clamps, problem = at.held.pin, at.held.clamps, at.problem
     assert isinstance(pin, CutPin)
     whole = unringed(pin)
@@ -212,6 +219,9 @@ def _contact(at: Attempt) -> dict[str, Solution]:
 
     The held pin is returned too where these leave no case open.
     """
+    from fea.cut.region import RingedCutPin
+    from fea.support.contact.held import HeldContact, cells_matter
+
     held, requirement = at.held, at.requirement
     assert isinstance(held, HeldContact)
     cases = at.problem.cases
@@ -251,6 +261,8 @@ def _limit(problem: PinProblem, requirement: Requirement) -> float | None:
 
 
 def _foundation_requested(at: Attempt) -> dict[str, Solution]:
+    from fea.support.foundation.held import HeldFoundation
+
     assert isinstance(at.held, HeldFoundation)
     return {
         c.case: with_reason(at.held.solution(c, at.requirement), REQUESTED_REASON)
@@ -264,6 +276,8 @@ def _foundation(at: Attempt) -> dict[str, Solution]:
 
     A pin that fails is left to contact, since the amount of its overload matters.
     """
+    from fea.support.foundation.held import HeldFoundation
+
     assert isinstance(at.held, HeldFoundation)
     out, limit = {}, _limit(at.problem, at.requirement) or 0.0
     bounded = limit > 0.0 and at.held.bounded_everywhere(at.requirement)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -23,25 +24,29 @@ from fea.core.requirement import (
 )
 from fea.core.verdict import Evidence, evidence_of
 from fea.core.zone import Zone
-from fea.cut.evaluate import LOCAL_MESHES, LocalSolids
-from fea.cut.region import unringed
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
-from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading
 from geometry import PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
-LOCAL_MODEL = LocalSolids.name
+LOCAL_MODEL: Final = "harmonic+local"
 
 
 def sequence_of(pin: PinLike, model: str) -> MeshSequence | None:
     """The sequence of meshes by which a model, given by its name, refines a pin; None for a model
     without meshes.
     """
-    solid = GIVEN_SOLID_MESHES if pin.meshed else SOLID_MESHES
-    sequences = {"harmonic": SECTION_MESHES, LOCAL_MODEL: LOCAL_MESHES, "solid": solid}
-    return sequences.get(model)
+    # Models are imported where they are used: a plain pin does not wait for those of others.
+    if model == "solid":
+        from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
+
+        return GIVEN_SOLID_MESHES if pin.meshed else SOLID_MESHES
+    if model == LOCAL_MODEL:
+        from fea.cut.evaluate import LOCAL_MESHES
+
+        return LOCAL_MESHES
+    return SECTION_MESHES if model == "harmonic" else None
 
 
 def count_loads(cases: tuple[PinLoads, ...]) -> int:
@@ -62,7 +67,11 @@ def zones_of(
     """
     # Only the profile of a pin with cuts is a body of revolution, for which zones are known. Where
     # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
-    openings = [cut.opens for cut in unringed(pin).cuts.values()]
+    openings: list[tuple[float, float]] = []
+    if pin.cuts:
+        from fea.cut.region import unringed
+
+        openings = [cut.opens for cut in unringed(pin).cuts.values()]
     profile_zones = singularities_of(
         pin.profile or pin, material, clamps, cases, requirement.distance
     )

@@ -17,11 +17,8 @@ from fea.core.mesh_result import MeshMaximum
 from fea.core.model import MeshBefore, MeshProblem, Model
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import Zone
-from fea.cut.evaluate import LocalSolids
-from fea.cut.region import loaded_bands
 from fea.harmonic.evaluate import Harmonic
 from fea.singular.singularities import singularities_of
-from fea.solid.evaluate import Solid
 from geometry import ArgumentError, CutPin, PinLike, body_of_revolution
 from geometry.mesh.elements import Element
 
@@ -91,11 +88,16 @@ def _posed(problem: Problem, rung: ModelMesh) -> tuple[Model, MeshProblem]:
         pin, material, clamps, (loads,), problem.singularities, distance=problem.distance
     )
     if rung.model == "solid":
+        from fea.solid.evaluate import Solid
+
         return Solid(element=rung.element), posed
     if rung.model == "harmonic":
         return Harmonic(), posed
     if not isinstance(pin, CutPin):
         raise ArgumentError(f"pin {pin.name} has no cuts", "no-cuts")
+    from fea.cut.evaluate import LocalSolids
+    from fea.cut.region import loaded_bands
+
     zones = singularities_of(pin.profile, material, clamps, (loads,), problem.distance)
     bands = loaded_bands(pin, loads.surfaces if clamps else pin.connections)
     return LocalSolids(pin, bands), replace(posed, pin=pin.profile, zones=zones)

@@ -77,6 +77,21 @@ class Pose:
         return Pose(self.turn[chosen], self.axis[chosen], self.extension[chosen])
 
 
+@dataclass(frozen=True)
+class PointHistory:
+    """A quantity of points at T instants, linear in where they are on their frames and sliders.
+
+    turning: (T, F), by the frame. sliding: (T, S), by the slider.
+    """
+
+    turning: Complex
+    sliding: Complex
+
+    def of(self, points: Points) -> Complex:
+        """The quantity of N points, (T, N) complex."""
+        return np.asarray(self.turning @ points.turning + self.sliding @ points.sliding)
+
+
 class Loops:
     """The loop and drive equations of one linkage.
 
@@ -180,9 +195,11 @@ class Loops:
 
     def place(self, pose: Pose, points: Points) -> Complex:
         """Positions of points, (T, N) complex, m."""
-        return np.asarray(
-            pose.turn @ points.turning + (pose.axis * pose.extension) @ points.sliding
-        )
+        return self.places(pose).of(points)
+
+    def places(self, pose: Pose) -> PointHistory:
+        """The positions, m, of whatever points."""
+        return PointHistory(pose.turn, pose.axis * pose.extension)
 
     def partials(self, pose: Pose, points: Points) -> Complex:
         """Derivatives of the positions of points by the coordinates, (T, n, N) complex."""
@@ -198,12 +215,15 @@ class Loops:
 
     def velocities(self, pose: Pose, rates: Floats, points: Points) -> Complex:
         """Velocities of points, (T, N) complex, at rates (T, n): `partials` times the rates."""
+        return self.speeds(pose, rates).of(points)
+
+    def speeds(self, pose: Pose, rates: Floats) -> PointHistory:
+        """The velocities of whatever points at rates (T, n)."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
         slide = rates[:, angles:] + 1j * omega[:, self.slider_frame] * pose.extension
-        rotating = (1j * omega * pose.turn) @ points.turning
-        return np.asarray(rotating + (pose.axis * slide) @ points.sliding)
+        return PointHistory(1j * omega * pose.turn, pose.axis * slide)
 
     def along_coordinates(self, pose: Pose, forces: Complex, points: Points) -> Floats:
         """Generalised forces (T, n) that do the same work as forces (T, N) N on points."""
@@ -221,12 +241,16 @@ class Loops:
 
         It consists of centripetal and Coriolis accelerations.
         """
+        return self.curvatures(pose, rates).of(points)
+
+    def curvatures(self, pose: Pose, rates: Floats) -> PointHistory:
+        """The `bends` of whatever points at rates (T, n)."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
         spin = omega[:, self.slider_frame]
         slide = pose.axis * (2j * spin * rates[:, angles:] - spin**2 * pose.extension)
-        return np.asarray(-(omega**2 * pose.turn) @ points.turning + slide @ points.sliding)
+        return PointHistory(-(omega**2 * pose.turn), slide)
 
     # --- the equations ----------------------------------------------------------------------------
 

@@ -25,6 +25,9 @@ MIN_POINT_SPEED = 1e-9
 MAX_DENSE_COORDINATES = 30  # up to which condition numbers come from singular values
 CORNER_TIME_TOLERANCE = 1e-12  # of the whole time: an instant this close to a corner is at it
 
+# Positions (m), velocities and accelerations, (T, N) complex each
+PointMotion = tuple[Complex, Complex, Complex]
+
 
 @dataclass(frozen=True)
 class Motion:
@@ -83,17 +86,23 @@ class Motion:
         """The position of the linkage at every instant."""
         return self.loops.pose(self.q)
 
-    def follow(self, points: Points) -> tuple[Complex, Complex, Complex]:
+    def follow(self, points: Points) -> PointMotion:
         """Positions (m), velocities and accelerations of points, (T, N) complex each."""
+        (history,) = self.follow_each([points])
+        return history
+
+    def follow_each(self, several: Iterable[Points]) -> Iterator[PointMotion]:
+        """The same of several sets of points, each with the bits that it has alone."""
         loops, pose = self.loops, self.pose
-        return (
-            loops.place(pose, points),
-            loops.velocities(pose, self.v, points),
-            loops.velocities(pose, self.a, points) + loops.bends(pose, self.v, points),
-        )
+        places, speeds = loops.places(pose), loops.speeds(pose, self.v)
+        rates, curvatures = loops.speeds(pose, self.a), loops.curvatures(pose, self.v)
+        for points in several:
+            yield (
+                places.of(points), speeds.of(points), rates.of(points) + curvatures.of(points)
+            )  # fmt: skip
 
     @cached_property
-    def centres(self) -> tuple[Complex, Complex, Complex]:
+    def centres(self) -> PointMotion:
         """Positions (m), velocities and accelerations of centres of mass, (T, items) complex."""
         return self.follow(self.loops.centres)
 
@@ -102,9 +111,17 @@ class Motion:
 
         drawn: the point as drawn, m.
         """
-        index = np.array([self.linkage.index[item]])
-        history = self.follow(self.loops.points(index, np.array([number(drawn)])))
-        return tuple(pairs(z[:, 0]) for z in history)  # type: ignore[return-value]
+        (history,) = self._points([(item, drawn)])
+        return history
+
+    def _points(
+        self, several: Iterable[tuple[str, Point]]
+    ) -> Iterator[tuple[Floats, Floats, Floats]]:
+        """The same of several points, each of an item."""
+        loops, index = self.loops, self.linkage.index
+        points = (loops.points(np.array([index[i]]), np.array([number(p)])) for i, p in several)
+        for place, velocity, acceleration in self.follow_each(points):
+            yield pairs(place[:, 0]), pairs(velocity[:, 0]), pairs(acceleration[:, 0])
 
     def curvature(self, item: str, drawn: Point) -> Floats:
         """Curvature of the path of an item's point, (T,) 1/m, positive to the left.
@@ -120,6 +137,10 @@ class Motion:
         """Position (m), velocity and acceleration of the pin of joint `name`, (T, 2) each."""
         joint = self.linkage.joint(name)
         return self.point(self.linkage.carrier(joint), joint.at)
+
+    def joints(self) -> Iterator[tuple[Floats, Floats, Floats]]:
+        """The same of all joints in their order."""
+        return self._points((self.linkage.carrier(j), j.at) for j in self.linkage.joints)
 
     def coordinate(self, of: Slider | Turn) -> tuple[Floats, Floats, Floats]:
         """Length (m) of a slider or angle (rad) of a turn, with its rates, (T,) each."""

@@ -88,6 +88,10 @@ class Cache:
             return None
         return value
 
+    def has(self, key: str) -> bool:
+        """Return whether there is an answer of this name, which may turn out to be damaged."""
+        return self._path(key).is_file()
+
     def write(self, key: str, value: object) -> None:
         """Store an answer if possible; its file is complete or absent."""
         path = self._path(key)

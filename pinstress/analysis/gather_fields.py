@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -13,11 +12,11 @@ from fea.core.solution import Picture, StressField
 from fea.core.voigt import von_mises
 from fea.support.cell_pressure import CellPressure
 from fea.support.support import Solution
+from pinstress.analysis.plan import ExtraFields
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data import results as plain
 
-ExtraFields = Literal["motion", "solid"] | None
 MAX_STILLS = 50  # of a motion, besides the governing instant
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import partial
+from typing import Literal
 
 from fea.core.memory import allowed_memory
 from fea.core.requirement import Model, Requirement
 from pinstress.analysis import checks
-from pinstress.analysis.gather_fields import ExtraFields
 from pinstress.analysis.published_quantities import published_values
 from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.mechanism.linkage import determined, linkage
@@ -26,6 +26,8 @@ from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.shown import as_text
+
+ExtraFields = Literal["motion", "solid"] | None
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:

@@ -6,35 +6,30 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from math import inf
+from typing import TYPE_CHECKING
 
-from assess.fatigue.critical_points import stress_histories
 from assess.fatigue.records import PointHistory
 from assess.opinion.opinions import Opinion
 from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
 from fea.core.requirement import Joints, Requirement
-from fea.solid.evaluate import SOLID_MESHES
-from fea.solve.solve import solve
-from fea.support.foundation.variations import prescribed_ranges
 from fea.support.records import JointResult
-from fea.support.support import PinProblem, Solution
 from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinbase.records import Unit, in_units
-from pinstress.analysis import checks, gather_fields
+from pinstress.analysis import checks
 from pinstress.analysis.assessed.limits import limit_loads, limit_seconds
 from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.cache import OutcomeStore
-from pinstress.analysis.gather import gather
-from pinstress.analysis.gather.gather_surface import surfaces_of
 from pinstress.analysis.plan import Plan
-from pinstress.analysis.remedies.changes import change
-from pinstress.analysis.remedies.sensitivities import sensitivities
 from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_of_memory
 from pinstress.study.model.pins import shape_notes
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import Field, PinResult
+
+if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
+    from fea.support.support import Solution
 
 # Of a dimension, m, whose effect is found.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
@@ -93,6 +88,8 @@ def _together(plan: Plan, jobs: int) -> int:
     """Return the number of jobs that fit the memory, if all were solids of the largest size."""
     if not any(_effort(plan, task)[0] for task in plan.tasks):
         return jobs
+    from fea.solid.evaluate import SOLID_MESHES
+
     room = allowed_memory(plan.requirement.memory) / solid_memory(SOLID_MESHES.max_unknowns)
     return max(1, min(jobs, int(room)))
 
@@ -133,14 +130,9 @@ def _attempt(
 def _solve_once(
     plan: Plan, task: Task, keep: Keep | None, cache: OutcomeStore, memo: Memo | None, tell: Tell
 ) -> PinOutcome:
-    """Return a task's outcome from the cache; else solve it, and store it there.
-
-    An outcome without a limit load that would take too long has a key of its own: it does not
-    answer a task that requests that limit load.
-    """
-    key, seconds = cache.key(cache_key(plan, task)), limit_seconds(plan)
+    """Return a task's outcome from the cache; else solve it, and store it there."""
+    key, lacking = entry_keys(plan, task, cache)
     entry = cache.read(key, Entry)
-    lacking = None if seconds == inf else cache.key(cache_key(plan, task, seconds))
     if lacking is not None and (entry is None or not entry.answers(task)):
         entry = cache.read(lacking, Entry)
     if entry is not None and entry.answers(task):
@@ -163,6 +155,16 @@ def _solve_once(
     return solved
 
 
+def entry_keys(plan: Plan, task: Task, cache: OutcomeStore) -> tuple[str, str | None]:
+    """Return the names of a task's outcome in the cache: with all limit loads, and without one that
+    would take too long, None where all are requested.
+
+    The latter does not answer a task that requests that limit load.
+    """
+    key, seconds = cache.key(cache_key(plan, task)), limit_seconds(plan)
+    return key, None if seconds == inf else cache.key(cache_key(plan, task, seconds))
+
+
 def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
     name, model = task.pin.name, plan.requirement.model
     peaks = (Maximum(name, case.case, model, "failed", reason) for case in task.loads)
@@ -178,6 +180,9 @@ def solutions(
 
     Raises: ArgumentError, MeshError, SolveError.
     """
+    from fea.solve.solve import solve
+    from fea.support.support import PinProblem
+
     problem = PinProblem(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         memo,
@@ -195,6 +200,12 @@ def _joints(study: Study, task: Task) -> Joints:
 
 
 def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:
+    from pinstress.analysis import gather_fields
+    from pinstress.analysis.gather.gather_landing import landing_range
+    from pinstress.analysis.gather.gather_surface import surfaces_of
+    from pinstress.analysis.remedies.changes import change
+    from pinstress.analysis.remedies.sensitivities import sensitivities
+
     study = plan.study
     solved = solutions(study, task, plan.requirement, tell, memo)
     pressures = [solution.pressure for solution in solved]
@@ -205,7 +216,7 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
             if field is not None:
                 tell(f"pin {task.pin.name}, pictures")
                 keep(field)
-    landing = [gather.landing_range(plan.loads, task, s) for s in solved]
+    landing = [landing_range(plan.loads, task, s) for s in solved]
     beam_check = None
     if task is plan.checked and study.table.beam_check is not None:
         tell(f"pin {task.pin.name}, beam check")
@@ -238,6 +249,8 @@ def _histories(task: Task, solved: tuple[Solution, ...]) -> tuple[tuple[PointHis
 
     Such a failure must not discard the pin's stress.
     """
+    from assess.fatigue.critical_points import stress_histories
+
     try:
         return stress_histories(task.pin.name, solved), ""
     except Exception as error:
@@ -252,6 +265,8 @@ def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[Joint
     if around.pin is None:
         none = JointResult("prescribed", remark=around.why)
         return tuple(none if here is not None else None for here in loads)
+    from fea.support.foundation.variations import prescribed_ranges
+
     return prescribed_ranges(
         around.pin, task.material, around.lugs, loads, (plan.requirement.distance, around.assumed)
     )

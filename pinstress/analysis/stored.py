@@ -13,7 +13,6 @@ from assess.fatigue.records import PointHistory
 from assess.opinion.records import BeamCheck
 from fea.core.memory import too_much
 from fea.core.peak import Maximum
-from fea.solve.refine import count_loads, sequence_of
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.assessed.limits import rung_of
@@ -119,6 +118,8 @@ def shape_of(pin: PinLike) -> object:
 
 def independent_of_memory(plan: Plan, task: Task, peaks: Iterable[Maximum]) -> bool:
     """Return whether more memory would give the same answer (fea.solve.solve is limited by it)."""
+    from fea.solve.refine import count_loads, sequence_of  # imports the models
+
     open_ = [
         (p, meshes)
         for p in peaks

@@ -10,9 +10,7 @@ from geometry import PinLike
 from loads import Linkage
 from loads.motion.four_bar import four_bar
 from pinstress.explore.sweep.correlations import correlations_of
-from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import parameters_of, require_laws
-from pinstress.explore.sweep.possible import drawn, tried
 from pinstress.explore.sweep.sample import designs_of
 from pinstress.study.model.balance import other_warnings, unheld
 from pinstress.study.model.cases import CaseLoads, case_loads
@@ -113,6 +111,9 @@ def _impossible(study: Study) -> list[str]:
 
     Raises: InputError for given forces that vary one by one, out of equilibrium.
     """
+    from pinstress.explore.sweep.evaluate import Evaluator  # imports what solves
+    from pinstress.explore.sweep.possible import drawn, tried
+
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
     parameters = parameters_of(study, sampled)

@@ -14,7 +14,7 @@ import click
 from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
-from pinstress.cli.design_commands import reliability, sweep
+from pinstress.cli.design_commands import cluster_keys, reliability, sweep
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -273,7 +273,7 @@ def loads(
 
 
 @commands.command(
-    short_help="Chart error against time and memory for every model on one pin.",
+    short_help="Chart error against time and memory for all models of a pin.",
     help=example("pinstress chart studies/one_pin.toml --pin B --case landing")
     + "\nChart the error of the maximum stress against time and memory for every model and mesh on "
     "one of your pins. Prints a table; writes chart.csv, chart.svg and chart.png. Each mesh is "
@@ -368,6 +368,7 @@ def check(study: Path) -> int:
 
 
 for _command in (
+    cluster_keys,
     compare_runs,
     curve,
     import_,

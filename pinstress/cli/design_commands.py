@@ -1,12 +1,17 @@
-"""The options of the commands `sweep` and `reliability`."""
+"""The options of the commands `sweep`, `reliability` and `cluster-keys`."""
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from pinstress.cli.shared import choices, example, read_study
+from pinstress.cli.shared import choices, cluster_choices, example, read_study
+
+if TYPE_CHECKING:
+    from pinstress.explore.sweep.connection import Connection
 
 
 @click.command(
@@ -23,14 +28,7 @@ from pinstress.cli.shared import choices, example, read_study
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study>-sweep].")
 @choices
-@click.option(
-    "--scheduler",
-    metavar="ADDRESS",
-    help="Solve on an existing Dask cluster, tcp://host:8786, instead of in processes of this "
-    "machine, which use no network. Unless dask is configured with TLS, whoever reaches a "
-    "scheduler or a worker can run code there: start them with --host 127.0.0.1, or on a network "
-    "that you trust.",
-)
+@cluster_choices
 @click.option("--resume", is_flag=True, help="Resume a sweep, or extend it to a larger count.")
 @click.option("--open", "opens", is_flag=True, help="Open the page in the browser when done.")
 def sweep(
@@ -39,17 +37,25 @@ def sweep(
     pins: list[str] | None,
     cases: list[str] | None,
     jobs: int | None,
-    scheduler: str | None,
     resume: bool,
     opens: bool,
     quiet: bool,
+    **cluster: Any,
 ) -> int:
+    connection = _connection(jobs, **cluster)
     loaded = read_study(study)
     from pinstress.cli.sweep import Way, sweep_and_write
 
     directory = out or Path("out") / f"{loaded.name}-sweep"
-    way = Way(jobs, scheduler, resume, opens, quiet)
+    way = Way(jobs, connection, resume, opens, quiet)
     return sweep_and_write(loaded, directory, pins, cases, way)
+
+
+def _connection(jobs: int | None, **cluster: Any) -> Connection | None:
+    """Return the connection to a cluster by the options of a command."""
+    from pinstress.explore.sweep.connection import connection_to
+
+    return connection_to(jobs=jobs, **cluster)
 
 
 @click.command(
@@ -67,6 +73,7 @@ def sweep(
     "--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>-reliability]."
 )
 @choices
+@cluster_choices
 def reliability(
     study: Path,
     out: Path | None,
@@ -74,9 +81,40 @@ def reliability(
     cases: list[str] | None,
     jobs: int | None,
     quiet: bool,
+    **cluster: Any,
 ) -> int:
+    connection = _connection(jobs, **cluster)
     loaded = read_study(study)
     from pinstress.cli.reliability import reliability_and_write
 
     directory = out or Path("out") / f"{loaded.name}-reliability"
-    return reliability_and_write(loaded, directory, pins, cases, jobs, quiet)
+    return reliability_and_write(loaded, directory, pins, cases, jobs, connection, quiet)
+
+
+@click.command(
+    "cluster-keys",
+    short_help="Write the keys of an encrypted cluster.",
+    help=example("pinstress cluster-keys keys")
+    + "\nWrite ca.pem, cert.pem and key.pem into a folder, and print how to start a scheduler and "
+    "workers of Dask with them. Whoever has the three files can use the cluster, and nobody else: "
+    "copy them to its computers, and keep key.pem secret. The key that signed the certificate is "
+    "not kept. Files that exist are never overwritten.\n\n"
+    "Exit status: 0 done; 2 bad input.",
+)
+@click.argument("directory", metavar="DIR", type=click.Path(path_type=Path))
+def cluster_keys(directory: Path) -> None:
+    from pinstress.explore.sweep.connection import Connection
+    from pinstress.explore.sweep.keys import write_keys
+
+    keys = write_keys(directory)
+    for path in (keys.authority, keys.certificate, keys.key):
+        click.echo(str(path))
+    address = Connection("tls://HOST:8786", "HOST", 8786, keys)
+    click.echo(
+        "Start the cluster, on computers that have these files, and use it:\n"
+        f"  {address.scheduler_command}\n"
+        f"  {address.worker_command}\n"
+        f"  pinstress sweep study.toml --scheduler {address.address} "
+        f"--tls {shlex.quote(str(directory))}",
+        err=True,
+    )

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -10,7 +13,7 @@ from assess.judgement import DEPENDS, NOT_DECIDED
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
-from pinstress.cli.run import RUN_MODULES, console, progress_bar
+from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
@@ -19,6 +22,10 @@ from reports.data.reliability import Reliability
 from reports.page.reliability import write_reliability_page
 from reports.tables.reliability import write_reliability
 from reports.text.reliability import name, print_reliability
+
+if TYPE_CHECKING:
+    from pinstress.explore.sweep.cluster import Cluster
+    from pinstress.explore.sweep.connection import Connection
 
 RELIABILITY_JSON = "reliability.json"
 RELIABILITY_PAGE = "reliability.html"
@@ -30,6 +37,7 @@ def reliability_and_write(
     pins: list[str] | None,
     cases: list[str] | None,
     jobs: int | None,
+    connection: Connection | None,
     quiet: bool,
 ) -> int:
     """Assess a study into a folder and return the exit status.
@@ -37,18 +45,27 @@ def reliability_and_write(
     The status is 1 if, for any row, it could not be determined whether its probability of failure
     is within the allowed one, or where that holds only without the stress beneath contact.
 
+    jobs: number of processes on this machine.
+    connection: to a cluster that solves the samples instead; the study as it is, and the steps of
+    FORM, are solved here.
+
     Raises: InputError.
     """
     require_replaceable(directory, RELIABILITY_JSON)
     most = processes(jobs)
     study = for_values(study)
-    random_numbers(study)  # mistakes there should not wait for the stresses
+    random_numbers(study)  # mistakes there should not wait for the stresses, nor those of a cluster
+    if connection is not None:
+        from pinstress.explore.sweep.scheduler import require_cluster
+
+        require_cluster(connection)
     with replacing(directory, RELIABILITY_JSON) as staging:
         with progress_bar(alone=most == 1, quiet=quiet) as progress:
-            preload(*RUN_MODULES)
+            preload(*RUN_LIBRARIES, *RUN_MODELS)
             progress("the study as it is", 0.0)
             nominal = run(study, pins=pins, cases=cases, jobs=most)
-            assessment = assess(study, nominal, most, progress, pins, cases)
+            with _cluster(connection) as cluster:
+                assessment = assess(study, nominal, most, progress, pins, cases, cluster)
         write_reliability(assessment, staging)
         write_reliability_page(assessment, staging / RELIABILITY_PAGE)
     with unneeded(directory):
@@ -56,6 +73,18 @@ def reliability_and_write(
     if not quiet:
         click.echo(f"Report: {directory / RELIABILITY_PAGE}", err=True)
     return _status(assessment)
+
+
+@contextmanager
+def _cluster(connection: Connection | None) -> Iterator[Cluster | None]:
+    """Connect to a cluster, if there is to be one."""
+    if connection is None:
+        yield None
+        return
+    from pinstress.explore.sweep.scheduler import cluster_at
+
+    with cluster_at(connection, lambda message: click.echo(f"Warning: {message}", err=True)) as it:
+        yield it
 
 
 def _status(assessment: Reliability) -> int:

@@ -15,10 +15,10 @@ from rich.console import Console
 
 from pinbase.platform import portable
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel, preload, processes
-from pinstress.analysis.cache import user_cache
+from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.gather.gather import loads_only, results_of
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.solve import solve_tasks
+from pinstress.analysis.solve import entry_keys, solve_tasks
 from pinstress.cli.closing import (
     EXIT_NUMERICS_FAILED,
     report_disagreements,
@@ -47,8 +47,17 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
-# What fea and reports import on demand
-RUN_MODULES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
+# What solving a pin imports on demand: libraries of nearly all pins, and models
+RUN_LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
+RUN_MODELS = (
+    "assess.fatigue.critical_points",
+    "fea.solve.solve",
+    "fea.support.foundation.variations",
+    "pinstress.analysis.gather.gather_landing",
+    "pinstress.analysis.gather.gather_surface",
+    "pinstress.analysis.remedies.changes",
+    "pinstress.analysis.remedies.sensitivities",
+)
 
 
 @dataclass(frozen=True)
@@ -106,7 +115,7 @@ def run_and_write(
             (staging / "vtk").mkdir()
         keep = partial(_keep, staging, _units(study), wanted.vtk)
         with progress_bar(alone=most == 1, quiet=wanted.quiet) as progress:
-            preload(*RUN_MODULES)
+            _preload_for(plan, cache)
             outcomes = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, outcomes)
             if wanted.vtk != "none":
@@ -136,6 +145,21 @@ def run_and_write(
     if wanted.opens:
         open_page(directory / REPORT_PAGE)
     return status if status == EXIT_NUMERICS_FAILED else max(status, violated, drawn)
+
+
+def _preload_for(plan: Plan, cache: Cache | None) -> None:
+    """Import once, for all processes, what solves the pins that are not in the cache.
+
+    A single one imports the models that it needs itself.
+    """
+    unsolved = 0
+    for task in plan.tasks:
+        keys = () if cache is None else entry_keys(plan, task, cache)
+        if cache is None or not any(cache.has(key) for key in keys if key):
+            unsolved += 1
+            preload(*(RUN_LIBRARIES if unsolved == 1 else RUN_MODELS))
+        if unsolved > 1:
+            return
 
 
 def _second_opinion(plan: Plan, quiet: bool) -> dict[str, Any]:

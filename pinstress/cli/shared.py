@@ -48,6 +48,30 @@ def choices(command: Command) -> Command:
     return PINS_OPTION(CASES_OPTION(JOBS_OPTION(QUIET_OPTION(command))))
 
 
+def cluster_choices(command: Command) -> Command:
+    """Add the options that say where a cluster is: --scheduler, --tls and --insecure."""
+    scheduler = click.option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Solve on an existing Dask cluster, tls://HOST:8786, instead of in processes of this "
+        "machine, which use no network.",
+    )
+    tls = click.option(
+        "--tls",
+        metavar="DIR",
+        type=click.Path(path_type=Path),
+        help="With --scheduler: the folder that `pinstress cluster-keys` wrote; scheduler and "
+        "workers use the same three files.",
+    )
+    insecure = click.option(
+        "--insecure",
+        is_flag=True,
+        help="With --scheduler: allow a connection beyond this machine that is not encrypted; "
+        "whoever reaches it can run code on the cluster.",
+    )
+    return scheduler(tls(insecure(command)))
+
+
 def read_study(path: Path) -> Study:
     """Load a study, and warn of implausible or contradictory numbers.
 
@@ -77,7 +101,7 @@ def open_page(page: Path) -> None:
 COMMAND_SECTIONS = {
     "Studies": ("init", "check", "import", "schema"),
     "Analysis": ("run", "loads", "chart"),
-    "Designs": ("size", "curve", "sweep", "reliability"),
+    "Designs": ("size", "curve", "sweep", "reliability", "cluster-keys"),
     "Earlier runs": ("view", "compare", "plots", "pdf"),
 }
 

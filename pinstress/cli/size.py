@@ -15,7 +15,7 @@ from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import run
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.run import RUN_MODULES, console, progress_bar
+from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.counted import beneath_factor
 from pinstress.explore.size.scaled_study import moved, resized_study
@@ -137,7 +137,7 @@ def _all(
 ) -> list[SizingResult]:
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     if jobs > 1:
-        preload(*RUN_MODULES)
+        preload(*RUN_LIBRARIES, *RUN_MODELS)
     work = [Job(f"pin {name}", partial(size_pin, plan, name, wish, scales)) for name in names]
     sizings = in_parallel(work, jobs, lambda message, part: progress(message, 0.9 * part))
     return [

@@ -23,6 +23,7 @@ from pinstress.cli.output_folder import require_replaceable
 from pinstress.cli.run import console
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
+from pinstress.explore.sweep.connection import Connection
 from pinstress.explore.sweep.design_columns import designs_of
 from pinstress.explore.sweep.page import render_designs
 from pinstress.explore.sweep.parts import (
@@ -58,13 +59,13 @@ class Way:
     """Options for solving a sweep.
 
     jobs: number of processes on this machine, by default one for each core.
-    scheduler: address of a cluster instead.
+    connection: to a cluster instead.
     resume: whether to resume the sweep in the folder.
     opens: whether to open the page.
     """
 
     jobs: int | None = None
-    scheduler: str | None = None
+    connection: Connection | None = None
     resume: bool = False
     opens: bool = False
     quiet: bool = False
@@ -92,9 +93,9 @@ def sweep_and_write(
                 count = len(sweep.values)
                 click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
         try:
-            alone = way.scheduler is not None or (way.jobs or cores()) == 1
+            alone = way.connection is not None or (way.jobs or cores()) == 1
             with progress(way.quiet, alone) as report:
-                table = solved(sweep, parts, way.jobs, way.scheduler, report, _warn)
+                table = solved(sweep, parts, way.jobs, way.connection, report, _warn)
         except BaseException as error:
             if parts.count and (isinstance(error, KeyboardInterrupt) or interrupts.came()):
                 raise Unfinished(_kept(parts)) from None

@@ -83,7 +83,8 @@ class Scene:
         longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
         arrows = MAX_ARROW_LENGTH * longer * self.forces / (self.largest or 1.0)
         tails = self.motion.joint_position[self.instants][:, self.tails]
-        return Viewport.of(self.points, tails.reshape(-1, 2), arrows.reshape(-1, 2))
+        corners = np.stack([self.points.min(axis=0), self.points.max(axis=0)])
+        return Viewport.of(corners, tails.reshape(-1, 2), arrows.reshape(-1, 2))
 
     @cached_property
     def forces(self) -> Floats:

@@ -21,8 +21,8 @@ IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 
 
 @dataclass(frozen=True)
-class Judged:
-    """A maximum stress as it is judged, all in one stress unit.
+class JudgedStress:
+    """A maximum stress and those by which its outcome is judged, all in one stress unit.
 
     low, high: the ends of its error. strength: yield strength.
     permitted: the stress that the required factor permits. safe: the outcome as described.
@@ -58,7 +58,7 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     contact = pin.places.contact if pin.places else None
     high, low = (strength / end for end in factor_ends(pin))
     permitted = strength / (pin.required or 1.0)
-    judged = Judged(
+    judged = JudgedStress(
         low, pin.max_von_mises, high, strength, permitted, described in (SAFE, BELOW_YIELD)
     )
     ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, pin.joint)]
@@ -67,7 +67,7 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     return tuple(ranges)
 
 
-def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependence]:
+def _beneath(judged: JudgedStress, contact: ContactPlace | None) -> Iterator[Dependence]:
     """Yield the stress beneath contact if it contradicts a row that is safe as described.
 
     It does where no distance from the edges of lugs makes the row plainly safe, and the field away
@@ -84,7 +84,7 @@ def _beneath(judged: Judged, contact: ContactPlace | None) -> Iterator[Dependenc
 
 
 def _over_joint(
-    judged: Judged, contact: ContactPlace | None, joint: JointResult | None
+    judged: JudgedStress, contact: ContactPlace | None, joint: JointResult | None
 ) -> Iterator[Dependence]:
     """Yield the variations of the joint that change the outcome.
 
@@ -133,12 +133,12 @@ def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
     return v.beneath * contact.upper_end / contact.beneath
 
 
-def _counted(judged: Judged, v: Variation) -> float:
+def _counted(judged: JudgedStress, v: Variation) -> float:
     """Return the stress that decides: for a safe row the upper end of its interval, if any."""
     return v.interval[1] if judged.safe and v.interval else v.max_von_mises
 
 
-def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None:
+def _crossing(judged: JudgedStress, v: Variation, given: float | None) -> float | None:
     """Return the length at which the permitted stress is reached, interpolated linearly.
 
     It lies between the given length and the varied one; it is the varied one where the variation
@@ -149,7 +149,7 @@ def _crossing(judged: Judged, v: Variation, given: float | None) -> float | None
 
 
 def _on_the_way(
-    judged: Judged, v: Variation, given: float | None, ends: tuple[float, float]
+    judged: JudgedStress, v: Variation, given: float | None, ends: tuple[float, float]
 ) -> float | None:
     """Return the length at which the permitted stress is reached, interpolated between `ends`.
 
@@ -163,7 +163,7 @@ def _on_the_way(
 
 
 def _with_beneath(
-    judged: Judged, contact: ContactPlace | None, r: LandingRange
+    judged: JudgedStress, contact: ContactPlace | None, r: LandingRange
 ) -> list[Dependence]:
     """Return the dependences over a landing's range, with stress beneath contact, which scales too.
 
@@ -183,7 +183,7 @@ def _with_beneath(
     ]
 
 
-def _over_landing(judged: Judged, r: LandingRange) -> Iterator[Dependence]:
+def _over_landing(judged: JudgedStress, r: LandingRange) -> Iterator[Dependence]:
     """Yield the ranges that change the outcome alone, or all ranges together if none does."""
     time, velocity = (
         np.isclose(x, given)
@@ -225,7 +225,7 @@ def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> in
     return int(places[np.argmin(away)])
 
 
-def _between(judged: Judged, one: tuple[float, float], other: tuple[float, float]) -> float:
+def _between(judged: JudgedStress, one: tuple[float, float], other: tuple[float, float]) -> float:
     """Return where the stress, a power law between two points, reaches the permitted one."""
     end = judged.high if judged.safe else judged.low
     wanted = judged.permitted * judged.maximum / end

@@ -75,7 +75,7 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
                     pin_sentence(p, results.units),
                     grid_of(shown_zones(p, zones[name][p.case], results.units), results.units),
                     pin_checks(p, results.units).grid(results.units) if p.hand_checks else None,
-                    grid_of(pin_margins(results, p.pin, p.case), results.units),
+                    grid_of(pin_margins(results, p), results.units),
                     loads_at(p, results.units),
                     places_part(p, results.units),
                     joint_part(p, results.units),

@@ -13,11 +13,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.shape.chords import needed
+from pinbase.arrays import Mask
 from reports.data.results import Floats
 from reports.plots.theme import dashes
 
 Spec = dict[str, Any]
 CURVE_TOLERANCE = 1e-6  # of the largest value: curves nearer than this are one
+MAX_CURVE_POINTS = 2_001  # beyond which only points are drawn that the curves need
+POINTER_POINTS = 500  # of a curve at which the pointer finds values, at least
+CURVE_POINT_TOLERANCE = 5e-4  # of a panel's extent: a twelfth of a pixel
 FEW_VALUES = 32  # values of a curve by which it is compared first
 NUMBER_FORMAT = ",.5~r"
 ZOOM_PARAMETER: Spec = {
@@ -73,12 +78,13 @@ def curves(title: str, x: Abscissa, panels: Sequence[Panel], common: bool = Fals
     """
     together = [panels] if common else [[panel] for panel in panels]
     merged = [shown for part in together for shown in _merged([p.curves for p in part])]
-    columns: list[tuple[str, str, Floats]] = [("x", x.heading, x.values)]
+    kept = _needed(x, panels, merged)
+    columns: list[tuple[str, str, Floats]] = [("x", x.heading, x.values[kept])]
     views: list[Spec] = []
     for panel, shown in zip(panels, merged, strict=True):
         ids = [f"c{len(columns) - 1 + k}" for k in range(len(shown))]
         heads = [f"{name}, {panel.heading}" if name else panel.heading for name in shown]
-        columns += list(zip(ids, heads, shown.values(), strict=True))
+        columns += list(zip(ids, heads, (values[kept] for values in shown.values()), strict=True))
         views.append(_view(panel, dict(zip(ids, shown, strict=True)), x, panel is panels[-1]))
     scales = "shared" if common else "independent"
     return {
@@ -191,6 +197,35 @@ def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
     groups = groups or [[0]]
     keys = {clipped(", ".join(names[k] for k in g), 48): names[g[0]] for g in groups}
     return [{key: panel[name] for key, name in keys.items()} for panel in panels]
+
+
+def _needed(x: Abscissa, panels: Sequence[Panel], merged: list[dict[str, Floats]]) -> Mask:
+    """Return which of the points (N,) are drawn: of many those between which curves are straight,
+    and some for the pointer.
+
+    merged: the curves of the panels.
+    """
+    if len(x.values) <= MAX_CURVE_POINTS:
+        return np.ones(len(x.values), dtype=bool)
+    axes = [(x.values[:, None], x.logarithmic)]
+    for panel, shown in zip(panels, merged, strict=True):
+        axes.append((np.column_stack([*shown.values()]), panel.scale.get("type") == "log"))
+    parts = [np.log10(values) if logarithmic else values for values, logarithmic in axes]
+    # Where values are missing a curve ends; the last point before, and the first after, stay.
+    finite = np.column_stack([np.isfinite(part) for part in parts])
+    ends = np.any(finite[1:] != finite[:-1], axis=1)
+    fixed = np.append(ends, False) | np.append(False, ends)
+    fixed[:: len(fixed) // POINTER_POINTS] = True
+    shares = [np.nan_to_num(part / _height(part), posinf=0.0, neginf=0.0) for part in parts]
+    values = np.column_stack(shares)
+    allowed = np.full(values.shape, CURVE_POINT_TOLERANCE)
+    return needed(np.arange(len(values), dtype=float), values, allowed, fixed)
+
+
+def _height(values: Floats) -> float:
+    """Return the extent of a panel's curves."""
+    known = values[np.isfinite(values)]
+    return float(np.ptp(known)) if len(known) and np.ptp(known) > 0.0 else 1.0
 
 
 def _tolerance(panel: dict[str, Floats]) -> float:

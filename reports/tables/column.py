@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
+from itertools import chain, islice
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -16,9 +16,9 @@ import numpy as np
 
 from pinbase.records import plain
 from reports.data.results import Floats, PinResult, Units
-from reports.format.files import markdown
+from reports.format.files import markdown, parquet
 from reports.format.files.csv import Cell, write_csv
-from reports.format.files.parquet import write_parquet
+from reports.format.files.parquet import Cells, write_parquet
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 
@@ -155,8 +155,17 @@ class Table(Generic[R]):
         """Write the table as CSV, or as Parquet if too long for spreadsheets; return the path."""
         large = len(self) > MAX_CSV_ROWS
         path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
-        (write_parquet if large else write_csv)(path, self.keys, self.cells())
+        if large:
+            write_parquet(path, self.keys, self.groups(parquet.ROWS_PER_GROUP))
+        else:
+            write_csv(path, self.keys, self.cells())
         return path
+
+    def groups(self, size: int) -> Iterator[Sequence[Cells]]:
+        """Yield the cells of every column of `size` lines after another."""
+        lines = self.cells()
+        while group := list(islice(lines, size)):
+            yield list(zip(*group, strict=True))
 
     def records(self) -> list[dict[str, Any]]:
         """Return the rows as plain values by the columns' keys; non-finite numbers are None."""
@@ -204,6 +213,34 @@ class ArrayTable(Table[R]):
             for first in range(0, count, LINES_AT_ONCE):
                 last = min(first + LINES_AT_ONCE, count)
                 yield from zip(*(_listed(cells, first, last) for cells in columns), strict=True)
+
+    def groups(self, size: int) -> Iterator[Sequence[Cells]]:
+        parts, count = list[list[Cells]](), 0
+        for row in self.rows:
+            columns, lines, first = [c.cell(row) for c in self.filed], self._lines(row), 0
+            while first < lines:
+                last = min(first + size - count, lines)
+                parts.append([_part(cells, first, last) for cells in columns])
+                first, count = last, count + last - first
+                if count == size:
+                    yield _joined(parts)
+                    parts, count = [], 0
+        if parts:
+            yield _joined(parts)
+
+
+def _part(cells: Floats | list[Cell] | Cell, first: int, last: int) -> Cells:
+    """Return some of the cells, of an array without a copy."""
+    return cells[first:last] if isinstance(cells, np.ndarray) else _listed(cells, first, last)
+
+
+def _joined(parts: list[list[Cells]]) -> Sequence[Cells]:
+    """Return the cells of every column from those of successive lines."""
+    if len(parts) == 1:
+        return parts[0]
+    return [
+        [*chain(*(_listed(c, 0, len(c)) for c in column))] for column in zip(*parts, strict=True)
+    ]
 
 
 def _listed(cells: Floats | list[Cell] | Cell, first: int, last: int) -> list[Cell]:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
+
+import pytest
 
 from tests.conftest import ROOT
+from tests.support.programs.command_line import QUICK
 
 IMPORT = """
 import locale, os, signal, sys, threading, warnings
@@ -63,3 +68,63 @@ def test_check_loads_nothing_that_solves_or_draws() -> None:
     loaded = loaded_by("check", "studies/grenier2008.toml")
     assert "numpy" in loaded
     assert not loaded & (SOLVE | DRAW | {"pint"})
+
+
+SOLVERS = SOLVE | {"fea.solve.solve", "fea.harmonic.evaluate", "assess.derivatives.derivatives"}
+# Notes what each process has imported: a pin may be solved in a child.
+NOTED = """
+import os, sys
+from multiprocessing import util
+from pathlib import Path
+from pinstress.cli.commands import run_command_line
+
+folder = Path(sys.argv[1])
+
+def note():
+    (folder / str(os.getpid())).write_text(" ".join(sys.modules))
+
+# A child has no finalizers of its parent; what it leaves is run before it ends.
+util.register_after_fork(note, lambda _: util.Finalize(None, note, exitpriority=0))
+status = run_command_line(sys.argv[2:])
+note()
+sys.exit(status)
+"""
+
+
+def loaded_by_run(folder: Path, *options: str) -> set[str]:
+    """The modules that `run` of a quick study and its processes import, with a cache of its own."""
+    notes, study = folder / "notes", folder / "study.toml"
+    notes.mkdir(exist_ok=True)
+    study.write_text(QUICK)
+    for old in notes.iterdir():
+        old.unlink()
+    run = ["run", str(study), "--out", str(folder / "out"), *options]
+    done = subprocess.run(
+        [sys.executable, "-c", NOTED, str(notes), *run], cwd=ROOT, capture_output=True, text=True,
+        timeout=300, env={**os.environ, "PINSTRESS_CACHE": str(folder / "cache")},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    processes = [note.read_text().split() for note in notes.iterdir()]
+    assert (len(processes) > 1) == ("2" in options)
+    return {name for modules in processes for name in modules}
+
+
+@pytest.mark.parametrize("jobs", ["1", "2"])
+def test_a_run_from_the_cache_loads_no_solver(tmp_path: Path, jobs: str) -> None:
+    first = loaded_by_run(tmp_path, "--jobs", jobs)
+    assert {"gmsh", "skfem", "scipy.sparse", "fea.solve.solve"} <= first
+    again = loaded_by_run(tmp_path, "--jobs", jobs)
+    assert not again & SOLVERS
+    assert "fea.core.peak" in again
+    assert (tmp_path / "out" / "vtk" / "B_landing.vtu").is_file()
+
+
+def test_a_plain_pin_loads_no_model_of_others(tmp_path: Path) -> None:
+    loaded = loaded_by_run(tmp_path, "--jobs", "1")
+    assert "fea.harmonic.evaluate" in loaded
+    assert not loaded & {
+        "meshio", "scipy.optimize", "scipy.interpolate", "matplotlib", "pandas", "pyarrow",
+        "tomlkit", "pyvista", "assess.plastic.solve", "assess.fatigue.assess",
+        "assess.derivatives.in_lugs", "fea.solid.evaluate", "fea.cut.evaluate",
+        "fea.support.contact.held", "fea.support.foundation.held",
+    }  # fmt: skip

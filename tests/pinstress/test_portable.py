@@ -27,7 +27,11 @@ TWIN = {"PINSTRESS_PORTABLE": "1"}
 # whose psutil is another one on each system, and on Linux needs what is taken away here.
 ALL = """
 import pkgutil, importlib
-CLUSTER = "pinstress.explore.sweep.cluster", "pinstress.explore.sweep.scheduler"
+CLUSTER = (
+    "pinstress.explore.reliability.on_cluster",
+    "pinstress.explore.sweep.cluster",
+    "pinstress.explore.sweep.scheduler",
+)
 for room in ("pinbase", "loads", "geometry", "fea", "assess", "reports", "pinstress"):
     top = importlib.import_module(room)
     for found in pkgutil.walk_packages(top.__path__, room + "."):

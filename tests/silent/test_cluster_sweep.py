@@ -58,8 +58,7 @@ def _alone(folder: Path, study: str = "study.toml") -> bytes:
 
 
 def _on(cluster: DaskCluster, folder: Path, *more: str) -> subprocess.CompletedProcess[str]:
-    arguments = "sweep", "study.toml", "--out", "out", "--scheduler", cluster.address
-    return pinstress(*arguments, *more, cwd=folder)
+    return pinstress("sweep", "study.toml", "--out", "out", *cluster.options, *more, cwd=folder)
 
 
 @contextmanager
@@ -67,7 +66,7 @@ def _begun(cluster: DaskCluster, folder: Path) -> Iterator[subprocess.Popen[str]
     """A sweep of which two batches are kept."""
     command = [sys.executable, "-m", "pinstress", "sweep", "study.toml", "--out", "out"]
     piped = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
-    with started([*command, "--scheduler", cluster.address], cwd=folder, **piped) as sweep:
+    with started([*command, *cluster.options], cwd=folder, **piped) as sweep:
         _more(folder, 2, sweep)
         yield sweep
 
@@ -113,7 +112,7 @@ def test_a_scheduler_that_died_before_it_was_asked_is_lost_and_not_slow(tmp_path
     """dask then tries to connect again for as long as we wait, which is no scheduler's silence."""
     with dask_cluster(tmp_path) as cluster:
         cluster.worker()
-        with connected(cluster.address, ["numpy"], print) as connection:
+        with connected(cluster.connection, ["numpy"], print) as connection:
             cluster.scheduler.kill()
             wait_for(lambda: connection.client.status != "running")
             with pytest.raises(InputError, match="the connection to the scheduler"):
@@ -135,7 +134,7 @@ def test_tables_are_sent_and_not_read_on_workers(tmp_path: Path) -> None:
     with dask_cluster(tmp_path / "cluster") as cluster:
         for folder in (other, none):
             cluster.worker(folder)
-        made = pinstress("sweep", study, "--out", "out", "--scheduler", cluster.address, cwd=here)
+        made = pinstress("sweep", study, "--out", "out", *cluster.options, cwd=here)
     assert made.returncode == 0, made.stderr
     found = _bytes(here / "out")
     assert found == _alone(here, study)
@@ -167,24 +166,16 @@ def test_workers_with_other_versions_are_refused_at_once(tmp_path: Path) -> None
         cluster.worker(source=_other_source(tmp_path / "other"))
         cluster.worker(source=_no_source(tmp_path / "none"))
         cluster.worker(PINSTRESS_PORTABLE="1")  # as on macOS: the last digits are others
-        _wait_for_workers(cluster, 4)
+        cluster.wait_until("len(workers) == 4")
         made = _on(cluster, tmp_path)
     assert made.returncode == 2
     assert "workers with other versions than this process has" in made.stderr
     assert "pinstress missing (here 0.1.0, source " in made.stderr
     assert made.stderr.count("pinstress 0.1.0, source ") == 1
     assert "code for all systems (here Linux)" in made.stderr
-    assert made.stderr.count("tcp://") == 3
+    assert made.stderr.count("tls://") == 3
     assert "Traceback" not in made.stderr
     assert not (tmp_path / "out").exists()
-
-
-def _wait_for_workers(cluster: DaskCluster, count: int) -> None:
-    asked = (
-        "from distributed import Client\n"
-        f"Client({cluster.address!r}).wait_for_workers({count}, timeout=200)"
-    )
-    subprocess.run([sys.executable, "-c", asked], check=True)
 
 
 @pytest.mark.parametrize("source", [_other_source, _no_source])
@@ -226,7 +217,7 @@ def test_a_worker_that_is_paused_for_memory_is_said(tmp_path: Path) -> None:
     _study(tmp_path, 12)
     with dask_cluster(tmp_path / "cluster") as cluster:
         cluster.worker(None, "--memory-limit", "60MB")
-        _wait_for_paused(cluster)
+        cluster.wait_until("'paused' in str(workers)")
         made = _on(cluster, tmp_path)
         assert made.returncode == 2
         assert "only workers that are paused, since their memory is nearly full" in made.stderr
@@ -236,15 +227,6 @@ def test_a_worker_that_is_paused_for_memory_is_said(tmp_path: Path) -> None:
     assert made.returncode == 0, made.stderr
     assert "is paused, since its memory is nearly full" in made.stderr
     assert _bytes(tmp_path / "out") == _alone(tmp_path)
-
-
-def _wait_for_paused(cluster: DaskCluster) -> None:
-    asked = (
-        "import time\nfrom distributed import Client\n"
-        f"client = Client({cluster.address!r})\n"
-        "while 'paused' not in str(client.scheduler_info()): time.sleep(0.2)"
-    )
-    subprocess.run([sys.executable, "-c", asked], check=True, timeout=200)
 
 
 def test_an_interrupted_sweep_leaves_the_cluster_to_others(tmp_path: Path) -> None:

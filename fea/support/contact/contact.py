@@ -335,13 +335,14 @@ class ContactProblem:
         system, right = self._soft * self._scale, np.zeros(G.shape[1])
         C = C[rows]  # symmetric
         if len(rows):
-            factor = cho_factor(C[:, rows], lower=True, check_finite=False)
+            factor = cho_factor(C[:, rows], lower=True, check_finite=False, overwrite_a=True)
             given = np.column_stack([G[rows], -self._open[rows]])
             solved = cho_solve(factor, given, check_finite=False)
             yielding[rows], force[rows] = solved[:, :-1], solved[:, -1]
             system, right = system + G[rows].T @ solved[:, :-1], G[rows].T @ solved[:, -1]
-        gap = self._open + C.T @ force[rows]
-        moving = G - C.T @ yielding[rows]
+        both = np.column_stack([yielding[rows], force[rows]])
+        change = (both.T @ C).T
+        gap, moving = self._open + change[:, -1], G - change[:, :-1]
         gap[rows], moving[rows] = 0.0, 0.0
         return _Answer(force, yielding, gap, moving, system, right, G)
 

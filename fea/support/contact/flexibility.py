@@ -89,8 +89,7 @@ class RingBody:
         out = []
         for n in range(highest + 1):
             forces = self.balanced(n, self.forces(n))
-            work = forces.T @ self.body.displace(n, forces) / around(n)
-            out.append(0.5 * (work + work.T) / self.area[:, None])
+            out.append(self.body.work(n, forces) / around(n) / self.area[:, None])
         return np.stack(out)
 
 

@@ -17,7 +17,6 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
@@ -73,6 +72,8 @@ def half_angle(gap: float) -> float:
     def off(angle: float) -> float:
         b2 = math.tan(angle / 2.0) ** 2
         return 2.0 - math.log(b2 + 1.0) - 2.0 * b2 * b2 - gap * math.pi * b2 * (b2 + 1.0)
+
+    from scipy.optimize import brentq  # takes long to import
 
     return float(brentq(off, 1e-6, 0.5 * math.pi, xtol=1e-12))
 

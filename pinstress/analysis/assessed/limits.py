@@ -8,15 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import inf
+from typing import TYPE_CHECKING
 
 from assess.plastic.records import LimitLoad
-from assess.plastic.solve import Rung, limit_load
 from fea.core.peak import Maximum
-from fea.support.support import Solution
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
+
+if TYPE_CHECKING:
+    from assess.plastic.solve import Rung
+    from fea.support.support import Solution
 
 NOT_ON_FOUNDATIONS_NOTE = 'not for a pin on elastic foundations: use joints = "contact"'
 
@@ -58,6 +61,8 @@ def _limit_load(
     peak = solved.peak
     if rung is None or not limit_asked(peak, task, rung):
         return None
+    from assess.plastic.solve import limit_load  # imports a model
+
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
     pin, loads = task.pin, peak.governing
     assert loads is not None

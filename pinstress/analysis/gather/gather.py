@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
-import numpy as np
-
+from assess.margin import PinMargin
 from fea.core.peak import Maximum
-from fea.core.pin_loads import PinLoads
-from fea.section.section_stress import SectionField
 from fea.support.records import JointResult
-from fea.support.support import Solution
-from geometry import Cut, Flat, Hole, Passage, PinLike, Slot, body_of_revolution
+from geometry import Cut, Flat, Hole, Passage, PinLike, Slot
 from geometry.shape.cut_edges import drawn
 from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
-from pinstress.analysis.gather.gather_fatigue import fatigue_of
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
 from pinstress.analysis.mechanics.gather_sequences import with_sequences
 from pinstress.analysis.plan import Plan, all_loads
@@ -66,7 +61,12 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
     ]
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
     results = _results(study, plan.loads, rows, plan.published, plan.requirement.tolerance)
-    fatigue, fatigue_margins = fatigue_of(plan, outcomes)
+    fatigue: plain.Fatigue | None = None
+    fatigue_margins: list[PinMargin] = []
+    if study.table.fatigue is not None:
+        from pinstress.analysis.gather.gather_fatigue import fatigue_of  # imports SciPy
+
+        fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
         beam_check=next((x.beam_check for x in outcomes if x.beam_check is not None), None),
@@ -213,56 +213,6 @@ def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
     return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
-
-
-def landing_range(
-    loads: Mapping[str, CaseLoads], task: Task, solution: Solution
-) -> plain.LandingRange | None:
-    """Return a pin's results over the ranges of its landing's impulse, by superposition."""
-    case, over = solution.peak.case, loads[solution.peak.case].range
-    if over is None or solution.answer is None:
-        return None
-    maxima, strength = _maxima(task, solution, task.ranges[case]), task.material.yield_strength
-    return plain.LandingRange(
-        pin=task.pin.name,
-        case=case,
-        impulse_time=over.times,
-        velocity_change=over.velocities,
-        pulses=over.pulses,
-        force=over.forces,
-        max_von_mises=maxima,
-        safety_factor=None if strength is None else strength / maxima,
-        nominal=over.nominal,
-        nominal_pulse=over.nominal_pulse,
-        verdict=solution.peak.verdict,
-        spread=_spread(solution.peak),
-        error=(solution.peak.error_estimate or 0.0) / (solution.peak.max_von_mises or 1.0),
-    )
-
-
-def _maxima(task: Task, solution: Solution, loads: PinLoads) -> plain.Floats:
-    """Return the larger of the stresses of surface and section, Pa, at each instant of other loads
-    of a case.
-    """
-    acting, clamps = solution.pressed(loads), tuple[str, ...]()
-    if task.lugs:
-        pin = solution.rings
-    else:
-        pin = body_of_revolution(task.pin)
-        clamps = tuple(task.pin.surface(name) for name in task.clamps)
-    assert solution.answer is not None
-    surface, places = solution.answer.maxima(acting), solution.peak.places
-    if places is None or places.section is None or pin is None:
-        return surface
-    sections = SectionField(pin, task.material, clamps, (acting.on_rings,))
-    return np.maximum(surface, sections.maxima(acting.on_rings))
-
-
-def _spread(peak: Maximum) -> tuple[float, float] | None:
-    if peak.interval is None or not peak.max_von_mises:
-        return None
-    low, high = peak.interval
-    return peak.max_von_mises / high, peak.max_von_mises / low if low > 0.0 else np.inf
 
 
 def cut_shapes(pin: PinLike) -> Iterator[CutShape]:

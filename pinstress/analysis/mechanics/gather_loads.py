@@ -223,7 +223,7 @@ def _motion(
     timed = dynamics.reactions.times is not None
     bodies = [b.name for b in linkage.bodies]
     centre, velocity, acceleration = (pairs(z[:, : len(bodies)]) for z in motion.centres)
-    joints = [motion.joint(j.name) for j in linkage.joints]
+    joints = list(motion.joints())
     joints += [motion.point(t.carrier, t.at) for t in linkage.teeth]
     at, v, a = (np.stack([j[k] for j in joints], axis=1) for k in range(3))
     about = ground_joint(linkage)

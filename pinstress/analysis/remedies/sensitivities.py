@@ -10,11 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from assess.derivatives.derivatives import derivatives
-from assess.derivatives.in_lugs import JointDerivatives, JointParameter, joint_derivatives
 from assess.derivatives.in_section import section_derivatives
 from assess.derivatives.records import Derivatives, SolvedCase
 from fea.beam.model import BeamField
@@ -28,17 +28,19 @@ from fea.harmonic.field import HarmonicField
 from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
-from fea.support.contact.held import HeldContact
 from fea.support.support import Solution
 from geometry import body_of_revolution
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
 from pinstress.analysis.remedies.dimensions import dimensions_of
-from pinstress.analysis.remedies.joint_parameters import StudyParameter, joint_parameters
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.sensitivities import PinSensitivities, Sensitivity
+
+if TYPE_CHECKING:
+    from assess.derivatives.in_lugs import JointDerivatives, JointParameter
+    from pinstress.analysis.remedies.joint_parameters import StudyParameter
 
 MAX_STEP_FRACTION = 0.1  # of a dimension that its step is at most
 STEP_FRACTION = 0.01  # step of any other parameter, of its value; of a force, of the largest
@@ -94,6 +96,9 @@ def differentiated_in_lugs(
 
     Raises: MeshError, SolveError.
     """
+    from assess.derivatives.in_lugs import joint_derivatives
+    from fea.support.contact.held import HeldContact
+
     solution, held, rings = joined, joined.held, joined.rings
     peak, answer = solution.peak, solution.answer
     if rings is None or peak.governing is None or not peak.max_von_mises:
@@ -208,6 +213,8 @@ def _with_rows(
 
 def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> PinSensitivities:
     """Return the sensitivities of a pin in contact; without a step, why there are none."""
+    from pinstress.analysis.remedies.joint_parameters import joint_parameters
+
     peak = joined.peak
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pinbase.processes.pool import Progress
+from pinstress.analysis.cache import user_cache
 from pinstress.explore.reliability.designs import SolvedDesigns, random_numbers
 from pinstress.explore.reliability.drivers import base_samples, indices
 from pinstress.explore.reliability.form import (
@@ -28,7 +31,7 @@ from pinstress.explore.reliability.form import (
 )
 from pinstress.explore.reliability.risk import AssessedRow, RiskColumn, Sample, risk_of
 from pinstress.explore.reliability.sampling import importance_draws, plain_draws
-from pinstress.explore.sweep.batches import shapes
+from pinstress.explore.sweep.batches import DesignProblem, evaluator_of, shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.explore.sweep.possible import drawn, require_balance
@@ -42,6 +45,9 @@ from reports.data.reliability import (
     Spread,
 )
 from reports.data.results import PinResult, Results
+
+if TYPE_CHECKING:
+    from pinstress.explore.sweep.cluster import Cluster
 
 Array = NDArray[np.float64]
 
@@ -59,19 +65,27 @@ def assess(
     progress: Progress,
     pins: Sequence[str] | None = None,
     cases: Sequence[str] | None = None,
+    cluster: Cluster | None = None,
 ) -> Reliability:
     """Assess the pins of a study in its cases.
 
     nominal: results of the study as it is.
+    jobs: number of processes that solve samples.
+    cluster: solves them instead; what it has solved is kept in the user's cache.
 
     Raises: InputError for a study without random numbers or without strengths.
     """
     settings = study.table.reliability
     parameters, space = random_numbers(study)
-    evaluator = Evaluator(study, parameters, pins, cases)
+    problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
+    evaluator, elsewhere = evaluator_of(problem), None
     _require_strengths(study, evaluator)
     require_balance(study, evaluator, drawn(study, parameters))
-    designs = SolvedDesigns(evaluator, space, jobs, progress)
+    if cluster is not None:
+        from pinstress.explore.reliability.on_cluster import design_rows
+
+        elsewhere = partial(design_rows, cluster, problem, user_cache())
+    designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
     plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
     forms = _first_orders(study, parameters, designs, sampled, cases)

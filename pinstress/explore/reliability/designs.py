@@ -26,6 +26,7 @@ MAX_SERIAL_DESIGNS = 30
 
 
 Marginal = Callable[[Array], Array]  # values at standard normal deviates
+Elsewhere = Callable[[Array, Callable[[int], None]], list[list[DesignRow]]]
 
 
 @dataclass(frozen=True)
@@ -129,16 +130,23 @@ class SolvedDesigns:
     """Solve the designs of a study at standard normal u.
 
     jobs: number of parallel processes.
+    elsewhere: solves many designs on other computers instead, as their rows, from their values
+    (n, d) in SI; it is given a function to call with the number of designs that are solved.
     solved: number of designs by purpose.
     reasons: why rows have no result, with their number.
     """
 
     def __init__(
-        self, evaluator: Evaluator, space: NormalSpace, jobs: int, progress: Progress
+        self,
+        evaluator: Evaluator,
+        space: NormalSpace,
+        jobs: int,
+        progress: Progress,
+        elsewhere: Elsewhere | None = None,
     ) -> None:
         self.evaluator, self.space = evaluator, space
         self.solved, self.reasons = Counter[str](), Counter[str]()
-        self._jobs, self._progress = jobs, progress
+        self._jobs, self._progress, self._elsewhere = jobs, progress, elsewhere
 
     def of_pin(self, evaluator: Evaluator) -> SolvedDesigns:
         """Return the same for the rows of one pin, counted together."""
@@ -150,11 +158,13 @@ class SolvedDesigns:
         """Solve designs u (n, d) and return their answers."""
         self.solved[purpose] += len(u)
         values = self.space.physical(u)
+        if self._elsewhere is not None and len(u) > MAX_SERIAL_DESIGNS:
+            return self._answers(self._elsewhere(values, partial(self._report, purpose, len(u))))
         jobs = self._jobs if len(u) > MAX_SERIAL_DESIGNS else 1
         size = min(MAX_JOB_DESIGNS, -(-len(u) // (JOBS_PER_PROCESS * jobs)))
         parts = [values[k : k + size] for k in range(0, len(values), size)]
         work = [
-            Job(f"{purpose}, {min((k + 1) * size, len(u)):,} of {len(u):,} designs", part)
+            Job(_name(purpose, min((k + 1) * size, len(u)), len(u)), part)
             for k, part in enumerate(partial(_solved, self.evaluator, p) for p in parts)
         ]
         progress = self._progress if len(u) > MAX_SERIAL_DESIGNS else (lambda _, __: None)
@@ -166,6 +176,9 @@ class SolvedDesigns:
                 else result
             )
         return self._answers([rows for part in results for rows in part])
+
+    def _report(self, purpose: str, total: int, count: int) -> None:
+        self._progress(_name(purpose, count, total), count / total)
 
     def limit(self, row: int, factor: float, deep: bool = False) -> LimitState:
         """Return the limit state of a row: one less factor times use, negative where it fails.
@@ -187,6 +200,10 @@ class SolvedDesigns:
             for reason in {row.reason for row in rows if np.isnan(_used(row))}:
                 self.reasons[reason or "no result"] += 1
         return Answers(used, errors, used * np.maximum(1.0, below))
+
+
+def _name(purpose: str, count: int, total: int) -> str:
+    return f"{purpose}, {count:,} of {total:,} designs"
 
 
 def _solved(evaluator: Evaluator, values: Array, _: object) -> list[list[DesignRow]]:

@@ -94,11 +94,11 @@ def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
     """Solve the designs of a batch, with one thread in each numeric library."""
     from threadpoolctl import threadpool_limits
 
-    start = time.perf_counter()
     with _BATCH_LOCK, threadpool_limits(1):
+        start = time.perf_counter()
         evaluator = evaluator_of(problem)
         rows = [evaluator.rows(values) for values in batch.values]
-    return SolvedBatch(batch, rows, time.perf_counter() - start)
+        return SolvedBatch(batch, rows, time.perf_counter() - start)
 
 
 @lru_cache(1)
@@ -144,7 +144,7 @@ class Batches:
         self._values = values
         self._left = [i for i in ordered(numbers, values) if i not in done]
         self._left.reverse()
-        self._at_once = at_once
+        self.at_once = at_once
         self._seconds, self._count = 0.0, 0
 
     def __iter__(self) -> Iterator[Batch]:
@@ -174,8 +174,8 @@ class Batches:
         """
         size = 1
         if self.each is not None:
-            size = min(math.ceil(aim_of(self._at_once) / max(self.each, 1e-9)), MAX_BATCH_DESIGNS)
-            size = max(1, min(size, -(-len(self._left) // (2 * self._at_once))))
+            size = min(math.ceil(aim_of(self.at_once) / max(self.each, 1e-9)), MAX_BATCH_DESIGNS)
+            size = max(1, min(size, -(-len(self._left) // (2 * self.at_once))))
         taken = [self._left.pop() for _ in range(min(size, len(self._left)))]
         rows = tuple(tuple(float(x) for x in self._values[i]) for i in taken)
         return Batch(tuple(taken), rows)

@@ -16,10 +16,12 @@ from typing import Any
 from distributed import CancelledError, Client, Future
 
 from pinstress.explore.sweep import versions as asking
+from pinstress.explore.sweep.connection import Connection
 from pinstress.study.reading.errors import InputError
 
 SCHEDULER_TIMEOUT = 10.0  # s within which a scheduler must answer
-WORKER_TIMEOUT = 20.0  # s within which it must have a worker that works
+# s within which it must have a worker that works, also where it starts one when there is work
+WORKER_TIMEOUT = 30.0
 CHECK_INTERVAL = 3.0  # s between two looks at it
 WORKER_POLL_INTERVAL = 0.2  # s between two looks before there is a worker
 IGNORED_WARNINGS = "Mismatched versions|Sending large graph"  # what dask warns of
@@ -40,28 +42,41 @@ class Cluster:
     def __init__(
         self,
         client: Client,
-        address: str,
+        connection: Connection,
         packages: Sequence[str],
         tell: Callable[[str], None],
     ) -> None:
-        self.client, self.address = client, address
+        self.client, self.connection = client, connection
         self._packages, self._expected = packages, asking.versions(packages)
         self._tell = tell
         self._same, self._paused, self._told = set[str](), set[str](), set[str]()
-        self._looked, self._able = 0.0, time.monotonic()
+        self._looked = self._able = 0.0
         self.workers = 0
-        while not self.workers:
-            self.look(now=True)
-            time.sleep(0.0 if self.workers else WORKER_POLL_INTERVAL)
+        self.wait_for_worker()
 
-    def look(self, now: bool = False) -> None:
-        """Check the scheduler and its workers, at most every CHECK_INTERVAL s.
+    def wait_for_worker(self) -> None:
+        """Wait until a worker is able to work.
+
+        A task waits, too: without one an adaptive cluster starts no worker.
+
+        Raises: InputError, as `look`.
+        """
+        self._able, self.workers = time.monotonic(), 0
+        request: Future[None] | None = None
+        while not self.look(now=True):
+            if request is None:
+                request = self.client.submit(eval, "None", pure=False)
+            time.sleep(WORKER_POLL_INTERVAL)
+
+    def look(self, now: bool = False) -> int:
+        """Check the scheduler and its workers, at most every CHECK_INTERVAL s; return the number of
+        workers that can work, or could last.
 
         Raises: InputError where it does not answer, no worker has worked for WORKER_TIMEOUT s, or
         one has other versions.
         """
         if not now and time.monotonic() - self._looked < CHECK_INTERVAL:
-            return
+            return self.workers
         workers = self._identities()
         self._looked = time.monotonic()
         self._ask([address for address in workers if address not in self._same])
@@ -73,6 +88,7 @@ class Cluster:
             raise self._unable(len(workers))
         able = [address for address in self._same if workers[address]["status"] == "running"]
         self.workers = len(able) or self.workers
+        return self.workers
 
     def rows(self, future: Future[Any]) -> Any:
         """Return the result of a batch that is done; None where it was lost with its worker."""
@@ -83,8 +99,15 @@ class Cluster:
                 self._tell_once("a worker that has solved designs does not answer; still waiting")
         except (CancelledError, OSError):
             if self.client.status != "running":
-                raise lost_connection(self.address) from None
+                raise self.lost() from None
         return None
+
+    def lost(self) -> InputError:
+        """Return the error that the scheduler has ended, or cannot be reached."""
+        return InputError(
+            f"--scheduler: the connection to the scheduler at {self.connection.address} is lost",
+            code="no-scheduler",
+        )
 
     def require_same(self, answers: Mapping[str, Mapping[str, str] | BaseException]) -> None:
         """Check the versions of workers.
@@ -115,14 +138,14 @@ class Cluster:
             )
         except TimeoutError:
             if self.client.status != "running":  # it tries to connect again
-                raise lost_connection(self.address) from None
+                raise self.lost() from None
             raise InputError(
-                f"--scheduler: the scheduler at {self.address} has not answered for "
+                f"--scheduler: the scheduler at {self.connection.address} has not answered for "
                 f"{SCHEDULER_TIMEOUT:g} s",
                 code="no-scheduler",
             ) from None
         except (OSError, CancelledError, RuntimeError):
-            raise lost_connection(self.address) from None
+            raise self.lost() from None
         return dict(said["workers"])
 
     def _ask(self, new: Sequence[str]) -> None:
@@ -169,15 +192,16 @@ class Cluster:
         """
         what, code = f"has no worker that answers, for {WORKER_TIMEOUT:g} s", "no-worker"
         if not count:
-            what = f"has had no worker for {WORKER_TIMEOUT:g} s; start one with: dask worker "
-            what += f"{self.address} --nthreads 1"
+            what = f"has had no worker for {WORKER_TIMEOUT:g} s; start one with: "
+            what += self.connection.worker_command
         elif self._paused:
             code = "workers-paused"
             what = "has only workers that are paused, since their memory is nearly full, and none "
             what += (
                 f"has worked for {WORKER_TIMEOUT:g} s; give them more (dask worker --memory-limit)"
             )
-        return InputError(f"--scheduler: the scheduler at {self.address} {what}", code=code)
+        where = self.connection.address
+        return InputError(f"--scheduler: the scheduler at {where} {what}", code=code)
 
 
 def _works(worker: Mapping[str, Any]) -> bool:
@@ -186,26 +210,28 @@ def _works(worker: Mapping[str, Any]) -> bool:
 
 @contextmanager
 def connected(
-    address: str, packages: Sequence[str], tell: Callable[[str], None]
+    connection: Connection, packages: Sequence[str], tell: Callable[[str], None]
 ) -> Iterator[Cluster]:
     """Connect to the user's cluster, and check its workers.
 
-    Raises: InputError where nothing answers, or there is no worker, or one has other versions.
+    packages, tell: as of Cluster.
+
+    Raises: InputError where nothing answers, keys are refused, there is no worker, or one has other
+    versions.
     """
+    connection.require_answer(SCHEDULER_TIMEOUT)
     with _silent():
         try:
             client = _Closed(  # type: ignore[no-untyped-call]  # as all of dask
-                address, timeout=SCHEDULER_TIMEOUT, set_as_default=False
+                connection.address,
+                timeout=SCHEDULER_TIMEOUT,
+                set_as_default=False,
+                security=connection.security,
             )
-        except Exception as error:  # whatever dask raises for an address or what answers there
-            raise InputError(
-                f"--scheduler: no scheduler of dask answers at {address} within "
-                f"{SCHEDULER_TIMEOUT:g} s "
-                f"({short(error)}); start one with: dask scheduler --host 127.0.0.1",
-                code="no-scheduler",
-            ) from None
+        except Exception as error:  # whatever dask raises for what answers there
+            raise connection.no_scheduler(short(error)) from None
         try:
-            yield Cluster(client, address, packages, tell)
+            yield Cluster(client, connection, packages, tell)
         finally:
             with suppress(TimeoutError, OSError):
                 client.close(timeout=1.0)  # type: ignore[no-untyped-call]
@@ -216,13 +242,6 @@ class _Closed(Client):
 
     def __del__(self) -> None:
         pass
-
-
-def lost_connection(address: str) -> InputError:
-    """Return the error that the scheduler has ended, or cannot be reached."""
-    return InputError(
-        f"--scheduler: the connection to the scheduler at {address} is lost", code="no-scheduler"
-    )
 
 
 def other_versions(lines: Sequence[str]) -> InputError:

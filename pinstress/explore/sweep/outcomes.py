@@ -13,7 +13,7 @@ from assess.judgement import DEPENDS, against_yield
 from fea.core.peak import Maximum
 from fea.support.support import Solution
 from pinbase.records import in_units
-from pinstress.analysis.gather.gather import landing_range
+from pinstress.analysis.gather.gather_landing import landing_range
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from pinstress.study.schema.units import UnitSystem

@@ -10,29 +10,29 @@ import hashlib
 import pickle
 import time
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 from distributed import Future, KilledWorker, get_worker
 
 from loads import FileError, read_regular, sent_files
+from pinbase.processes.pool import Job, Tell, in_parallel
 from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
-from pinstress.explore.sweep.cluster import (
-    Cluster,
-    connected,
-    lost_connection,
-    other_versions,
-    short,
-)
+from pinstress.explore.sweep.cluster import Cluster, connected, other_versions, short
+from pinstress.explore.sweep.connection import Connection
 from pinstress.explore.sweep.versions import versions
 from pinstress.explore.sweep.workers import BatchQueue
 from pinstress.study.model.imported_pin import MAX_BODY_SIZE
 from pinstress.study.reading.errors import InputError
 
-BATCHES_PER_WORKER = 2  # batches for each worker: one that is solved and one that waits
+# Batches for each worker, one that is solved and others that wait: of about 2 s each
+# (batches.TARGET_BATCH_SECONDS), so that an adaptive cluster, which starts workers while each would
+# have more than 5 s of work (adaptive.target-duration of dask), grows while there are batches.
+BATCHES_PER_WORKER = 4
 WAITING_STATES = "pending", "lost"  # states of a batch that is solved, or must be once more
 BATCH_POLL_INTERVAL = 0.05  # s between two looks at which batches are done
 NUMERIC_PACKAGES = (*(name for name in REQUIRED_PACKAGES if name != "pinstress"), "distributed")
@@ -57,54 +57,74 @@ class WorkerAnswer:
 _contents: dict[str, Contents] = {}  # in a worker: of the study that is solved, by their hash
 
 
-def solve_on(
-    address: str,
-    problem: DesignProblem,
-    files: tuple[Path, ...],
-    work_of: Callable[[int], BatchQueue],
-    tell: Callable[[str], None],
-) -> None:
-    """Solve batches on the cluster whose scheduler has an address.
+def cluster_at(
+    connection: Connection, tell: Callable[[str], None]
+) -> AbstractContextManager[Cluster]:
+    """Connect to a cluster whose workers can solve designs.
 
-    files: those that the study names.
-    work_of: returns the work for a number of workers.
     tell: called with warnings.
 
-    Raises: InputError where there is no scheduler, no worker, or one with other versions, also
-    later; batches kept by then stay.
+    Raises: InputError where there is no scheduler, no worker, or one with other versions.
     """
-    contents = _read(files)
-    problem = replace(problem, files=_hash(contents))
-    with connected(address, NUMERIC_PACKAGES, tell) as cluster:
-        running: dict[Future[WorkerAnswer], Batch] = {}
-        work = work_of(cluster.workers)
+    return connected(connection, NUMERIC_PACKAGES, tell)
 
-        def start(batch: Batch, given: Contents | None) -> None:
-            sent = {"sent": pickle.dumps((solve_there, problem, given, batch))}
-            running[cluster.client.submit(eval, BATCH_EXPRESSION, sent, pure=False)] = batch
 
-        while True:
-            while (
-                len(running) < BATCHES_PER_WORKER * cluster.workers
-                and (new := work.take()) is not None
-            ):
-                start(new, None)
-            if not running:
-                return
-            time.sleep(BATCH_POLL_INTERVAL)
-            cluster.look()
-            for future in [one for one in running if one.status not in WAITING_STATES]:
-                outcome = _outcome(cluster, future)
-                if outcome is None:
-                    continue  # its worker has gone with it: it is solved again
-                batch = running.pop(future)
-                if isinstance(outcome, KilledWorker):
-                    work.died(batch)
-                elif outcome.done is None:
-                    start(batch, contents)
-                else:
-                    cluster.require_same({outcome.worker: outcome.versions})
-                    work.done(outcome.done)
+def solve_on(
+    cluster: Cluster, problem: DesignProblem, files: tuple[Path, ...], work: BatchQueue
+) -> None:
+    """Solve batches on a cluster.
+
+    files: those that the study names.
+
+    Raises: InputError where the scheduler or all workers are lost, or a worker that has come has
+    other versions; batches kept by then stay.
+    """
+    contents = contents_of(files)
+    problem = replace(problem, files=hash_of(contents))
+    running: dict[Future[WorkerAnswer], Batch] = {}
+
+    def start(batch: Batch, given: Contents | None) -> None:
+        sent = {"sent": pickle.dumps((solve_there, problem, given, batch))}
+        running[cluster.client.submit(eval, BATCH_EXPRESSION, sent, pure=False)] = batch
+
+    cluster.wait_for_worker()
+    while True:
+        work.spread_over(cluster.workers)
+        while (
+            len(running) < BATCHES_PER_WORKER * cluster.workers and (new := work.take()) is not None
+        ):
+            start(new, None)
+        if not running:
+            return
+        time.sleep(BATCH_POLL_INTERVAL)
+        cluster.look()
+        for future in [one for one in running if one.status not in WAITING_STATES]:
+            outcome = _outcome(cluster, future)
+            if outcome is None:
+                continue  # its worker has gone with it: it is solved again
+            batch = running.pop(future)
+            if isinstance(outcome, KilledWorker):
+                work.died(batch)
+            elif outcome.done is None:
+                start(batch, contents)
+            else:
+                cluster.require_same({outcome.worker: outcome.versions})
+                work.done(outcome.done)
+
+
+def require_cluster(connection: Connection) -> None:
+    """Check in another process that a cluster can solve designs.
+
+    This one then still has no thread of Dask's, beside which it could not fork.
+
+    Raises: InputError, as `cluster_at`.
+    """
+    in_parallel([Job("the cluster", partial(_connect, connection))], 2)
+
+
+def _connect(connection: Connection, _: Tell) -> None:
+    with cluster_at(connection, lambda _: None):
+        pass
 
 
 def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch) -> WorkerAnswer:
@@ -114,7 +134,7 @@ def solve_there(problem: DesignProblem, contents: Contents | None, batch: Batch)
     if contents is not None:
         _contents.clear()
         _contents[problem.files] = contents
-    known = _contents.get(problem.files) if problem.files != _hash(()) else ()
+    known = _contents.get(problem.files) if problem.files != hash_of(()) else ()
     done = None
     if known is not None:
         with sent_files(dict(known)):
@@ -127,7 +147,11 @@ def _versions_here() -> dict[str, str]:
     return versions(NUMERIC_PACKAGES)
 
 
-def _read(files: tuple[Path, ...]) -> Contents:
+def contents_of(files: tuple[Path, ...]) -> Contents:
+    """Return the contents of files.
+
+    Raises: InputError where one cannot be read.
+    """
     try:
         return tuple((str(path), read_regular(path, MAX_BODY_SIZE)) for path in files)
     except (OSError, FileError) as error:
@@ -136,7 +160,8 @@ def _read(files: tuple[Path, ...]) -> Contents:
         ) from None
 
 
-def _hash(contents: Contents) -> str:
+def hash_of(contents: Contents) -> str:
+    """Return a hash of paths and contents of files."""
     return hashlib.sha256(
         repr([(path, hashlib.sha256(content).hexdigest()) for path, content in contents]).encode()
     ).hexdigest()
@@ -151,7 +176,7 @@ def _outcome(cluster: Cluster, future: Future[WorkerAnswer]) -> WorkerAnswer | K
         answer: WorkerAnswer | None = cluster.rows(future)
         return answer
     if future.status != "error":  # cancelled: the scheduler has ended
-        raise lost_connection(cluster.address)
+        raise cluster.lost()
     error: Any = future.exception(timeout=cluster.patience)
     if isinstance(error, KilledWorker):
         return error

@@ -6,10 +6,12 @@ import logging
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from pinbase.processes.pool import cores
 from pinstress.explore.sweep.batches import Batches, DesignProblem, SolvedBatch, evaluator_of
+from pinstress.explore.sweep.connection import Connection, connection_to
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.parameters import Parameter, parameters_of
@@ -18,7 +20,6 @@ from pinstress.explore.sweep.sample import designs_of
 from pinstress.explore.sweep.table import assembled, table_of
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
 from pinstress.study.reading.choices import require_count
-from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file import Study
 
 if TYPE_CHECKING:
@@ -96,22 +97,20 @@ def solved(
     sweep: Sweep,
     store: Store,
     jobs: int | None = None,
-    scheduler: str | None = None,
+    connection: Connection | None = None,
     report: Report = lambda _, __: None,
     tell: Callable[[str], None] = log.warning,
 ) -> pa.Table:
     """Return the table of all designs; those in the store are not solved again.
 
     jobs: processes on this machine, by default as many as there are cores.
-    scheduler: address of a Dask cluster instead.
+    connection: to a Dask cluster that solves them instead.
     report: called with the number of designs that are solved, and of all.
     tell: called with warnings about a cluster.
 
     Raises: InputError.
     """
     require_count("jobs", jobs)
-    if scheduler is not None:
-        require_package("distributed", "--scheduler")
     done = set[int]()
     if store.count:
         schema = table_of(sweep.study, sweep.parameters, []).schema
@@ -138,12 +137,12 @@ def solved(
         return BatchQueue(batches(at_once), keep, partial(failed_rows, evaluator.table))
 
     most = min(jobs or cores(), total - count)
-    if scheduler is not None and count < total:
-        from pinstress.explore.sweep.scheduler import (
-            solve_on,  # dask, which takes a second to import
-        )
+    if connection is not None and count < total:
+        # dask takes a second to import
+        from pinstress.explore.sweep.scheduler import cluster_at, solve_on
 
-        solve_on(scheduler, sweep.problem, evaluator.files, work, tell)
+        with cluster_at(connection, tell) as cluster:
+            solve_on(cluster, sweep.problem, evaluator.files, work(cluster.workers))
     elif most > 1:
         solve_side_by_side(sweep.problem, work(most), most, lambda: report(count, total))
     else:
@@ -158,15 +157,20 @@ def sweep(
     cases: Iterable[str] | None = None,
     jobs: int | None = 1,
     scheduler: str | None = None,
+    tls: Path | str | None = None,
+    insecure: bool = False,
 ) -> pa.Table:
     """Solve the designs of a study's [vary]; return a table with a row for each design, pin and
     case, as in designs.parquet (docs/sweep.md).
 
     pins, cases: names; all by default.
     jobs: number of processes (None: number of cores).
-    scheduler: address of a Dask scheduler instead.
+    scheduler: address of a Dask scheduler instead, whose workers solve them.
+    tls: folder of the keys of that cluster, which `pinstress cluster-keys` writes.
+    insecure: whether a scheduler beyond this machine may be without keys.
 
     Raises: InputError for bad input. A design that fails is a row with its reason.
     """
+    connection = connection_to(scheduler, tls, insecure, None if jobs == 1 else jobs)
     names = [None if x is None else list(x) for x in (pins, cases)]
-    return solved(planned(study, *names), MemoryStore(), jobs, scheduler)
+    return solved(planned(study, *names), MemoryStore(), jobs, connection)

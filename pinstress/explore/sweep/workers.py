@@ -35,6 +35,10 @@ class BatchQueue:
         self._alone: set[tuple[int, ...]] = set()
         self._in_work = 0
 
+    def spread_over(self, workers: int) -> None:
+        """Size further batches for a number of workers."""
+        self._batches.at_once = workers
+
     def take(self) -> Batch | None:
         """Return the next batch to be solved; None while there is none, or one that must be solved
         alone.

@@ -19,9 +19,8 @@ Acting = tuple[Reactions, Floats]  # with the accelerations (T, J, 2) m/s^2 of t
 
 def acting(dynamics: Dynamics) -> Acting:
     """Return the reactions of a mechanism, and the accelerations of its joints in their order."""
-    motion = dynamics.motion
-    joints = [motion.joint(joint.name)[2] for joint in motion.linkage.joints]
-    return dynamics.reactions, np.stack(joints, axis=1)
+    accelerations = [acceleration for _, _, acceleration in dynamics.motion.joints()]
+    return dynamics.reactions, np.stack(accelerations, axis=1)
 
 
 class MovingLoads:

@@ -7,7 +7,12 @@ from importlib.util import find_spec
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-EXTRAS = {"distributed": "cluster", "pylife": "fatigue", "typst": "pdf"}  # by their package
+EXTRAS = {  # by their package
+    "cryptography": "cluster",
+    "distributed": "cluster",
+    "pylife": "fatigue",
+    "typst": "pdf",
+}
 MISSING = "missing-extra"
 
 

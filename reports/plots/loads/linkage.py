@@ -6,17 +6,19 @@ from itertools import chain
 
 import numpy as np
 
+from geometry.shape.chords import needed
 from reports.data.results import Floats, LinkageMotion, PitchCurve, Units
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.file_names import plot_name
 from reports.format.numbers import short
-from reports.plots.spec import Plot, Spec, clipped, headed, rows
+from reports.plots.spec import MAX_CURVE_POINTS, Plot, Spec, clipped, headed, rows
 
 PITCH_CIRCLE_SIDES = 72  # sides of a pitch circle
 INTERMEDIATE_POSITIONS = 5  # positions between the first and the last
 DIAGRAM_WIDTH, MIN_DIAGRAM_HEIGHT, MAX_DIAGRAM_HEIGHT = 560.0, 160.0, 560.0
 DIAGRAM_MARGIN = 0.06  # of the size, around the linkage
 LABEL_LETTER_WIDTH, LABEL_LINE_HEIGHT, LABEL_GAP = 7.0, 13.0, 7.0
+PATH_TOLERANCE = 1e-4  # of the linkage's size: a twentieth of a pixel
 POSITION_TOLERANCE = 1e-6  # of the linkage's size: positions nearer than this are drawn once
 
 
@@ -40,7 +42,7 @@ def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
         "encoding": {name: frame.axis(k, units) for k, name in enumerate("xy")},
         "layer": [
             *_lines(between, "faint", None),
-            *_lines(_paths(motion) if moving else [], "level", None),
+            *_lines(_paths(motion, frame.size) if moving else [], "level", None),
             *_lines(links, "", list(key.values())),
             *_joints(motion, instants),
             *_names(motion, instants, frame),
@@ -133,12 +135,21 @@ def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
     return [centre, *(centre + turned)]
 
 
-def _paths(motion: LinkageMotion) -> list[Spec]:
+def _paths(motion: LinkageMotion, size: float) -> list[Spec]:
+    """Return the paths of the moving joints, point by point; size: of the linkage."""
     return [
         {"x": float(x), "y": float(y), "of": name, "key": "path"}
         for j, name in enumerate(motion.joints) if name not in motion.ground
-        for x, y in motion.joint_position[:, j]
+        for x, y in _path(motion.joint_position[:, j], PATH_TOLERANCE * size)
     ]  # fmt: skip
+
+
+def _path(points: Floats, tolerance: float) -> Floats:
+    """Return the points (N, 2) of a path that are drawn, of many those that its shape needs."""
+    if len(points) <= MAX_CURVE_POINTS:
+        return points
+    allowed, free = np.full(points.shape, tolerance), np.zeros(len(points), dtype=bool)
+    return points[needed(np.arange(len(points), dtype=float), points, allowed, free)]
 
 
 def _lines(data: list[Spec], style: str, key: list[str] | None) -> list[Spec]:

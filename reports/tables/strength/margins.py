@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin
 from assess.strength.bending_arms import BendingArms
 from reports.data.governing import governing, skipped
-from reports.data.results import Results, Units
+from reports.data.results import PinResult, Results, Units
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
@@ -134,11 +134,12 @@ def worst_table(results: Results) -> Table[MarginRow]:
     return replace(table, columns=[replace(c, drop_if_empty=False) for c in table.columns])
 
 
-def pin_margins(results: Results, pin: str, case: str) -> Table[MarginRow]:
-    """Return all checks that were made of a pin in a case, the worst first, comparisons last."""
-    made_checks = [m for m in results.margins if (m.pin, m.case) == (pin, case) and m.used >= 0.0]
-    order = sorted(made_checks, key=lambda m: (not m.margin.governs, -m.used))
-    return _shown(order, results, without=("pin", "case"))
+def pin_margins(results: Results, pin: PinResult) -> Table[MarginRow]:
+    """Return all checks that were made of a row, the worst first, comparisons last."""
+    margins = [margin for margin in pin.worst if margin.used >= 0.0]
+    margins.sort(key=lambda margin: (not margin.governs, -margin.used))
+    rows = (PinMargin(pin.pin, pin.case, margin) for margin in margins)
+    return _shown(rows, results, without=("pin", "case"))
 
 
 def not_made_words(results: Results) -> list[str]:

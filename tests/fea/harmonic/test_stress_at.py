@@ -7,6 +7,7 @@ import numpy as np
 from fea.core.pin_loads import LoadAmounts, UnitLoad
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.stress_at import stress_at
+from fea.harmonic.superposition import Circumference
 
 
 def test_loads_of_harmonics_in_any_order_are_superposed() -> None:
@@ -30,3 +31,20 @@ def test_loads_of_harmonics_in_any_order_are_superposed() -> None:
                     varies = np.array([c, c, c, s, c, s])  # rr, tt, zz, tz, rz, rt
                     total += acting[load][instant, phase] * varies * stress[row, :, k]
             assert np.abs(at[j, t] - total).max() < 1e-12
+
+
+def test_without_loads_there_is_no_stress() -> None:
+    fields = MeridianFields(
+        np.zeros((2, 2)),
+        (UnitLoad("s", "pressure", 1),),
+        np.ones((2, 6, 1)),
+        np.zeros((0, 3, 1)),
+        2,
+        0,
+    )
+    loads = LoadAmounts("c", {}, 3)
+    rows, angles = np.array([1, 0]), np.array([0.0, 1.0])
+    assert np.array_equal(stress_at(fields, loads)(rows, angles, np.arange(3)), np.zeros((2, 3, 6)))
+    around = Circumference(fields, loads)
+    assert np.array_equal(around.stress(rows, 1, angles), np.zeros((2, 2, 6)))
+    assert np.array_equal(around.envelope(rows, angles), np.zeros((2, 2)))

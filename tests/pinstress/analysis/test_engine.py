@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 import pinstress
+from fea.solve import solve as solving
 from fea.solve.solve import solve as solve_problem
 from fea.support.support import PinProblem
 from pinbase.memo import Memo
-from pinstress.analysis import solve as solving
 from pinstress.analysis.engine import Engine
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study, study_from

@@ -142,7 +142,7 @@ def test_schema_is_json_and_knows_every_table() -> None:
 def test_every_command_is_listed_once_in_a_section(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line(["--help"]) == 0
     said = capsys.readouterr().out
-    listed = re.findall(r"^  (\w+) {2,}\S", said.partition("Studies:")[2], re.M)
+    listed = re.findall(r"^  ([\w-]+) {2,}\S", said.partition("Studies:")[2], re.M)
     assert sorted(listed) == sorted(commands.commands)
     assert said.index("Analysis:") < said.index("  run ") < said.index("Earlier runs:")
 

@@ -257,7 +257,7 @@ def test_an_interrupt_that_is_dropped_comes_back(
         return solve(*arguments)
 
     (tmp_path / "study.toml").write_text(QUICK)
-    monkeypatch.setattr("pinstress.analysis.solve.solve", dropping)
+    monkeypatch.setattr("fea.solve.solve.solve", dropping)
     monkeypatch.chdir(tmp_path)
     with signals_heard():
         assert run_command_line([*RUN, "--jobs", "1"]) == 130

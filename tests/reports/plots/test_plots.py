@@ -17,6 +17,7 @@ from reports.data.results import Floats, Results
 from reports.plots import spec as parts
 from reports.plots.all import all_plots
 from reports.plots.draw import draw
+from reports.plots.loads import linkage
 from reports.plots.loads.reactions import along, bars, reaction_plot
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, still
 from reports.plots.stress.refinement import pin_refinement_plot
@@ -231,3 +232,46 @@ def test_odd_names_and_zero_forces_are_drawn(results: Results, tmp_path: Path) -
     paths = draw(found.values(), tmp_path)
     assert len(paths) == 4
     assert all(path.parent == tmp_path and path.exists() for path in paths)
+
+
+def test_many_points_are_drawn_where_curves_bend() -> None:
+    """Straight lines between the points drawn pass all others, also of a curve that goes back and
+    forth, jumps, or has gaps.
+    """
+    t = np.linspace(0.0, 1.0, 20_001)
+    exact = {
+        "x": np.sin(12.0 * t),
+        "time, s": t,
+        "wave, y": 10.0 * np.sin(40.0 * t) * np.exp(-3.0 * t),
+        "jump, y": np.where(t < 0.3, 1.0, 2.0),
+        "gap, y": np.where((t > 0.5) & (t < 0.6), np.nan, t**2),
+        "condition, c": 10.0 ** (2.0 + np.sin(9.0 * t)),
+    }
+    panels = [
+        Panel("s", {"time": t}),
+        Panel("y", {key: exact[f"{key}, y"] for key in ("wave", "jump", "gap")}),
+        Panel("c", {"condition": exact["condition, c"]}, scale={"type": "log"}),
+    ]
+    drawn = columns(curves("t", Abscissa("x", exact["x"]), panels))
+    at = np.rint(drawn["time, s"] * 20_000).astype(int)
+    assert len(at) < 1500
+    for heading, values in exact.items():
+        some = drawn[heading]
+        if heading == "condition, c":
+            some, values = np.log10(some), np.log10(values)
+        between = np.interp(np.arange(20_001), at, some)
+        assert np.array_equal(np.isnan(between), np.isnan(values))
+        assert np.nanmax(np.abs(between - values)) < 6e-4 * (18.0 if heading[-1] == "y" else 2.0)
+
+
+def test_a_path_of_many_instants_keeps_its_shape() -> None:
+    """A joint that runs five times round a circle, and stops."""
+    turn = 10.0 * np.pi * np.minimum(np.linspace(0.0, 1.5, 20_001), 1.0)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
+    path = linkage._path(circle, 2e-4)
+    assert len(path) < 1500
+    assert np.array_equal(path[[0, -1]], circle[[0, -1]])
+    middle = 0.5 * (path[1:] + path[:-1])
+    assert np.abs(np.linalg.norm(middle, axis=1) - 1.0).max() < 6e-4
+    few = circle[::20]
+    assert linkage._path(few, 2e-4) is few

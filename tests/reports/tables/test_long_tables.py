@@ -64,7 +64,7 @@ def test_cells_that_are_no_numbers(tmp_path: Path) -> None:
     rows: list[list[Cell]] = [["a", 1.5, None, True], ["=b", float("nan"), None, False]]
     write_csv(tmp_path / "t.csv", ("n", "x", "y", "ok"), rows)
     assert (tmp_path / "t.csv").read_text() == "n,x,y,ok\na,1.5,,yes\n'=b,,,no\n"
-    write_parquet(tmp_path / "t.parquet", ("n", "x", "y", "ok"), rows)
+    write_parquet(tmp_path / "t.parquet", ("n", "x", "y", "ok"), [[*zip(*rows, strict=True)]])
     assert parquet.read_table(tmp_path / "t.parquet").to_pylist() == [
         {"n": "a", "x": 1.5, "y": None, "ok": True},
         {"n": "=b", "x": None, "y": None, "ok": False},

@@ -1,9 +1,10 @@
-"""A scheduler of dask and workers in processes of their own, as a user starts them."""
+"""A scheduler of dask and workers in processes of their own, as a user starts them, encrypted."""
 
 from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 import sys
 import time
@@ -12,6 +13,8 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from pinstress.explore.sweep.connection import NO_PAGES, Connection, connection_to
+from pinstress.explore.sweep.keys import KeyFiles, write_keys
 from tests.conftest import ROOT
 from tests.support.programs.process_group import started
 
@@ -31,12 +34,26 @@ def wait_for(condition: Callable[[], object], *running: subprocess.Popen[str]) -
 
 @dataclass(frozen=True)
 class DaskCluster:
-    """folder: where its programs begin. address: of the scheduler."""
+    """folder: where its programs begin. address: of the scheduler. keys: None without TLS."""
 
     folder: Path
     address: str
     scheduler: subprocess.Popen[str]
     stack: ExitStack
+    keys: KeyFiles | None
+
+    @property
+    def options(self) -> list[str]:
+        """Those by which pinstress uses it."""
+        keys = [] if self.keys is None else ["--tls", str(self.keys.folder)]
+        return ["--scheduler", self.address, *keys]
+
+    @property
+    def connection(self) -> Connection:
+        """As these options say."""
+        connection = connection_to(self.address, self.keys.folder if self.keys else None)
+        assert connection is not None
+        return connection
 
     def worker(
         self, folder: Path | None = None, *options: str, source: Path = ROOT, **variables: str
@@ -47,29 +64,52 @@ class DaskCluster:
         at = folder or self.folder
         scratch, env = self.folder / "scratch", _environment(source) | variables
         command = [
-            *_dask("worker", self.address), "--nthreads", "1", "--no-nanny",
+            *_dask(self.keys, "worker", self.address), "--nthreads", "1", "--no-nanny",
             "--local-directory", str(scratch), *options,
         ]  # fmt: skip
         return self.stack.enter_context(started(command, cwd=at, env=env, **QUIET))
 
+    def wait_until(self, condition: str) -> None:
+        """Wait in another process until a condition holds: what dask leaves disturbs other tests.
+
+        condition: an expression of Python, of a `client` and the `workers` that it is told of.
+        """
+        asked = (
+            "import sys, time\nfrom distributed import Client\n"
+            "from pinstress.explore.sweep.connection import connection_to\n"
+            "security = connection_to(sys.argv[1], *sys.argv[2:]).security\n"
+            "client = Client(sys.argv[1], security=security)\n"
+            "while True:\n"
+            "    workers = client.scheduler_info(n_workers=-1)['workers']\n"
+            f"    if {condition}: break\n"
+            "    time.sleep(0.2)\n"
+        )
+        keys = [] if self.keys is None else [str(self.keys.folder)]
+        command = [sys.executable, "-c", asked, self.address, *keys]
+        subprocess.run(command, check=True, timeout=LIMIT)
+
 
 @contextmanager
-def dask_cluster(folder: Path) -> Iterator[DaskCluster]:
-    """A scheduler, which ends with the block, and its workers too."""
+def dask_cluster(folder: Path, encrypted: bool = True) -> Iterator[DaskCluster]:
+    """A scheduler, which ends with the block, and its workers too; with keys of its own."""
     folder.mkdir(exist_ok=True)
     file = folder / "scheduler.json"
     file.unlink(missing_ok=True)
-    command = [*_dask("scheduler", "--port", "0"), "--scheduler-file", str(file)]
+    keys = write_keys(folder / "keys") if encrypted else None
+    protocol = ["--protocol", "tls"] if encrypted else []
+    command = [*_dask(keys, "scheduler", "--port", "0", *protocol), "--scheduler-file", str(file)]
     with ExitStack() as stack:
         scheduler = stack.enter_context(
             started(command, cwd=folder, env=_environment(ROOT), **QUIET)
         )
         wait_for(lambda: file.exists() and file.read_text().endswith("}"), scheduler)
-        yield DaskCluster(folder, json.loads(file.read_text())["address"], scheduler, stack)
+        yield DaskCluster(folder, json.loads(file.read_text())["address"], scheduler, stack, keys)
 
 
-def _dask(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "dask", *arguments, "--host", "127.0.0.1", "--no-dashboard"]
+def _dask(keys: KeyFiles | None, *arguments: str) -> list[str]:
+    options = [] if keys is None else shlex.split(keys.dask_options)
+    return [sys.executable, "-m", "dask", *arguments, *options, "--host", "127.0.0.1",
+            *NO_PAGES.split()]  # fmt: skip
 
 
 def _environment(source: Path) -> dict[str, str]:

@@ -16,13 +16,13 @@ import meshio
 import pytest
 
 from fea.core.peak import Maximum, Refinement
+from fea.solve import solve as solving
 from fea.solve.solve import solve as solve_problem
 from fea.support.support import PinProblem
 from geometry import Pin, Segment
 from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 from pinstress import load_study
 from pinstress.analysis import cache as cache_module
-from pinstress.analysis import solve as solving
 from pinstress.analysis.cache import Cache, user_cache
 from pinstress.analysis.plan import prepare
 from pinstress.analysis.stored import Entry, cache_key, independent_of_memory

@@ -28,6 +28,7 @@ from pinstress.explore.sweep.batches import (
     aim_of,
     solve_batch,
 )
+from pinstress.explore.sweep.connection import connection_to
 from pinstress.explore.sweep.number import number_at
 from pinstress.explore.sweep.parameters import parameters_of
 from pinstress.explore.sweep.parts import BatchFolder, Identity, identity, is_ours
@@ -255,10 +256,11 @@ def test_a_scheduler_that_does_not_answer_is_named(monkeypatch: pytest.MonkeyPat
     import pinstress.explore.sweep.cluster as module
 
     monkeypatch.setattr(module, "SCHEDULER_TIMEOUT", 0.5)
-    for address in ("tcp://127.0.0.1:1", "nonsense://"):
-        with pytest.raises(InputError, match="no scheduler of dask answers at") as raised:
-            module.connected(address, (), print).__enter__()
-        assert raised.value.code == "no-scheduler"
+    connection = connection_to("tcp://127.0.0.1:1")
+    assert connection is not None
+    with pytest.raises(InputError, match="no scheduler of dask answers at") as raised:
+        module.connected(connection, (), print).__enter__()
+    assert raised.value.code == "no-scheduler"
 
 
 def test_a_batch_whose_process_died_is_halved_and_its_last_design_solved_alone() -> None:

@@ -255,10 +255,10 @@ def test_nothing_is_left_of_a_sweep_that_solved_nothing(
 
     monkeypatch.setattr(module, "SCHEDULER_TIMEOUT", 0.5)
     _study(tmp_path, LOADS, 2)
-    nowhere = "sweep", "study.toml", "--out", "out", "--scheduler", "nonsense"
+    nowhere = "sweep", "study.toml", "--out", "out", "--scheduler", "127.0.0.1:1"
     made = run_here(*nowhere, cwd=tmp_path)
     assert made.returncode == 2
-    assert "no scheduler of dask answers at nonsense" in made.stderr
+    assert "no scheduler of dask answers at tcp://127.0.0.1:1" in made.stderr
     assert not (tmp_path / "out").exists()
     made = run_here("sweep", "study.toml", "--jobs", "1", "--out", "out", cwd=tmp_path)
     assert made.returncode == 0, made.stderr

@@ -1,0 +1,68 @@
+"""Results of a pin over the ranges of its landing's impulse."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from fea.core.peak import Maximum
+from fea.core.pin_loads import PinLoads
+from fea.section.section_stress import SectionField
+from fea.support.contact.pressure_loads import PressureLoads
+from fea.support.support import Solution
+from geometry import Pin
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.tasks import Task
+from reports.data.results import Floats, LandingRange
+
+
+def landing_range(
+    loads: Mapping[str, CaseLoads], task: Task, solution: Solution
+) -> LandingRange | None:
+    """Return a pin's results over the ranges of its landing's impulse, by superposition."""
+    case, over = solution.peak.case, loads[solution.peak.case].range
+    if over is None or solution.answer is None:
+        return None
+    maxima, strength = _maxima(task, solution, task.ranges[case]), task.material.yield_strength
+    return LandingRange(
+        pin=task.pin.name,
+        case=case,
+        impulse_time=over.times,
+        velocity_change=over.velocities,
+        pulses=over.pulses,
+        force=over.forces,
+        max_von_mises=maxima,
+        safety_factor=None if strength is None else strength / maxima,
+        nominal=over.nominal,
+        nominal_pulse=over.nominal_pulse,
+        verdict=solution.peak.verdict,
+        spread=_spread(solution.peak),
+        error=(solution.peak.error_estimate or 0.0) / (solution.peak.max_von_mises or 1.0),
+    )
+
+
+def _maxima(task: Task, solution: Solution, loads: PinLoads) -> Floats:
+    """Return the larger of the stresses of surface and section, Pa, at each instant of other loads
+    of a case.
+    """
+    acting, clamps = solution.pressed(loads), tuple[str, ...]()
+    if task.lugs:
+        pin = solution.rings
+    else:
+        pin = task.pin if isinstance(task.pin, Pin) else None
+        clamps = tuple(task.pin.surface(name) for name in task.clamps)
+    assert solution.answer is not None
+    surface, places = solution.answer.maxima(acting), solution.peak.places
+    if places is None or places.section is None or pin is None:
+        return surface
+    feels = acting.on_rings if isinstance(acting, PressureLoads) else acting
+    sections = SectionField(pin, task.material, clamps, (feels,))
+    return np.maximum(surface, sections.maxima(feels))
+
+
+def _spread(peak: Maximum) -> tuple[float, float] | None:
+    if peak.interval is None or not peak.max_von_mises:
+        return None
+    low, high = peak.interval
+    return peak.max_von_mises / high, peak.max_von_mises / low if low > 0.0 else np.inf
