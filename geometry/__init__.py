@@ -12,7 +12,7 @@ from geometry.shape.hole import Hole
 from geometry.shape.milled import Flat, Slot
 from geometry.shape.passage import Passage
 from geometry.shape.pin import Band, GeometryError, Pin
-from geometry.shape.pin_like import PinLike
+from geometry.shape.pin_like import PinLike, body_of_revolution
 from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
 from geometry.shape.segment import Segment
 from pinbase.errors import ArgumentError, CodedError
@@ -35,6 +35,7 @@ __all__ = [
     "Segment",
     "Slot",
     "Vertex",
+    "body_of_revolution",
     "meridian",
     "sharp_corners",
     "vertices",

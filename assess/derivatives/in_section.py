@@ -23,7 +23,6 @@ from fea.core.material import Material
 from fea.core.pin_loads import Loads, PinLoads, UnitLoad
 from fea.harmonic.superposition import Crest
 from fea.section.section_stress import AtSection, SectionField, sections_at
-from fea.support.contact.pressure_loads import PressureLoads
 from geometry import GeometryError, Pin
 from geometry.mesh.outline_motion import (
     DIFFERENCE_STEPS,
@@ -177,18 +176,13 @@ class GoverningSection:
     @property
     def tied_times(self) -> tuple[float, ...]:
         """Other times with nearly the same stress."""
-        return crests(self._over_time, self.solved, self.maximum, on_sections)
+        return crests(self._over_time, self.solved, self.maximum, lambda loads: loads.on_rings)
 
     @property
     def _over_time(self) -> SectionField:
         solved = self.solved
-        every = on_sections(solved.history or solved.loads)
+        every = (solved.history or solved.loads).on_rings
         return SectionField(solved.pin, solved.material, solved.clamps, [every])
-
-
-def on_sections(loads: PinLoads) -> PinLoads:
-    """The part of loads that sections carry."""
-    return loads.on_rings if isinstance(loads, PressureLoads) else loads
 
 
 def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> Derivatives:

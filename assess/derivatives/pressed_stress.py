@@ -13,7 +13,7 @@ import numpy as np
 
 from assess.derivatives.derivatives import Adjoint
 from assess.derivatives.governing import rotated
-from assess.derivatives.in_section import GoverningSection, on_sections
+from assess.derivatives.in_section import GoverningSection
 from assess.derivatives.reading_point import Continued
 from assess.derivatives.records import SolvedCase
 from assess.derivatives.ties import competing_places, competing_times
@@ -162,7 +162,7 @@ class OfSections:
 
     def __init__(self, solved: SolvedCase, model: ContactModel, links: PinLoads) -> None:
         self._model, self._links = model, links
-        self._section = GoverningSection(solved, on_sections(solved.loads))
+        self._section = GoverningSection(solved, solved.loads.on_rings)
         self._waves = model.waves(model.pressed(links))
         self.tied_places = self._section.tied_places
         self.tied_times = self._section.tied_times

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import Zone
-from fea.harmonic.evaluate import HarmonicSolution
+from fea.harmonic.section_solution import HarmonicSolution
 from geometry import Pin
 
 

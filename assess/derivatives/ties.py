@@ -8,9 +8,10 @@ import numpy as np
 
 from assess.derivatives.records import SolvedCase
 from fea.core.pin_loads import PinLoads
-from fea.core.solution import StressField
+from fea.core.solution import StressMaxima
 from fea.core.zone import Zone
-from fea.harmonic.evaluate import HarmonicField, high_places
+from fea.harmonic.evaluate import high_places
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference, Crest
 
 
@@ -34,7 +35,7 @@ def competing_times(solved: SolvedCase, maximum: float) -> tuple[float, ...]:
 
 
 def crests(
-    answer: StressField,
+    answer: StressMaxima,
     solved: SolvedCase,
     maximum: float,
     felt: Callable[[PinLoads], PinLoads] = lambda loads: loads,

@@ -5,7 +5,7 @@ surface is searched for local maxima of `a + 0.3 m` over all cases, zero load in
 signed von Mises stress of the tensor in the middle of the range of each component, and a the
 largest von Mises stress of the difference from it, which registers stress that changes its sign or
 its direction. Singular zones are left out; where lugs press on the pin, points have the stress
-given by assess.fatigue.pressed_points. The points of the largest von Mises stress are added.
+given by fea.harmonic.fatigue_points. The points of the largest von Mises stress are added.
 
 One mesh is searched, that of the case with the largest stress; on other cases' meshes the nearest
 node is read.
@@ -20,7 +20,7 @@ import numpy as np
 from scipy.spatial import KDTree
 
 from assess.fatigue.records import CaseHistory, PointHistory
-from assess.fatigue.stress_points import StressPoints, stress_points
+from fea.core.solution import StressPoints
 from fea.core.voigt import von_mises
 from fea.support.support import Solution
 from pinbase.arrays import Floats, Ints
@@ -69,9 +69,9 @@ class _Case:
 def stress_histories(pin: str, solutions: Sequence[Solution]) -> tuple[PointHistory, ...]:
     """The stress histories at the critical points of a pin; none where no case was solved."""
     cases = [
-        _Case(solution, known)
+        _Case(solution, solution.answer.points(solution.loads))
         for solution in solutions
-        if (known := stress_points(solution.answer, solution.loads)) is not None
+        if solution.answer is not None
     ]
     if not cases:
         return ()

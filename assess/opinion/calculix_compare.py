@@ -30,7 +30,8 @@ from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.singular.singularities import singularities_of
-from fea.solid.evaluate import SolidSolution, solid_solution
+from fea.solid.evaluate import solid_solution
+from fea.solid.field import SolidSolution
 from fea.solid.stress_recovery import nodal_stress
 from geometry import PinLike
 from geometry.mesh.solid_mesh import MeshSize

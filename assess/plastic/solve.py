@@ -25,7 +25,7 @@ from fea.core.material import Material
 from fea.core.memory import solid_memory
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from geometry import Pin, PinLike
+from geometry import Pin, PinLike, body_of_revolution
 from geometry.mesh.hexahedra import HexSize, twenty
 from pinbase.arrays import Floats
 
@@ -71,12 +71,13 @@ def limit_load(
     """
     begin, budget = time.perf_counter(), Budget(seconds)
     rule = FlowRule(material)
-    if not isinstance(pin, Pin):
+    profile = body_of_revolution(pin)
+    if profile is None:
         return LimitLoad("none", note=TETRAHEDRA_NOTE)
-    if not pin.stepped:
+    if not profile.stepped:
         return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
     # First the beam, which costs little; the solid only where its error leaves the question open.
-    bounds = of_beam(pin, material, clamps, loads)
+    bounds = of_beam(profile, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
         if carries is not None:
@@ -90,7 +91,7 @@ def limit_load(
                 note=f"the theorems for beams; that decides by more than {HINGE_ERROR:.0%}",
             )
     try:
-        meshes, last, note = _meshes(pin, rule, clamps, loads, (memory, budget))
+        meshes, last, note = _meshes(profile, rule, clamps, loads, (memory, budget))
     except OutOfTimeError:
         spent, note = time.perf_counter() - begin, TIME_LIMIT_NOTE.format(seconds)
         return LimitLoad("none", seconds=spent, note=note, stopped=True)

@@ -17,9 +17,10 @@ from benchmarks.timing import table
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Model, Requirement
-from fea.cut.evaluate import CutField, cut_result, cut_solution
+from fea.cut.evaluate import cut_result, cut_solution
+from fea.cut.field import CutField
 from fea.cut.region import loaded_bands, pieces
-from fea.harmonic.evaluate import SectionProblem
+from fea.harmonic.section_solution import SectionProblem
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 from fea.support.support import Solution

@@ -15,7 +15,7 @@ from assess.opinion.calculix_deck import write_deck
 from benchmarks.random_pins import STEEL
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
-from fea.cut.local_fields import CUT_LOW_STRESS_POWER, LOCAL_MESH_RATIO
+from fea.cut.local_solution import CUT_LOW_STRESS_POWER, LOCAL_MESH_RATIO
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import surface
 from fea.solid.evaluate import solid_solution

@@ -25,9 +25,9 @@ from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import Maximum
 from fea.core.requirement import Requirement
 from fea.cut.evaluate import cut_result, cut_solution
-from fea.cut.local_fields import LocalFineness
+from fea.cut.local_solution import LocalFineness
 from fea.cut.region import PIECE_REACH, loaded_bands, pieces
-from fea.harmonic.evaluate import SectionProblem
+from fea.harmonic.section_solution import SectionProblem
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 
@@ -133,8 +133,8 @@ def _code() -> str:
 def _trial(trial: CutTrial) -> Inside | None:
     """None where the whole pin is solid, or the maximum at a singularity."""
     start = time.process_time()
-    asked = Requirement(TOLERANCE)
-    found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)[0].peak
+    requirement = Requirement(TOLERANCE)
+    found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), requirement)[0].peak
     spent = time.process_time() - start
     if found.model != "harmonic+local" or found.verdict == "singular":
         return None

@@ -14,7 +14,8 @@ from benchmarks.timing import table
 from fea.core.pin_loads import Floats
 from fea.core.requirement import Requirement
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import SECTION_MESHES, HarmonicField
+from fea.harmonic.evaluate import SECTION_MESHES
+from fea.harmonic.field import HarmonicField
 from fea.section.place import FLEXIBILITY_ERROR
 from fea.section.section_stress import SectionField
 from fea.solve.solve import solve_pin
@@ -108,8 +109,8 @@ def _model(trial: PinTrial, size: Resolution) -> ContactModel:
 
 def _stress(model: ContactModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
     """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
-    asked = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
-    (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), asked)
+    requirement = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
+    (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), requirement)
     assert isinstance(found.answer, HarmonicField)
     history = [step.max_von_mises for step in found.peak.history]
     below = beneath(found.answer.fields, contact.loads, found.answer.singularities).value

@@ -18,7 +18,8 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.bending import shear_force

@@ -18,7 +18,7 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
 from fea.support.contact.held import ROUGH

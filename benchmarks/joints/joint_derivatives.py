@@ -21,8 +21,9 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
 from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.model import HarmonicBody
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_in_lugs

@@ -154,12 +154,12 @@ class Checked:
         return self.read > (self.row + self.error) * (1.0 + 1e-9)
 
 
-def check(trial: PinTrial, asked: Requirement | None = None) -> Checked:
+def check(trial: PinTrial, requirement: Requirement | None = None) -> Checked:
     """Solve a pin and read its surface again.
 
     Raises: as solve_in_lugs.
     """
-    (found,) = solve_in_lugs(trial.given, asked or Requirement())
+    (found,) = solve_in_lugs(trial.given, requirement or Requirement())
     return checked(found)
 
 

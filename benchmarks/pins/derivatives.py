@@ -18,9 +18,10 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
-from fea.harmonic.evaluate import HarmonicField, _ends, _rims
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.free_surface import reader
 from fea.harmonic.model import HarmonicModel
+from fea.harmonic.section_solution import _ends, _rims
 from fea.singular.singularities import singularities_of
 from fea.solve.solve import solve_pin
 from geometry import Pin
@@ -91,8 +92,8 @@ def timed(work: Callable[[], T]) -> tuple[T, float]:
     return made, time.process_time() - start
 
 
-def _solved(trial: Trial, asked: Requirement) -> SolvedCase:
-    (found,) = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), asked)
+def _solved(trial: Trial, requirement: Requirement) -> SolvedCase:
+    (found,) = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), requirement)
     assert isinstance(found.answer, HarmonicField)
     assert found.peak.governing is not None
     zones = found.answer.singularities

@@ -14,7 +14,8 @@ from benchmarks.timing import table
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO

@@ -11,7 +11,8 @@ from benchmarks import ROOT
 from benchmarks.timing import seconds, table
 from fea.core.material import Material
 from fea.core.peak import Maximum
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.solve.solve import solve_pin
@@ -95,7 +96,7 @@ def _peaks(plans: Sequence[Plan], processes: int) -> list[tuple[bytes, Maximum]]
     def job(plan: Plan, task: Task) -> Job[list[Maximum]]:
         def solve(_: Tell) -> list[Maximum]:
             steel = _material(plan, task.pin.name)
-            found = solve_pin(task.pin, steel, task.clamps, task.loads, plan.asked)
+            found = solve_pin(task.pin, steel, task.clamps, task.loads, plan.requirement)
             return [s.peak for s in found]
 
         return Job(task.pin.name, solve)

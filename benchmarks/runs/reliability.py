@@ -173,16 +173,16 @@ def _parabola(name: str, curvature: float) -> Exact:
 
 def assessed(case: Exact, seed: int, table: ReliabilityTable = TABLE) -> tuple[Risk, int, int]:
     """What is found with a seed, and the designs that FORM and that importance sampling solved."""
-    asked = table.model_copy(update={"seed": seed})
+    settings = table.model_copy(update={"seed": seed})
     designs = Formula(case)
-    draws = plain_draws(asked.samples, case.space.size, seed)
+    draws = plain_draws(settings.samples, case.space.size, seed)
     sampled = Sample(draws, designs.at(draws.u, "plain sampling"))
-    form = first_order(designs, 0, starts_of(sampled, 0, asked.factor), asked)
-    by_form = designs.count - asked.samples
-    weighted = weighted_sample(designs, list(form.centres), asked)
+    form = first_order(designs, 0, starts_of(sampled, 0, settings.factor), settings)
+    by_form = designs.count - settings.samples
+    weighted = weighted_sample(designs, list(form.centres), settings)
     row = AssessedRow("", "", RiskColumn(0), None, form.result, ())
-    by_weights = designs.count - asked.samples - by_form
-    return risk_of(row, sampled, weighted, asked), by_form, by_weights
+    by_weights = designs.count - settings.samples - by_form
+    return risk_of(row, sampled, weighted, settings), by_form, by_weights
 
 
 def reliability() -> str:

@@ -13,8 +13,9 @@ import numpy as np
 from fea.beam.line_load import shares
 from fea.beam.stress import BeamStress
 from fea.core.pin_loads import Loads
+from fea.core.solution import StressPoints
 from fea.core.voigt import VON_MISES
-from pinbase.arrays import Floats
+from pinbase.arrays import Floats, Ints
 
 ANGLE_COUNT = 48  # samples of the circumference; Newton's method starts from the best one
 _THETA = 2.0 * np.pi * np.arange(ANGLE_COUNT) / ANGLE_COUNT
@@ -37,6 +38,20 @@ class VonMisesMaxima:
         """Numbers of the point and the instant of the largest stress of all."""
         point, instant = np.unravel_index(self.von_mises.argmax(), self.von_mises.shape)
         return int(point), int(instant)
+
+
+def stress_points(points: Floats, stress: Floats) -> StressPoints:
+    """The points (S, 2), r and z in m, at which a beam knows its stress.
+
+    stress: (3, S, 6, T) Pa, constant, times cos theta, times sin theta.
+    """
+
+    def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
+        constant, cosine, sine = stress[:, rows][..., instants]
+        c, s = (x[:, None, None] for x in (np.cos(angles), np.sin(angles)))
+        return np.asarray((constant + c * cosine + s * sine).swapaxes(1, 2))
+
+    return StressPoints.on_meridian(points, points[:, 0] > 0.0, stress.shape[-1], at)
 
 
 def harmonics(beam: BeamStress, loads: Loads) -> Floats:

@@ -10,13 +10,13 @@ import numpy as np
 
 from fea.beam.error_model import BeamEstimate, beam_estimate
 from fea.beam.line_load import acting
-from fea.beam.maximum import harmonics, von_mises_maxima
+from fea.beam.maximum import harmonics, stress_points, von_mises_maxima
 from fea.beam.stress import BeamStress, beam_stress
 from fea.core.material import Material
 from fea.core.mesh_result import MeshMaximum
 from fea.core.peak import ErrorParts, Reason, Refinement
 from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
-from fea.core.solution import Picture
+from fea.core.solution import StressPoints
 from fea.core.verdict import Evidence
 from fea.core.zone import Zone
 from fea.singular.singularities import outside
@@ -38,15 +38,6 @@ class BeamField:
         """The beam's estimate of the largest stress of the case."""
         return beam_estimate(self._beam, self.case, self.clamps)
 
-    @property
-    def points(self) -> Floats:
-        """The points at which stress is computed, (S, 2): r, z in m."""
-        return self._beam.points
-
-    def harmonics(self, loads: Loads) -> Floats:
-        """The stress at the points, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
-        return harmonics(self._beam, loads)
-
     def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
         """Largest von Mises stress (T,) Pa at every instant."""
         return np.asarray(von_mises_maxima(harmonics(self._beam, loads)).von_mises.max(axis=0))
@@ -67,9 +58,18 @@ class BeamField:
         location = (at * math.cos(theta), at * math.sin(theta), float(z[point]))
         return MeshMaximum(0, float(value[point, instant]), instant, location)
 
-    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+    def points(self, loads: PinLoads) -> StressPoints:
+        """Stress at the beam's points, for fatigue."""
+        return stress_points(self._beam.points, harmonics(self._beam, loads))
+
+    def surface(self) -> None:
         """Return None, since a beam has no field over its surface."""
-        return None
+
+    def picture(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
+
+    def volume(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
 
     @property
     def strain_energy(self) -> float:

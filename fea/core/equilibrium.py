@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fea.core.pin_loads import PinLoads
-from geometry import CutPin, Pin, PinLike
+from geometry import PinLike
 from pinbase.arrays import Floats
 
 # Both limits are chosen by judgement, as parts of the largest force or torque.
@@ -128,8 +128,8 @@ def _left(pin: PinLike, loads: PinLoads) -> tuple[Floats, Floats]:
 
 def centre_of_volume(pin: PinLike) -> float:
     """z of the centre of volume, m; for a body from a file the middle of its length."""
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if not isinstance(profile, Pin):
+    profile = pin.profile
+    if profile is None:
         return sum(pin.ends) / 2.0
     area = np.array([s.mean_area for s in profile.segments])
     ends = np.array(profile.stations)

@@ -72,6 +72,11 @@ class MeshSolution(Protocol):
         """The problem's, and those found on the mesh: corners of cuts, edges of tetrahedra."""
         ...
 
+    @property
+    def solids(self) -> tuple[tuple[float, float], ...]:
+        """The ends, z in m, of each local solid; none where the whole pin has one model."""
+        ...
+
     def field(self, case: str) -> StressField:
         """Stress as one case sees it: it is not read in zones that its loads make singular."""
         ...

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from fea.core.pin_loads import LoadAmounts, PinLoads, chord_deviation
-from fea.core.solution import StressField
+from fea.core.solution import StressMaxima
 from geometry.shape.chords import needed
 from pinbase.arrays import Floats, Ints
 
@@ -32,7 +32,7 @@ CREST_TOLERANCE = 1e-12  # relative gain that does not count, a crest being flat
 CREST_REPEATS = 2  # passes without gain after which the search ends
 
 
-def rise_between(answer: StressField, loads: PinLoads, between: Between) -> float:
+def rise_between(answer: StressMaxima, loads: PinLoads, between: Between) -> float:
     """The possible excess of the maximum between instants over that at the instants, Pa."""
     if len(loads) < 2:
         return 0.0
@@ -42,7 +42,7 @@ def rise_between(answer: StressField, loads: PinLoads, between: Between) -> floa
 
 
 def _reached(
-    answer: StressField, loads: PinLoads, off: LoadAmounts, largest: float
+    answer: StressMaxima, loads: PinLoads, off: LoadAmounts, largest: float
 ) -> tuple[Ints, Floats]:
     """Intervals (I,) in which `largest` may be exceeded, and the stress (I,), Pa, they may reach.
 
@@ -71,7 +71,7 @@ def _chord_deviation(loads: PinLoads, between: Between) -> LoadAmounts:
 
 
 def through_time(
-    answer: StressField, loads: PinLoads, between: Between, tolerance: float
+    answer: StressMaxima, loads: PinLoads, between: Between, tolerance: float
 ) -> PinLoads:
     """The loads with instants added until those between them hardly matter.
 
@@ -89,7 +89,7 @@ def through_time(
     return with_crest(answer, loads, between)
 
 
-def with_crest(answer: StressField, loads: PinLoads, between: Between) -> PinLoads:
+def with_crest(answer: StressMaxima, loads: PinLoads, between: Between) -> PinLoads:
     """The loads with the instant of the maximum added, if it lies between the given instants."""
     times = _times(loads)
     value, k = answer.largest(loads)

@@ -121,6 +121,11 @@ class PinLoads:
         return self
 
     @property
+    def on_rings(self) -> PinLoads:
+        """The loads that sections carry: these, or the resultants of contact pressures on rings."""
+        return self
+
+    @property
     def pressures(self) -> tuple[int, ...]:
         """Harmonics of the bearing pressure that are taken into account."""
         return (0, 1, *range(2, self.terms + 1, 2))

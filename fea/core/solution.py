@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from fea.core.pin_loads import Loads, PinLoads
+from fea.core.unit_surface import SurfaceField
 from pinbase.arrays import Floats, Ints, Mask
+
+# Gives the stress (J, T, 6), Pa, at points (J,) turned by angles (J,), rad, at instants (T,).
+StressAt = Callable[[Ints, Floats, Ints], Floats]
 
 
 @dataclass(frozen=True)
@@ -31,8 +38,42 @@ class Picture:
     pressed: Mask | None = None
 
 
-class StressField(Protocol):
-    """The stress that a model has computed for a pin, for any combination of the same unit
+@dataclass(frozen=True)
+class StressPoints:
+    """Points (S, 3), m, where a model knows the stress, of a body of revolution at theta = 0.
+
+    surface: (S,) those at which fatigue is looked for: on the surface, outside of singularities.
+    count: of instants.
+    at: gives the stress at some of the points, by their numbers. Angles have no effect on bodies
+    that are not of revolution.
+    """
+
+    points: Floats
+    surface: Mask
+    revolved: bool
+    count: int
+    at: StressAt
+
+    @classmethod
+    def in_space(
+        cls, points: Floats, stress: Floats, surface: Mask, amounts: Floats
+    ) -> StressPoints:
+        """The points (S, 3) of a body with unit stresses (S, 6, L), Pa, in amounts (T, L)."""
+
+        def at(rows: Ints, _: Floats, instants: Ints) -> Floats:
+            return np.asarray((stress[rows] @ amounts[instants].T).swapaxes(1, 2))
+
+        return cls(points, surface, False, len(amounts), at)
+
+    @classmethod
+    def on_meridian(cls, section: Floats, surface: Mask, count: int, at: StressAt) -> StressPoints:
+        """The points of a body of revolution, given by r and z (S, 2), m."""
+        r, z = section.T
+        return cls(np.stack([r, np.zeros_like(r), z], axis=1), surface, True, count, at)
+
+
+class StressMaxima(Protocol):
+    """The largest von Mises stress of a place of a pin, for any combination of the same unit
     loads.
     """
 
@@ -47,8 +88,28 @@ class StressField(Protocol):
         """The largest of these (Pa), and the number of its instant."""
         ...
 
+
+class StressField(StressMaxima, Protocol):
+    """The stress that a model has computed for a whole pin."""
+
+    def points(self, loads: PinLoads) -> StressPoints:
+        """Stress tensors at points of the pin at all instants, for fatigue."""
+        ...
+
+    def surface(self) -> SurfaceField | None:
+        """The surface for views, which superpose its unit fields; None for a model without
+        fields.
+        """
+        ...
+
     def picture(self, loads: PinLoads, instant: int) -> Picture | None:
         """The pin at one instant, with its envelope over all instants; None for a model without
         fields.
+        """
+        ...
+
+    def volume(self, loads: PinLoads, instant: int) -> Picture | None:
+        """A body of revolution at one instant with its inside, without an envelope; None for other
+        bodies, whose picture has all there is.
         """
         ...

@@ -14,6 +14,12 @@ VON_MISES = np.zeros((6, 6))
 VON_MISES[:3, :3] = -0.5
 VON_MISES[range(6), range(6)] = [1.0, 1.0, 1.0, 3.0, 3.0, 3.0]
 
+# Five numbers of a stress whose squares sum to that: VON_MISES_ROOT^T VON_MISES_ROOT is VON_MISES
+VON_MISES_ROOT = np.zeros((5, 6))
+VON_MISES_ROOT[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
+VON_MISES_ROOT[1, :3] = [-0.5, -0.5, 1.0]
+VON_MISES_ROOT[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
+
 TENSOR_TO_VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])  # component of the tensor's entry ab
 VOIGT_TO_TENSOR = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))  # and the reverse
 

@@ -4,43 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
 
 from fea.core.mesh_result import MeshMaximum
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
-from fea.core.pin_loads import Loads, PinLoads
-from fea.core.solution import Picture
+from fea.core.pin_loads import PinLoads
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
-from fea.cut.local_fields import (
+from fea.cut.field import CutField, CutSolution
+from fea.cut.local_fields import LocalFields
+from fea.cut.local_solution import (
     LOCAL_MESH_RATIO,
-    MAX_REFINED_RISE,
-    LocalFields,
     LocalFineness,
     local_fields,
     mesh_of,
     section_points,
 )
 from fea.cut.region import PIECE_REACH, REACH_FACTOR, pieces, surface_ends, zone
-from fea.cut.shown import ShownCut, shown
-from fea.cut.shown_free import free_picture
-from fea.cut.supports import ClampMotions, ClampReaction, motions, reactions
-from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
-from fea.harmonic.evaluate import (
-    HarmonicField,
-    HarmonicSolution,
-    SectionProblem,
-    harmonic_result,
-    harmonic_solution,
-    section_problem,
-)
+from fea.cut.supports import ClampReaction, motions, reactions
+from fea.harmonic.evaluate import harmonic_result, section_problem
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.first_mesh import FirstMesh
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.stress_recovery import NO_POINTS
 from fea.solid.nodal_loads import Unit
-from fea.solid.superposition import squares
 from geometry import CutPin
 from geometry.mesh.cut_piece import Piece
 from geometry.mesh.sizing import Grade
@@ -60,44 +48,6 @@ CUT_SECTION_GROWTH = 0.5  # of that with the distance
 MIN_UNIT_WEIGHT = 1e-3  # of the stress: what brings less is solved as if it brought so much
 
 
-@dataclass(frozen=True)
-class CutSolution:
-    """The solution of a cut pin: the uncut pin, and the local solids about the cuts.
-
-    section: the uncut pin, where its stress counts; uncut: its fields also where it is cut.
-    reactions: motions of redundant clamps that go with loads.
-    held: its first support, if any.
-    """
-
-    section: HarmonicSolution
-    pieces: tuple[LocalFields, ...]
-    uncut: MeridianFields
-    reactions: ClampMotions
-    held: ClampReaction | None = None
-
-    @property
-    def corners(self) -> tuple[Zone, ...]:
-        """Sharp inner corners of the cuts."""
-        return tuple(c.singularity for piece in self.pieces for c in piece.corners)
-
-    def idle(self, results: Sequence[tuple[PinLoads, MeshMaximum]]) -> tuple[LocalFields, ...]:
-        """The pieces that need no finer mesh: in no case may their stress reach the largest one, or
-        vary as much as in another piece.
-        """
-        out = set(range(len(self.pieces)))
-        for loads, result in results:
-            held = self.reactions.held(loads)
-            swings = [
-                piece.swing(held) * (1.0 + MAX_REFINED_RISE / piece.finer**2)
-                for piece in self.pieces
-            ]
-            for k, piece in enumerate(self.pieces):
-                most = piece.may_reach(held, result.maximum)
-                if most or (len(loads) > 1 and swings[k] >= max(swings) / (1.0 + MAX_REFINED_RISE)):
-                    out.discard(k)
-        return tuple(self.pieces[k] for k in sorted(out))
-
-
 def cut_solution(
     problem: SectionProblem,
     pieces: Sequence[Piece],
@@ -110,7 +60,7 @@ def cut_solution(
 ) -> CutSolution:
     """Solve all unit loads on mesh number `level` of the section and of the pieces.
 
-    The arguments are those of fea.harmonic.evaluate.harmonic_solution, and:
+    The arguments are those of fea.harmonic.section_solution.harmonic_solution, and:
     bands: loaded bands with cuts in them (fea.cut.region.loaded_bands).
     distance: as in fea.cut.inner_corners.
     finer: fineness of the pieces, instead of that of the level.
@@ -225,6 +175,11 @@ class CutMesh:
         """The zones of the problem, and the sharp corners of the cuts."""
         return (*self.problem.zones, *self.solution.corners)
 
+    @property
+    def solids(self) -> tuple[tuple[float, float], ...]:
+        """The ends of the solids about the cuts."""
+        return tuple((p.piece.z0, p.piece.z1) for p in self.solution.pieces)
+
     def field(self, case: str) -> CutField:
         """The stress as one case sees it."""
         return CutField(self.solution, self.problem.zones_of(case))
@@ -282,87 +237,6 @@ class LocalSolids:
             posed, local, level, results, self._bands, problem.distance, reused=reused
         )
         return CutMesh(problem, solution, reach, spacing)
-
-
-class CutField:
-    """The stress of a cut pin under any combination of its unit loads (fea.core.solution)."""
-
-    def __init__(self, solution: CutSolution, singularities: tuple[Zone, ...]) -> None:
-        self.solution, self.singularities = solution, singularities
-        self.section = HarmonicField(solution.section, singularities)
-
-    def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
-        loads = self.solution.reactions.held(loads)
-        local = np.max([piece.largest(loads)[0] for piece in self.solution.pieces], axis=0)
-        uncut = self.section.maxima(loads, max(least, float(local.min())))
-        return np.asarray(np.maximum(local, uncut))
-
-    def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the number of its instant."""
-        loads = self.solution.reactions.held(loads)
-        value, instant = self.section.largest(loads)
-        for piece in self.solution.pieces:
-            here, _ = piece.largest(loads)
-            if here.max() > value:
-                value, instant = float(here.max()), int(here.argmax())
-        return value, instant
-
-    def beneath(self, loads: PinLoads) -> Beneath:
-        """The largest stress beneath contact (fea.harmonic.beneath): in the pin without cuts, also
-        where it is cut, and at the surface about the cuts.
-        """
-        assert loads.pressed is not None
-        deepest = beneath(self.solution.uncut, loads, self.singularities)
-        for piece in self.solution.pieces:
-            value, point = piece.beneath(loads, loads.pressed)
-            t = int(value.argmax())
-            if value[t] > deepest.value:
-                x, y, z = piece.points[point[t]].tolist()
-                deepest = Beneath(float(value[t]), (x, y, z), t)
-        return deepest
-
-    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
-        """The distances from pressed cells at which stress is reached at an instant
-        (fea.harmonic.beneath).
-        """
-        pressed = loads.pressed
-        assert pressed is not None
-        steps = [*depths(self.solution.uncut, loads, instant, self.singularities, least)]
-        for piece in self.solution.pieces:
-            steps += piece.depths(loads, pressed, instant, least)
-        return stairs(*np.array(steps).reshape(-1, 2).T)
-
-    def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The surface at one instant, with its envelope over all instants."""
-        surface, c = self.surface, self.coefficients(loads)
-        if loads.pressed is not None:
-            stress, envelope, pressed = free_picture(surface, c, loads.pressed, instant)
-            moved = surface.displacement @ c[instant]
-            return Picture(
-                surface.points, surface.triangles, "triangle", moved, stress, envelope, pressed
-            )
-        largest = np.zeros(len(surface.points))
-        envelope_squared = squares(surface.stress)
-        for k in range(0, len(c), 64):
-            np.maximum(largest, envelope_squared(c[k : k + 64]).max(axis=1), out=largest)
-        return Picture(
-            points=surface.points,
-            cells=surface.triangles,
-            cell_type="triangle",
-            displacement=surface.displacement @ c[instant],
-            stress=surface.stress @ c[instant],
-            envelope=np.sqrt(largest),
-        )
-
-    def coefficients(self, loads: Loads) -> Floats:
-        """The amount of each unit load of the surface at each instant, (T, L)."""
-        return self.solution.pieces[0].coefficients(self.solution.reactions.held(loads))
-
-    @cached_property
-    def surface(self) -> ShownCut:
-        """The pieces in place and the uncut pin between them, held as its first clamp is."""
-        return shown(self.section, self.solution.pieces, self.solution.held)
 
 
 def cut_result(

@@ -2,63 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from fea.core.material import Material
 from fea.core.mesh_result import FEATURE_READING_DISTANCE, Point, ZoneMaximum
 from fea.core.pin_loads import Loads, require_solved
 from fea.core.pressed import PressedArcs, Rings
-from fea.core.zone import Zone
-from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
+from fea.cut.frames import turn_of
 from fea.cut.free_points import AwayFromPressed, CutReading, FreePoints, distance, relieved
-from fea.cut.inner_corners import InnerCorner, inner_corners
-from fea.cut.local_model import LocalModel, rotated
-from fea.cut.lost_loads import bearings
-from fea.cut.movement import displacement, rigid
+from fea.cut.inner_corners import InnerCorner
 from fea.cut.region import zone
 from fea.harmonic.beneath import Steps, stairs
-from fea.harmonic.fields import MeridianFields
-from fea.singular.singularities import outside
 from fea.solid.nodal_loads import Unit
 from fea.solid.superposition import squares
-from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
+from geometry.mesh.cut_piece import Piece
 from pinbase.arrays import Floats, Ints, Mask
 
 # Refinement, chosen by judgement; `python -m benchmarks cut-pins` checks the errors it leads to.
-LOCAL_MESH_RATIO = 2.0**0.75  # of element sizes from one mesh to the next, where stress is high
-CUT_LOW_STRESS_POWER = 0.4  # power of that ratio elsewhere
 CUT_REFINE_ABOVE = 0.95  # of the maximum: a place with more stress is refined
 CUT_MIN_SPACING = 0.35  # of the hole's size, between such places
 CUT_MAX_PLACES = 4
 LOAD_ROUND_OFF = 1e-9  # of a load's amounts
-END_NODE_TOLERANCE = 1e-6  # of a piece's length: nodes on its end
 # Bounds of effects, each rounded up from the largest one seen (docs/method.md for the ends).
 END_EFFECT_FACTOR = 1.5  # change at the maximum by an end, over what is left there (1.2 seen)
 NEIGHBOUR_EFFECT_FACTOR = 5.0  # stress at a cut over the change beside it by another (4.4 seen)
 OUTLINE_NEIGHBOURS = 16  # nodes on the outline beside another cut, at which that change is read
 MAX_REFINED_RISE = 0.3  # rise of a piece's maximum by meshes finer than the first (0.1 seen)
-
-
-@dataclass(frozen=True)
-class LocalFineness:
-    """The fineness of a mesh relative to the first one: along the edges of cuts, and at spots.
-
-    Spots are places where stress is high.
-    """
-
-    edges: float
-    spots: float
-
-    @staticmethod
-    def of(level: int) -> LocalFineness:
-        """The fineness of mesh number `level`."""
-        return LocalFineness(
-            LOCAL_MESH_RATIO ** (level * CUT_LOW_STRESS_POWER), LOCAL_MESH_RATIO**level
-        )
 
 
 @dataclass(frozen=True)
@@ -173,7 +144,7 @@ class LocalFields:
                 self._largest_among(loads, (corner.distance < 1.0) & (corner.distance >= least))
                 for least in (0.0, FEATURE_READING_DISTANCE)
             )
-            out.append(ZoneMaximum(value, felt, _point(self.points[point])))
+            out.append(ZoneMaximum(value, felt, point_of(self.points[point])))
         return tuple(out)
 
     def _largest_among(self, loads: Loads, where: Mask) -> tuple[float, int]:
@@ -225,7 +196,7 @@ class LocalFields:
         value *= (self.points[:, 2] > low - hole) & (self.points[:, 2] < high + hole)
         places: list[int] = []
         apart = CUT_MIN_SPACING * hole
-        positive = _unmirrored(self.piece, self.points)
+        positive = unmirrored(self.piece, self.points)
         # Greedy choice: the highest point first, then the next one far enough from all chosen ones.
         # Mirror images count as one place.
         for k in np.argsort(-value, kind="stable"):
@@ -233,7 +204,7 @@ class LocalFields:
                 break
             if all(np.linalg.norm(positive[k] - positive[o]) > apart for o in places):
                 places.append(int(k))
-        return tuple(_point(self.points[k]) for k in places)
+        return tuple(point_of(self.points[k]) for k in places)
 
 
 def coefficients_of(loads: Loads, units: tuple[Unit, ...]) -> Floats:
@@ -252,132 +223,15 @@ def coefficients_of(loads: Loads, units: tuple[Unit, ...]) -> Floats:
     return out
 
 
-def _point(x: Floats) -> Point:
+def point_of(x: Floats) -> Point:
+    """The three coordinates of a point (3,), m."""
     a, b, c = x.tolist()
     return a, b, c
 
 
-def _in_piece(piece: Piece, x: Floats) -> Floats:
-    """Points (P, 3), m, in the frame of a piece."""
-    return np.asarray((x - [0.0, 0.0, piece.origin]) @ turn_of(piece.angle))
-
-
-def _unmirrored(piece: Piece, x: Floats) -> Floats:
+def unmirrored(piece: Piece, x: Floats) -> Floats:
     """The mirror images of points (P, 3) in the meshed part of a piece, in its frame."""
-    out = _in_piece(piece, x)
+    out = np.asarray((x - [0.0, 0.0, piece.origin]) @ turn_of(piece.angle))
     for mirror in piece.mirrors:
         out[:, "xyz".index(mirror)] = np.abs(out[:, "xyz".index(mirror)])
     return out
-
-
-def mesh_of(
-    piece: Piece,
-    material: Material,
-    clamps: tuple[str, ...],
-    finer: LocalFineness,
-    high: Sequence[Point],
-    bands: Sequence[tuple[float, float]] = (),
-) -> LocalModel:
-    """The mesh of a piece, finest about points where stress was high on the meshes before.
-
-    high: m, in the pin's frame.
-    bands: loaded ones of the pin, with cuts in them.
-
-    Raises: MeshError.
-    """
-    here = [p for p in high if piece.z0 <= p[2] <= piece.z1]
-    spots: Spots = ()
-    if here:
-        spots = [_point(x) for x in _unmirrored(piece, np.array(here))]
-    mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
-    held, loaded = _largest_among(piece, clamps), bearings(piece, bands)
-    return LocalModel(piece, mesh, material, held, loaded, finer.spots)
-
-
-def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
-    """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
-    return tuple(
-        name
-        for name in clamps
-        if name in piece.profile.labels
-        or (name == "start" and not piece.open_ends[0])
-        or (name == "end" and not piece.open_ends[1])
-    )
-
-
-def section_points(model: LocalModel) -> Floats:
-    """The points (r, z), m, at which the stress of the uncut pin is needed."""
-    x = model.images[:, model.cut].reshape(-1, 3)
-    return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2] + model.piece.origin], axis=1)
-
-
-def local_fields(
-    model: LocalModel,
-    fields: MeridianFields,
-    at_points: Floats,
-    units: tuple[Unit, ...],
-    singularities: Sequence[Zone],
-    distance: float,
-    weight: Floats | float = 1.0,
-) -> LocalFields:
-    """The unit fields of a piece on one mesh.
-
-    fields: of the uncut pin.
-    at_points: its stress (S, 6, K) at the section_points.
-    distance: as for inner_corners.
-    weight: as for LocalModel.solve.
-
-    Raises: SolveError.
-    """
-    x = model.images
-    r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + model.piece.origin
-    # Step 1: the uncut pin's stress at the nodes of the faces: inside it on cuts, on its skin
-    # elsewhere.
-    amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
-    amplitude[:, model.cut] = at_points.reshape(len(x), -1, *at_points.shape[1:])
-    profile = ~model.cut
-    amplitude[:, profile] = on_skin(fields, r[:, profile], z[:, profile])
-    angle = np.arctan2(x[..., 1], x[..., 0])
-    columns = [fields.loads.index(load) for load, _ in units]
-    # Step 2: unit loads by phase along x, y, z of the piece; the piece is solved under them.
-    stress = cartesian(amplitude[..., columns], angle, model.piece.angle, units)
-    largest = np.abs(fields.stress[..., columns]).max(axis=(0, 1))
-    read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
-    # Step 3: back into the pin's frame.
-    points = read.points @ turn_of(model.piece.angle).T + [0.0, 0.0, model.piece.origin]
-    flat_r, flat_z = r.ravel(), z.ravel()
-    ends = [
-        e
-        for e, cut in zip((model.piece.z0, model.piece.z1), model.piece.open_ends, strict=True)
-        if cut
-    ]
-    length = model.piece.z1 - model.piece.z0
-    at_end = np.zeros(len(points), dtype=bool)
-    for end in ends:
-        at_end |= np.abs(points[:, 2] - end) < END_NODE_TOLERANCE * length
-    outer = np.flatnonzero(~read.cut)
-    uncut = displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units)
-    moved = in_pin(read.moved, model.piece)
-    displaced = np.einsum("ab,pbl->pal", turn_of(model.piece.angle), read.displaced)
-    return LocalFields(
-        model.piece,
-        units,
-        points,
-        model.triangles,
-        rotated(read.stress, np.broadcast_to(turn_of(model.piece.angle), (len(points), 3, 3))),
-        uncut,
-        displaced - rigid(moved[0], points),
-        outside(singularities, flat_r, flat_z),
-        outer,
-        read.difference[outer],
-        at_end[outer],
-        moved,
-        model.unknowns,
-        tuple(
-            replace(corner, distance=np.tile(corner.distance, len(x)))
-            for corner in inner_corners(model, model.points, distance)
-        ),
-        np.tile(model.scatter, len(x)),
-        model.finer,
-        model.material.poisson_ratio,
-    )

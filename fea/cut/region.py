@@ -6,11 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from typing import TypeVar
 
 from fea.core.peak import Reason
 from fea.core.zone import Zone
 from fea.cut.inside import crosses_end, is_inside
-from geometry import Cut, CutPin, Pin
+from geometry import Cut, CutPin, Pin, PinLike
 from geometry.mesh.cut_piece import Piece, clipped
 
 # All are parts of the diameter. The reach was found on shafts, where ends at that distance change
@@ -21,6 +22,8 @@ MERGE_DISTANCE = 0.5  # cuts closer to each other are in one piece
 MIN_REMAINDER = 0.25  # a shorter rest of the pin beyond a piece is part of it
 STEP_CLEARANCE = 0.1  # least distance between the end of a piece and a step
 PIECE_LENGTH_TOLERANCE = 1e-9  # lengths that differ by less are equal
+
+AnyPin = TypeVar("AnyPin", bound=PinLike)
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class RingedCutPin(CutPin):
         return self.profile.volume
 
 
-def unringed(pin: CutPin) -> CutPin:
+def unringed(pin: AnyPin) -> AnyPin | CutPin:
     """The pin without rings."""
     return (pin.whole or pin) if isinstance(pin, RingedCutPin) else pin
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,7 +12,7 @@ from fea.core.voigt import TENSOR_TO_VOIGT, VOIGT_TO_TENSOR
 from fea.cut.local_fields import LocalFields
 from fea.cut.movement import axis_kept, rigid
 from fea.cut.supports import ClampReaction, reached
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.fields import MeridianFields
 from fea.solid.nodal_loads import Unit
 from pinbase.arrays import Floats, Ints, Mask
 
@@ -31,8 +31,10 @@ class ShownCut:
     triangles: (M, 3).
     stress: (P, 6, L) Pa.
     displacement: (P, 3, L) m.
-    read: (P,) where the maximum is looked for.
+    read: (P,) where the maximum is looked for, of the pin between its pieces without zones.
     outline: (P,) what is on the outline of the pin without cuts.
+    between: (U, 2) for the first points, which are of the pin between its pieces, the points of its
+    section between which each of them lies.
     """
 
     points: Floats
@@ -41,17 +43,27 @@ class ShownCut:
     displacement: Floats
     read: Mask
     outline: Mask
+    between: Ints = field(default_factory=lambda: np.zeros((0, 2), dtype=np.int64))
+
+    def read_in(self, section: Mask) -> Mask:
+        """Mask (P,) of where the maximum is looked for; section: (S,) points that are read there,
+        outside of zones.
+        """
+        read = self.read.copy()
+        read[: len(self.between)] = section[self.between].all(axis=1)
+        return read
 
 
 def shown(
-    section: HarmonicField, pieces: Sequence[LocalFields], held: ClampReaction | None
+    fields: MeridianFields, pieces: Sequence[LocalFields], held: ClampReaction | None
 ) -> ShownCut:
     """The whole surface of a cut pin.
 
+    fields: of the pin without cuts.
     held: the first clamp, which stays in place; without one both ends of the axis stay on it.
     """
     between = [(p.piece.z0, p.piece.z1) for p in pieces]
-    uncut = _revolved(section, pieces[0].units, between)
+    uncut = _revolved(fields, pieces[0].units, between)
     parts = [uncut, *map(_piece, pieces)]
     starts = np.cumsum([0, *(len(part.points) for part in parts)])
     points = np.concatenate([p.points for p in parts])
@@ -59,7 +71,7 @@ def shown(
     # Displacements add up: what lies above a piece moves with its upper end.
     for piece, start in zip(pieces, starts[1:], strict=False):
         displacement += _moved_by(piece, points, int(start))
-    length = float(section.fields.points[:, 1].max())
+    length = float(fields.points[:, 1].max())
     whole = np.sum([p.moved[1] - p.moved[0] for p in pieces], axis=0)
     # Take off the rigid motion of the support.
     motion = reached(held, pieces) if held else axis_kept(whole, length)
@@ -70,6 +82,7 @@ def shown(
         displacement - rigid(motion, points),
         np.concatenate([p.read for p in parts]),
         np.concatenate([p.outline for p in parts]),
+        uncut.between,
     )
 
 
@@ -118,10 +131,9 @@ def _beside(piece: LocalFields, points: Floats) -> Floats:
 
 
 def _revolved(
-    section: HarmonicField, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
+    fields: MeridianFields, units: tuple[Unit, ...], pieces: Sequence[tuple[float, float]]
 ) -> ShownCut:
     """The outline turned about the axis, without what lies in the pieces."""
-    fields = section.fields
     ends = np.arange(fields.skin).reshape(-1, 5)[:, [0, 4]]
     rows, part = [ends], [np.tile([0.0, 1.0], (len(ends), 1))]
     keep_rows, keep_part = np.concatenate(rows), np.concatenate(part)
@@ -165,15 +177,15 @@ def _revolved(
         + (np.arange(CUT_VIEW_SECTORS) + 1) % CUT_VIEW_SECTORS
     )
     quads = np.stack([i, j, j + CUT_VIEW_SECTORS, i + CUT_VIEW_SECTORS], axis=2).reshape(-1, 4)
-    read = fields.outside(section.singularities)[: fields.skin]
-    count = len(units)
+    count, everywhere = len(units), np.ones(len(a) * CUT_VIEW_SECTORS, dtype=bool)
     return ShownCut(
         points.reshape(-1, 3),
         quads[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3),
         np.stack([tensor[:, :, a, b] for a, b in VOIGT_TO_TENSOR], axis=2).reshape(-1, 6, count),
         np.einsum("sai,psil->psal", turn, moved).reshape(-1, 3, count),
-        (read[a] & read[b]).repeat(CUT_VIEW_SECTORS),
-        np.ones(len(a) * CUT_VIEW_SECTORS, dtype=bool),
+        everywhere,
+        everywhere,
+        np.stack([a, b], axis=1).repeat(CUT_VIEW_SECTORS, axis=0),
     )
 
 

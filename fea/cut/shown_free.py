@@ -1,21 +1,26 @@
-"""The stress of a cut pin's surface for views where lugs press on it.
+"""The stress of a cut pin's surface for views and for fatigue where lugs press on it.
 
-The rules are those of pins without cuts (fea.harmonic.shown_surface), applied to points in space.
+The rules are those of pins without cuts (fea.harmonic.shown_surface, fea.harmonic.fatigue_points),
+applied to points in space.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
+from scipy.spatial import KDTree, cKDTree
 
 from fea.core.pressed import PressedArcs
+from fea.core.solution import StressPoints
 from fea.core.voigt import von_mises
-from fea.cut.free_points import ON_CYLINDER_TOLERANCE, RING_SIDE_OFFSET, FreePoints
+from fea.cut.free_points import ON_CYLINDER_TOLERANCE, RING_SIDE_OFFSET, FreePoints, relieved
 from fea.cut.shown import ShownCut
+from fea.harmonic.fatigue_points import replaced
 from fea.solid.superposition import squares
 from pinbase.arrays import Floats, Ints, Mask
 
 INSTANT_BATCH = 64  # instants at once: limits memory
+# Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
+AXIAL_DISTANCE_WEIGHT = 0.1
 
 
 def free_picture(
@@ -56,3 +61,46 @@ def _on(surface: ShownCut, arc: Ints, pressed: PressedArcs, instant: int) -> Mas
         ring = here.argmax(axis=1)
         on &= here.any(axis=1) & pressed.on[instant][ring, arc]
     return np.asarray(on)
+
+
+def stress_points(
+    surface: ShownCut, read: Mask, amounts: Floats, pressed: PressedArcs | None, nu: float
+) -> StressPoints:
+    """The points of the surface at which fatigue is assessed, also where lugs press on some.
+
+    read: (P,) points at which fatigue is looked for. amounts: (T, L) of the unit loads. nu:
+    Poisson's ratio.
+    """
+    if pressed is None:
+        return StressPoints.in_space(surface.points, surface.stress, read, amounts)
+    substitutes = CutSubstitutes(surface, read, pressed, nu)
+    every = StressPoints.in_space(substitutes.points, substitutes.stress, read, amounts)
+
+    def replacing(rows: Ints, _: Floats, instants: Ints) -> Ints:
+        return np.stack([substitutes.rows(rows, t) for t in instants.tolist()], axis=1)
+
+    at = replaced(every.at, replacing)
+    return StressPoints(surface.points, read, False, len(amounts), at)
+
+
+class CutSubstitutes:
+    """Points of the surface of a pin with cuts that replace others where these are not read."""
+
+    def __init__(self, surface: ShownCut, read: Mask, pressed: PressedArcs, nu: float) -> None:
+        points, free = surface.points, FreePoints.of(surface.points, surface.outline, pressed.rings)
+        amid = np.flatnonzero(free.amid >= 0)
+        rows = np.concatenate([np.arange(len(points)), amid])
+        more = relieved(surface.stress[amid], points[amid], nu)
+        self.points, self.stress = points[rows], np.concatenate([surface.stress, more])
+        self._pressed, self._free = pressed, free.some(rows, len(points))
+        self._may: Mask = read[rows]
+
+    def rows(self, rows: Ints, instant: int) -> Ints:
+        """The rows (J,) of `stress` that replace points (J,) at an instant."""
+        read = self._free.read(self._pressed, instant)
+        lost, out = np.flatnonzero(~read[rows]), rows.copy()
+        may = np.flatnonzero(read & self._may)
+        if len(lost) and len(may):
+            scaled = self.points * [1.0, 1.0, AXIAL_DISTANCE_WEIGHT]
+            out[lost] = may[np.atleast_1d(KDTree(scaled[may]).query(scaled[rows[lost]])[1])]
+        return out

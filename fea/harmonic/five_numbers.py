@@ -9,15 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea.core.voigt import VON_MISES_ROOT
 from fea.harmonic.fields import MeridianFields
 from pinbase.arrays import Floats
 
 EVEN_COUNT = 3  # so many of the five numbers go as cos psi, the others as sin psi
 COS, SIN = slice(0, EVEN_COUNT), slice(EVEN_COUNT, None)
-VON_MISES_ROOT = np.zeros((5, 6))  # VON_MISES_ROOT^T VON_MISES_ROOT is tensor.VON_MISES
-VON_MISES_ROOT[0, :3] = np.array([1.0, -1.0, 0.0]) * np.sqrt(0.75)
-VON_MISES_ROOT[1, :3] = [-0.5, -0.5, 1.0]
-VON_MISES_ROOT[[2, 3, 4], [4, 3, 5]] = np.sqrt(3.0)
 COSINE_COMPONENTS = np.array([True, True, True, False, True, False])  # stresses that go as cos psi
 
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 
 import numpy as np
 
 from fea.core.pin_loads import Loads
+from fea.core.solution import StressAt
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import COSINE_COMPONENTS
 from pinbase.arrays import Floats, Ints
 
-Stress = Callable[[Ints, Floats, Ints], Floats]
 EVEN, ODD = np.flatnonzero(COSINE_COMPONENTS), np.flatnonzero(~COSINE_COMPONENTS)
 
 
-def stress_at(fields: MeridianFields, loads: Loads) -> Stress:
+def stress_at(fields: MeridianFields, loads: Loads) -> StressAt:
     """A function that gives the stress (J, T, 6), Pa, of unit fields under loads.
 
     Its arguments are points (J,) by their numbers, the angles (J,), rad, by which they are turned,

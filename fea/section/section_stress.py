@@ -24,8 +24,7 @@ from fea.beam.round_section import Circle, thinnest_section
 from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
-from fea.core.pin_loads import LoadAmounts, Loads, PinLoads
-from fea.core.solution import Picture
+from fea.core.pin_loads import LoadAmounts, Loads
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference, Crest
 from geometry import Pin
@@ -123,10 +122,6 @@ class SectionField:
         """The largest of these (Pa), and the number of its instant."""
         top = self._top(loads)
         return top.value, top.instant
-
-    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
-        """Return None, since sections have no surface."""
-        return None
 
     @property
     def all(self) -> Mask:

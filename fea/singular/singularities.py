@@ -13,7 +13,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.zone import MESH_SCALE_RATIO, Kind, Zone
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
-from geometry import Arc, Pin, PinLike, Vertex, meridian, vertices
+from geometry import Arc, Pin, PinLike, Vertex, body_of_revolution, meridian, vertices
 from geometry.shape.polygon import SMOOTH_ANGLE_TOLERANCE
 from pinbase.arrays import Floats, Mask
 
@@ -217,11 +217,12 @@ def singularities_of(
     distance: float = 0.1,
 ) -> tuple[Zone, ...]:
     """Zones of unbounded stress in any of the cases; for bodies of revolution only."""
-    if not isinstance(pin, Pin):
+    profile = body_of_revolution(pin)
+    if profile is None:
         return ()
     acting = {load for case in cases for load in case.coefficients() if load.shears}
     loaded = {load.surface for load in acting}
     if acting and not clamps:  # all bands react the imbalance
         loaded |= set(pin.connections)
     nu = material.poisson_ratio
-    return find_singularities(pin, clamps, tuple(sorted(loaded)), nu, distance)
+    return find_singularities(profile, clamps, tuple(sorted(loaded)), nu, distance)

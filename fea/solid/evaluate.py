@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,20 +13,19 @@ from fea.core.material import Material
 from fea.core.memory import require_memory
 from fea.core.mesh_result import MeshMaximum, ZoneMaximum
 from fea.core.model import MeshBefore, MeshProblem, MeshSequence
-from fea.core.pin_loads import Loads, PinLoads, UnitLoad
-from fea.core.solution import Picture
+from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.zone import DISTANCE_VARIATIONS, Zone
 from fea.singular.probes import all_round, rim
 from fea.singular.singularities import clamp_rims, free_of_arcs, outside
-from fea.solid.model import SolidModel, UnitFields, acting
+from fea.solid.field import SolidField, SolidSolution, in_none
+from fea.solid.model import SolidModel, acting
 from fea.solid.sharp_edges import sharp_edges
 from fea.solid.superposition import envelope
-from geometry import CutPin, Pin, PinLike
+from geometry import PinLike
 from geometry.imported.meshing import solid_mesh
 from geometry.mesh.elements import Element
 from geometry.mesh.solid_mesh import MeshSize
 from geometry.shape.pin import END_FACES
-from pinbase.arrays import Floats, Mask
 
 # Tetrahedra are larger than a small step. What the harmonic model feels at its corner, a tenth of
 # the step away from it, is 1.6 to 2.1 times the stress of the shaft there.
@@ -35,31 +35,6 @@ SOLID_MESHES = MeshSequence(
     ratio=2.0**0.5, growth=3.0, max_meshes=4, max_unknowns=300_000, scatter=0.13
 )
 GIVEN_SOLID_MESHES = replace(SOLID_MESHES, ratio=2.0)
-
-
-@dataclass(frozen=True)
-class SolidSolution:
-    """The unit fields on one mesh, and which of their points are in each singularity.
-
-    varied: the points that are in none if half and twice the distance is excluded.
-    """
-
-    fields: UnitFields
-    singularities: tuple[Zone, ...]
-    within: tuple[Mask, ...]
-    varied: tuple[Mask, ...]
-
-    @property
-    def outside(self) -> Mask:
-        """The points that are in no singularity."""
-        return _in_none(self.within, len(self.fields.points))
-
-
-def _in_none(within: Iterable[Mask], count: int) -> Mask:
-    out = np.ones(count, dtype=bool)
-    for mask in within:
-        out &= ~mask
-    return out
 
 
 def solid_solution(
@@ -83,24 +58,24 @@ def solid_solution(
     """
     names = tuple(dict.fromkeys(name for c in cases for name in c.surfaces))
     edges = tuple(z for name in names for z in (pin.band(name).z0, pin.band(name).z1))
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if isinstance(profile, Pin):
+    profile = pin.profile
+    if profile is not None:
         turned = tuple(name for name in clamps if name in (*END_FACES, *profile.labels))
         edges += tuple(z for _, z in clamp_rims(profile, turned))
     mesh = solid_mesh(pin, size, tuple(dict.fromkeys(edges)), element)
     units = acting(cases) or ((UnitLoad(names[0], "force", 1), 0),)  # whose coefficient is zero
     model = SolidModel(pin, mesh, material, clamps)
     require_memory(pin.name, model.unknowns, memory)
-    if isinstance(pin, Pin):
+    if profile is not None and pin.revolved:
         near = [[p.varied(x) for p in singularities] for x in (1.0, *DISTANCE_VARIATIONS)]
-        rims = [all_round(rim(pin, p, p.radius)) for here in near for p in here]
+        rims = [all_round(rim(profile, p, p.radius)) for here in near for p in here]
         fields = model.solve(units, np.concatenate([np.zeros((0, 3)), *rims]))
         r, z = np.hypot(*fields.points[:, :2].T), fields.points[:, 2]
         within, *varied = ([~outside((p,), r, z) for p in here] for here in near)
         zones = list(singularities)
     else:
         fields = model.solve(units)
-        limit = partial(free_of_arcs, profile) if isinstance(profile, Pin) else None
+        limit = partial(free_of_arcs, profile) if profile is not None else None
         edge = sharp_edges(fields.space, fields.surface, clamps, limit)
         at = [
             edge.singularities(fields.points, times * distance)
@@ -110,7 +85,7 @@ def solid_solution(
         zones = [singularity for singularity, _ in at[0]]
     count = len(fields.points)
     return SolidSolution(
-        fields, tuple(zones), tuple(within), tuple(_in_none(masks, count) for masks in varied)
+        fields, tuple(zones), tuple(within), tuple(in_none(masks, count) for masks in varied)
     )
 
 
@@ -125,6 +100,8 @@ class SolidMeshSolution:
     solution: SolidSolution
     ratio: float
     before: Mapping[str, MeshMaximum]
+
+    solids: ClassVar[tuple[tuple[float, float], ...]] = ()
 
     @property
     def zones(self) -> tuple[Zone, ...]:
@@ -165,38 +142,6 @@ class Solid:
         )  # fmt: skip
         maxima = {} if before is None else before.maxima
         return SolidMeshSolution(solution, self.meshes.ratio, maxima)
-
-
-class SolidField:
-    """The stress of a solid under any combination of its unit loads (fea.core.solution)."""
-
-    def __init__(self, solution: SolidSolution) -> None:
-        self.solution = solution
-
-    def maxima(self, loads: Loads, _: float = 0.0) -> Floats:
-        """Largest von Mises stress (T,) Pa at every instant outside the singularities."""
-        return envelope(self.solution.fields, loads, self.solution.outside).maxima
-
-    def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the number of its instant."""
-        top = envelope(self.solution.fields, loads, self.solution.outside)
-        return top.maximum, top.instant
-
-    def picture(self, loads: PinLoads, instant: int) -> Picture:
-        """The body at one instant, with its envelope over all instants."""
-        fields = self.solution.fields
-        top = envelope(fields, loads)
-        c = fields.coefficients(loads)[instant]
-        over_all = np.full(len(fields.space.nodes), np.nan)
-        over_all[fields.surface.nodes] = top.field
-        return Picture(
-            points=fields.space.nodes,
-            cells=fields.space.elements,
-            cell_type="tetra10" if fields.space.quadratic else "tetra",
-            displacement=fields.displacement @ c,
-            stress=fields.stress @ c,
-            envelope=over_all,
-        )
 
 
 def solid_result(

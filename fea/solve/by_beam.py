@@ -10,7 +10,7 @@ from fea.core.peak import NO_REASON, Reason
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.support.support import HeldPin, PinProblem, Solution, StressReading
-from geometry import Pin
+from geometry import body_of_revolution
 
 
 def by_beam(
@@ -24,8 +24,8 @@ def by_beam(
 
     remark: appended to its note.
     """
-    start, rise, pin = time.perf_counter(), 0.0, held.pin
-    assert isinstance(pin, Pin)
+    start, rise, pin = time.perf_counter(), 0.0, body_of_revolution(held.pin)
+    assert pin is not None
     remarks = held.notes.get(case.case, NO_REASON) + remark
     loads = held.start(case.case)
     field = BeamField(pin, problem.material, held.clamps, loads)

@@ -27,15 +27,16 @@ from fea.core.zone import Zone
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.singular.singularities import begins, singularities_of
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading
-from geometry import CutPin, Pin, PinLike
+from geometry import PinLike
 
 MESH_RATIO = SECTION_MESHES.ratio
 LOCAL_MODEL: Final = "harmonic+local"
-NO_MESHES = MeshSequence(MESH_RATIO, 0.0, 1, 0, 0.0)  # of a model without any
 
 
-def sequence_of(pin: PinLike, model: str) -> MeshSequence:
-    """The sequence of meshes by which a model, given by its name, refines a pin."""
+def sequence_of(pin: PinLike, model: str) -> MeshSequence | None:
+    """The sequence of meshes by which a model, given by its name, refines a pin; None for a model
+    without meshes.
+    """
     # Models are imported where they are used: a plain pin does not wait for those of others.
     if model == "solid":
         from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
@@ -45,7 +46,7 @@ def sequence_of(pin: PinLike, model: str) -> MeshSequence:
         from fea.cut.evaluate import LOCAL_MESHES
 
         return LOCAL_MESHES
-    return SECTION_MESHES if model == "harmonic" else NO_MESHES
+    return SECTION_MESHES if model == "harmonic" else None
 
 
 def count_loads(cases: tuple[PinLoads, ...]) -> int:
@@ -66,12 +67,14 @@ def zones_of(
     """
     # Only the profile of a pin with cuts is a body of revolution, for which zones are known. Where
     # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
-    turned, openings = pin, tuple[tuple[float, float], ...]()
-    if isinstance(pin, CutPin) and not pin.revolved:
+    openings: list[tuple[float, float]] = []
+    if pin.cuts:
         from fea.cut.region import unringed
 
-        turned, openings = pin.profile, tuple(c.opens for c in unringed(pin).cuts.values())
-    profile_zones = singularities_of(turned, material, clamps, cases, requirement.distance)
+        openings = [cut.opens for cut in unringed(pin).cuts.values()]
+    profile_zones = singularities_of(
+        pin.profile or pin, material, clamps, cases, requirement.distance
+    )
     return tuple(
         zone.up_to(*(begins(max(a - zone.z, zone.z - b), (b - a) / 2.0) for a, b in openings))
         for zone in profile_zones
@@ -145,9 +148,9 @@ def _posed(
     """
     pin, clamps, material = held.pin, held.clamps, problem.material
     cases = tuple(held.start(case.case) for case in problem.cases)
-    turned = pin.profile if isinstance(pin, CutPin) and model.name == LOCAL_MODEL else pin
+    turned = (pin.profile or pin) if model.name == LOCAL_MODEL else pin
     zones, acting = tuple[Zone, ...](), dict[str, tuple[Zone, ...]]()
-    if isinstance(turned, Pin):
+    if turned.revolved:
         zones = zones_of(pin, clamps, material, cases, requirement)
         acting = {c.case: zones_of(pin, clamps, material, (c,), requirement) for c in cases}
     return MeshProblem(
@@ -222,11 +225,6 @@ def _reading(
     """What the last mesh says about a case."""
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
-    evidence = replace(evidence, governing=governing, history=seen.under(governing))
-    if seen.model == LOCAL_MODEL:
-        from fea.cut.evaluate import CutField
-
-        assert isinstance(field, CutField)
-        solids = tuple((p.piece.z0, p.piece.z1) for p in field.solution.pieces)
-        evidence = replace(evidence, solids=solids)
+    history = seen.under(governing)
+    evidence = replace(evidence, governing=governing, history=history, solids=mesh.solids)
     return StressReading(evidence, field, loads, instant)

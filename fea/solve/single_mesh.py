@@ -19,7 +19,7 @@ from fea.core.pin_loads import PinLoads
 from fea.core.zone import Zone
 from fea.harmonic.evaluate import Harmonic
 from fea.singular.singularities import singularities_of
-from geometry import ArgumentError, CutPin, Pin, PinLike
+from geometry import ArgumentError, CutPin, PinLike, body_of_revolution
 from geometry.mesh.elements import Element
 
 
@@ -50,7 +50,7 @@ class ModelMesh:
 
     element: of the solid model.
     level: 0 is the first mesh of a run; each further one is finer by the square root of 2 (with
-    local solids by fea.cut.local_fields.LOCAL_MESH_RATIO), those below 0 are coarser.
+    local solids by fea.cut.local_solution.LOCAL_MESH_RATIO), those below 0 are coarser.
     """
 
     model: Literal["beam", "harmonic", "harmonic+local", "solid"]
@@ -71,9 +71,10 @@ def result_on(
     """
     pin, loads = problem.pin, problem.loads
     if rung.model == "beam":
-        if not isinstance(pin, Pin):
+        profile = body_of_revolution(pin)
+        if profile is None:
             raise ArgumentError(f"pin {pin.name} is not a body of revolution", "not-axisymmetric")
-        beam = BeamField(pin, problem.material, problem.clamps, loads)
+        beam = BeamField(profile, problem.material, problem.clamps, loads)
         return beam.result(problem.singularities)
     model, posed = _posed(problem, rung)
     below = MeshBefore(None, {str(k): result for k, result in enumerate(before)})

@@ -17,7 +17,7 @@ from fea.section.place import found_section
 from fea.section.row import row_of
 from fea.section.section_stress import SectionField
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
-from geometry import Pin, PinLike
+from geometry import PinLike, body_of_revolution
 
 MIN_REPORTED_IMBALANCE = 1e-6  # of the largest load: smaller imbalances are not reported
 
@@ -90,9 +90,10 @@ class HeldPrescribed:
             peak = judge(evidence, requirement.tolerance)
             return Solution(peak, reading.answer, loads, instant, self)
         section = None
-        if isinstance(self.pin, Pin):
+        profile = body_of_revolution(self.pin)
+        if profile is not None:
             given = self.start(case)
-            stress = SectionField(self.pin, material, self.clamps, (given,))
+            stress = SectionField(profile, material, self.clamps, (given,))
             between = self.problem.between.get(case)
             section = found_section(stress, given, between, requirement.tolerance)
         peak = row_of(evidence, section, material, requirement.tolerance)

@@ -16,7 +16,7 @@ from fea.core.verdict import Evidence
 from fea.support.cell_pressure import CellPressure
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointResult
-from geometry import Pin, PinLike
+from geometry import Pin, PinLike, body_of_revolution
 from pinbase.memo import Memo
 
 Progress = Callable[[str], None]
@@ -171,5 +171,6 @@ class Solution:
         """The body of revolution on which the loads of lugs act, its bands cut; None without lugs,
         and of pins with cuts.
         """
-        pin = None if self.held is None or self.pressure is None else self.held.pin
-        return pin if isinstance(pin, Pin) else None
+        if self.held is None or self.pressure is None:
+            return None
+        return body_of_revolution(self.held.pin)

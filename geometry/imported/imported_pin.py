@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar
+from types import MappingProxyType
+from typing import Any, ClassVar, Never
 
 import numpy as np
 from skfem import MeshTet2
@@ -49,6 +50,8 @@ class SolidBody:
     source: str = field(default="", compare=False)
 
     revolved: ClassVar[bool] = False  # at least it is not known to be
+    profile: ClassVar[None] = None
+    cuts: ClassVar[Mapping[str, Never]] = MappingProxyType({})
 
     def __post_init__(self) -> None:
         if not self.file.path.is_file():

@@ -108,22 +108,22 @@ def _mesh(
     pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element
 ) -> SolidMesh:
     """A mesh of a pin of this size, after repair; arguments as of `solid_mesh`."""
-    profile = pin.profile if isinstance(pin, CutPin) else pin
+    profile = pin.profile
     _require_reasonable(profile, size)
     unit = unit_of_solid(profile)
     pin, profile = pin.scaled(1.0 / unit), profile.scaled(1.0 / unit)
     edges = tuple(z / unit for z in edges)
     with gmsh_model(pin.name) as gmsh:
         more: list[int] = []
-        if isinstance(pin, CutPin):
-            cut_solid(gmsh, pin.profile, pin.cuts)
-            surfaces = name_faces(gmsh, pin.profile, pin.cuts)
+        if pin.cuts:
+            cut_solid(gmsh, profile, pin.cuts)
+            surfaces = name_faces(gmsh, profile, pin.cuts)
             far = _far(profile, size)
             more = grade(gmsh, pin.cuts, surfaces, far, size.across, size.growth)
         else:
-            outline = meridian(pin)
+            outline = meridian(profile)
             revolve(gmsh, outline)
-            surfaces = _name_surfaces(gmsh, pin, outline)
+            surfaces = _name_surfaces(gmsh, profile, outline)
         set_sizes(gmsh, profile, size, edges, more)
         gmsh.model.mesh.generate(3)
         if element == "linear":

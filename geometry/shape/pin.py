@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import ClassVar
+from types import MappingProxyType
+from typing import ClassVar, Never
 
 import numpy as np
 
@@ -74,6 +76,7 @@ class Pin:
 
     revolved: ClassVar[bool] = True
     meshed: ClassVar[bool] = False
+    cuts: ClassVar[Mapping[str, Never]] = MappingProxyType({})
 
     def __post_init__(self) -> None:
         _check_dimensions(self)
@@ -81,6 +84,11 @@ class Pin:
         object.__setattr__(self, "segments", segments)
         object.__setattr__(self, "merged", difference)
         _check(self)
+
+    @property
+    def profile(self) -> Pin:
+        """The pin itself, which has no cuts (geometry.shape.pin_like)."""
+        return self
 
     @cached_property
     def tolerance(self) -> float:

@@ -54,8 +54,8 @@ def _by_kernel(limits: Limits) -> Iterator[None]:
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     if limits.memory < inf:
         pages = int(Path("/proc/self/statm").read_text().split()[0])
-        asked = pages * resource.getpagesize() + int(limits.memory)
-        most = min(n for n in (asked, soft, hard) if n != resource.RLIM_INFINITY)
+        requested = pages * resource.getpagesize() + int(limits.memory)
+        most = min(n for n in (requested, soft, hard) if n != resource.RLIM_INFINITY)
         resource.setrlimit(resource.RLIMIT_AS, (most, hard))
     timers = {signal.ITIMER_PROF: limits.seconds, signal.ITIMER_REAL: limits.clock}
     for number in signal.SIGPROF, signal.SIGALRM:

@@ -78,7 +78,7 @@ def cores() -> int:
     return (os.cpu_count() or 1) if portable() else len(os.sched_getaffinity(0))
 
 
-def processes(asked: int | None) -> int:
+def processes(requested: int | None) -> int:
     """Return the number of jobs to run at a time: the number requested, or that of the cores.
 
     It is one, in this process, where other threads run: a forked process would wait for them
@@ -87,8 +87,8 @@ def processes(asked: int | None) -> int:
     Raises: InputError for an invalid number of jobs.
     """
     if portable():
-        return asked or cores()
-    return (asked or cores()) if can_fork() else 1
+        return requested or cores()
+    return (requested or cores()) if can_fork() else 1
 
 
 def can_fork() -> bool:

@@ -52,7 +52,7 @@ log = logging.getLogger(__name__)
 class OutcomeStore(Protocol):
     """Where solved pins are kept by the content of all they depend on."""
 
-    def key(self, asked: object) -> str: ...
+    def key(self, inputs: object) -> str: ...
     def read(self, key: str, kind: type[T]) -> T | None: ...
     def write(self, key: str, value: object) -> None: ...
 
@@ -65,11 +65,11 @@ class Cache:
     program: str
     limit: int = MAX_CACHE_SIZE
 
-    def key(self, asked: object) -> str:
+    def key(self, inputs: object) -> str:
         """Return the name of the answer to a question (a value that pinbase.records
         packs).
         """
-        return hashlib.sha256(self.program.encode() + pack(asked)).hexdigest()
+        return hashlib.sha256(self.program.encode() + pack(inputs)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:
         """Return the stored answer as a `kind`; None when there is none that can be trusted."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from assess.opinion.calculix_compare import second_opinions
 from assess.opinion.calculix_in_lugs import PinInLugs, opinion_in_lugs
 from assess.opinion.opinions import Opinion
-from geometry import Pin
+from geometry import body_of_revolution
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
@@ -21,7 +21,7 @@ def ask_calculix(
 
 def _alone(plan: Plan, task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opinion, ...]:
     """Return the opinions on a pin with prescribed clamps and loads."""
-    peaks, distance = tuple(row.maximum for row in rows), plan.asked.distance
+    peaks, distance = tuple(row.maximum for row in rows), plan.requirement.distance
     try:
         return second_opinions(
             task.pin, task.material, task.clamps, task.loads, peaks, distance, tell
@@ -36,13 +36,14 @@ def _alone(plan: Plan, task: Task, rows: tuple[PinResult, ...], tell: Tell) -> t
 
 def _in_lugs(task: Task, rows: tuple[PinResult, ...], tell: Tell) -> tuple[Opinion, ...]:
     """Return the opinions on the loaded rows of a pin in lugs."""
-    if not isinstance(task.pin, Pin):
+    pin = body_of_revolution(task.pin)
+    if pin is None:
         why = "contact of a pin with holes is not compared with CalculiX"
         return tuple(
             Opinion(row.pin, row.case, row.max_von_mises, row.maximum.own_error, failure=why)
             for row in rows
         )
-    seated = PinInLugs(task.pin, task.material, task.lugs)
+    seated = PinInLugs(pin, task.material, task.lugs)
     return tuple(
         opinion_in_lugs(seated, row.maximum, row.joint, tell)
         for row in rows

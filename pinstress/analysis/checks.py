@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from assess.opinion.records import BeamCheck
-from geometry import Pin
+from geometry import body_of_revolution
 from loads import GROUND, Lever, Linkage, Slider
 from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.tasks import Task
@@ -18,8 +18,12 @@ from reports.data import results as plain
 def require_cantilever(study: Study, task: Task, case: str) -> None:
     """Raise InputError unless the pin of the beam check is a cantilever with one load."""
     loads = next(c for c in task.loads if c.case == case)
-    turned = isinstance(task.pin, Pin)
-    if not turned or task.clamps != ("start",) or len(loads.surfaces) != 1 or loads.moments.any():
+    if (
+        not task.pin.revolved
+        or task.clamps != ("start",)
+        or len(loads.surfaces) != 1
+        or loads.moments.any()
+    ):
         raise study.error(
             f"beam_check: pin {task.pin.name} must be a plain profile, clamped at "
             "its start face alone and loaded on one band, by forces alone, to be a cantilever",
@@ -31,9 +35,9 @@ def beam_check(study: Study, task: Task) -> BeamCheck:
     """Return the beam check of a pin at the instant of its largest force."""
     from assess.opinion.cantilever import beam_check as compare_with_beam  # imports a model
 
-    check, pin = study.table.beam_check, task.pin
+    check, pin = study.table.beam_check, body_of_revolution(task.pin)
     assert check is not None
-    assert isinstance(pin, Pin)
+    assert pin is not None
     loads = next(c for c in task.loads if c.case == check.case)
     return compare_with_beam(pin, task.material, loads, check.axis_bore)
 

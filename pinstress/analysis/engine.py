@@ -35,9 +35,9 @@ class SolvedPins:
     def __init__(self, memo: Memo) -> None:
         self._memo = memo
 
-    def key(self, asked: object) -> str:
-        """The name of the answer to what is asked (pinbase.records takes it)."""
-        return hashlib.sha256(pack(asked)).hexdigest()
+    def key(self, inputs: object) -> str:
+        """The name of what these inputs yield (pinbase.records packs them)."""
+        return hashlib.sha256(pack(inputs)).hexdigest()
 
     def read(self, key: str, kind: type[T]) -> T | None:
         """The value of a key, a `kind`; None where nothing is remembered."""
@@ -126,5 +126,5 @@ def _of_pin(key: str) -> bool:
 
 def _quick(plan: Plan) -> Plan:
     """A plan with a tolerance that few meshes meet, and rough cells of contact."""
-    tolerance = max(plan.asked.tolerance, QUICK_TOLERANCE)
-    return replace(plan, asked=replace(plan.asked, tolerance=tolerance, cells="rough"))
+    tolerance = max(plan.requirement.tolerance, QUICK_TOLERANCE)
+    return replace(plan, requirement=replace(plan.requirement, tolerance=tolerance, cells="rough"))

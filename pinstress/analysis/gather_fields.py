@@ -8,10 +8,8 @@ import numpy as np
 
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
-from fea.core.solution import StressField
+from fea.core.solution import Picture, StressField
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicField
-from fea.harmonic.revolve import revolve_solid
 from fea.support.cell_pressure import CellPressure
 from fea.support.support import Solution
 from pinstress.analysis.plan import ExtraFields
@@ -65,18 +63,17 @@ def field(
             _still(task, solution.answer, loads, i, float(times[i]))
             for i in instants(len(loads), governing)
         ),
-        volume=_volume(solution.answer, loads, governing) if also == "solid" else None,
+        volume=_volume(solution.answer.volume(loads, governing)) if also == "solid" else None,
         contact_pressure=contact,
         pressed=pressed,
         solids=peak.solids,
     )
 
 
-def _volume(answer: StressField, loads: PinLoads, instant: int) -> plain.Volume | None:
+def _volume(shown: Picture | None) -> plain.Volume | None:
     """Return the whole of a revolved pin; None for a solid model, whose field has it already."""
-    if not isinstance(answer, HarmonicField):
+    if shown is None:
         return None
-    shown = revolve_solid(answer.fields, loads, instant, answer.solution.nu)
     return plain.Volume(
         shown.points,
         shown.cells,

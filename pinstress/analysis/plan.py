@@ -57,7 +57,7 @@ class Plan:
     """
 
     study: Study
-    asked: Requirement
+    requirement: Requirement
     loads: dict[str, CaseLoads]
     tasks: list[Task]
     published: Published
@@ -96,7 +96,7 @@ def prepare(
         )
     names = select(study.table.pin, pins, "pin")
     chosen = chosen_cases(study, cases)
-    asked = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
+    requirement = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
     loads = wrong.attempt(lambda: all_loads(study, chosen))
@@ -114,16 +114,16 @@ def prepare(
         if checked is not None:
             checks.require_cantilever(study, checked, check.case)
     for task in todo:
-        if asked.model in ("beam", "harmonic") and not task.pin.revolved:
+        if requirement.model in ("beam", "harmonic") and not task.pin.revolved:
             raise study.error(
                 f"pin {task.pin.name} is not a body of revolution, which the "
-                f"{asked.model} model needs: use auto or solid",
+                f"{requirement.model} model needs: use auto or solid",
                 at=f"pin.{task.pin.name}",
                 code="not-of-revolution",
             )
         if task.lugs:
-            _require_model(study, asked.model, task.pin.name)
-    return Plan(study, asked, loads, todo, published, checked, also, limit_load=limit_load)
+            _require_model(study, requirement.model, task.pin.name)
+    return Plan(study, requirement, loads, todo, published, checked, also, limit_load=limit_load)
 
 
 def _require_model(study: Study, model: Model, pin: str) -> None:

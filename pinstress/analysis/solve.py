@@ -14,7 +14,6 @@ from fea.core.memory import allowed_memory, solid_memory
 from fea.core.peak import Maximum
 from fea.core.requirement import Joints, Requirement
 from fea.support.records import JointResult
-from geometry import Pin
 from pinbase.memo import Memo
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
 from pinbase.records import Unit, in_units
@@ -91,7 +90,7 @@ def _together(plan: Plan, jobs: int) -> int:
         return jobs
     from fea.solid.evaluate import SOLID_MESHES
 
-    room = allowed_memory(plan.asked.memory) / solid_memory(SOLID_MESHES.max_unknowns)
+    room = allowed_memory(plan.requirement.memory) / solid_memory(SOLID_MESHES.max_unknowns)
     return max(1, min(jobs, int(room)))
 
 
@@ -100,7 +99,7 @@ def _effort(plan: Plan, task: Task) -> tuple[bool, int, int, int]:
 
     Lugs at connections, which move more than those of the structure, count twice.
     """
-    solid = plan.asked.model == "solid" or not task.pin.revolved
+    solid = plan.requirement.model == "solid" or not task.pin.revolved
     lugs = len(task.lugs) + sum(lug.connection in task.pin.connections for lug in task.lugs)
     return solid, lugs, len(task.loads), sum(map(len, task.loads))
 
@@ -167,13 +166,13 @@ def entry_keys(plan: Plan, task: Task, cache: OutcomeStore) -> tuple[str, str | 
 
 
 def _failed(plan: Plan, task: Task, reason: str) -> PinOutcome:
-    name, model = task.pin.name, plan.asked.model
+    name, model = task.pin.name, plan.requirement.model
     peaks = (Maximum(name, case.case, model, "failed", reason) for case in task.loads)
     return PinOutcome(tuple(assessed(plan.study, task, PinResult(peak)) for peak in peaks))
 
 
 def solutions(
-    study: Study, task: Task, asked: Requirement, tell: Tell, memo: Memo | None = None
+    study: Study, task: Task, requirement: Requirement, tell: Tell, memo: Memo | None = None
 ) -> tuple[Solution, ...]:
     """Return the solutions of a task's cases.
 
@@ -188,7 +187,7 @@ def solutions(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         memo,
     )  # fmt: skip
-    return solve(problem, replace(asked, joints=_joints(study, task)), tell)
+    return solve(problem, replace(requirement, joints=_joints(study, task)), tell)
 
 
 def _joints(study: Study, task: Task) -> Joints:
@@ -197,7 +196,7 @@ def _joints(study: Study, task: Task) -> Joints:
     if joints == "contact" or joints == "foundation":
         return joints
     # A beam sees no holes; damage depends on stress itself, not on a limit.
-    return "auto" if isinstance(task.pin, Pin) and study.table.fatigue is None else "contact"
+    return "auto" if task.pin.revolved and study.table.fatigue is None else "contact"
 
 
 def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: Tell) -> PinOutcome:
@@ -207,7 +206,7 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
     from pinstress.analysis.remedies.sensitivities import sensitivities
 
     study = plan.study
-    solved = solutions(study, task, plan.asked, tell, memo)
+    solved = solutions(study, task, plan.requirement, tell, memo)
     pressures = [solution.pressure for solution in solved]
     if keep is not None:
         for solution, pressure in zip(solved, pressures, strict=True):
@@ -223,10 +222,10 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    remedy = change(plan.asked, task, solved)
+    remedy = change(plan.requirement, task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
-    sensitive = sensitivities(study, plan.asked, task, solved, step, plan.sensitive)
+    sensitive = sensitivities(study, plan.requirement, task, solved, step, plan.sensitive)
     rows = _rows(plan, task, solved, tell)
     return PinOutcome(rows, surfaces, histories, no_histories, sensitive, remedy, beam_check)
 
@@ -253,7 +252,7 @@ def judged(plan: Plan, task: Task, tell: Tell, memo: Memo | None = None) -> PinO
 
     Raises: ArgumentError, MeshError, SolveError.
     """
-    solved = solutions(plan.study, task, plan.asked, tell, memo)
+    solved = solutions(plan.study, task, plan.requirement, tell, memo)
     rows = (assessed(plan.study, task, row) for row in _rows(plan, task, solved, tell))
     if plan.study.table.fatigue is None:
         return PinOutcome(tuple(rows))
@@ -291,5 +290,5 @@ def _around(plan: Plan, task: Task, solved: tuple[Solution, ...]) -> tuple[Joint
     from fea.support.foundation.variations import prescribed_ranges
 
     return prescribed_ranges(
-        around.pin, task.material, around.lugs, loads, (plan.asked.distance, around.assumed)
+        around.pin, task.material, around.lugs, loads, (plan.requirement.distance, around.assumed)
     )

@@ -87,7 +87,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         task.impulses,
         [(case.reactions.times, case.range) for case in cases],
         task.material,
-        replace(plan.asked, memory=None),
+        replace(plan.requirement, memory=None),
         plan.also,
         plan.sensitive,
         study.system,
@@ -121,18 +121,17 @@ def independent_of_memory(plan: Plan, task: Task, peaks: Iterable[Maximum]) -> b
     from fea.solve.refine import count_loads, sequence_of  # imports the models
 
     open_ = [
-        p
+        (p, meshes)
         for p in peaks
-        if sequence_of(task.pin, p.model).max_unknowns
+        if (meshes := sequence_of(task.pin, p.model)) is not None
         and p.max_von_mises is not None
-        and (p.own_error or inf) > plan.asked.tolerance * p.max_von_mises
+        and (p.own_error or inf) > plan.requirement.tolerance * p.max_von_mises
     ]
     if not open_:
         return True
-    model = open_[0].model
-    meshes = sequence_of(task.pin, model)
-    if len(open_[0].history) >= (plan.asked.meshes or meshes.max_meshes):
+    first, meshes = open_[0]
+    if len(first.history) >= (plan.requirement.meshes or meshes.max_meshes):
         return True
-    finer = meshes.unknowns_after(max(p.dofs for p in open_))
-    loads = count_loads(task.loads) if model == "harmonic" else 0
-    return finer > meshes.max_unknowns or not too_much(finer, plan.asked.memory, loads)
+    finer = meshes.unknowns_after(max(p.dofs for p, _ in open_))
+    loads = count_loads(task.loads) if first.model == "harmonic" else 0
+    return finer > meshes.max_unknowns or not too_much(finer, plan.requirement.memory, loads)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fea.core.pin_loads import Floats
-from fea.solve.surface_fields import UnitSurface
+from fea.core.unit_surface import UnitSurface
 from geometry.shape.chords import needed
 from reports.data.surface import Mask, SurfaceCase
 

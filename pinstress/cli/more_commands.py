@@ -275,14 +275,14 @@ def size(
     from pinstress.cli.least_weight import Wishes, lighten_and_write, require_aim
     from pinstress.cli.size import SizeOptions, require_wish, size_and_write
 
-    asked = Wishes(**wishes)
-    if asked.given and not least_weight:
-        raise InputError(f"{asked.given[0]} needs --least-weight", code="needs-least-weight")
+    wished = Wishes(**wishes)
+    if wished.given and not least_weight:
+        raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
     if least_weight and resume:
         raise InputError("--resume is not for --least-weight", code="contradiction")
     if least_weight:
-        aim = require_aim(loaded, asked, require_wish(loaded, fos, metres).required, metres)
-        return lighten_and_write(loaded, aim, out, pins, quiet, jobs, asked.probability)
+        aim = require_aim(loaded, wished, require_wish(loaded, fos, metres).required, metres)
+        return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
     options = SizeOptions(out, pins, jobs, resume, quiet)
     return size_and_write(loaded, require_wish(loaded, fos, metres), options)
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
-from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment
+from geometry import CutPin, Flat, GeometryError, Hole, Pin, PinLike, Segment, body_of_revolution
+from geometry.imported.body_file import BodyFile
+from geometry.imported.imported_pin import SolidBody
+from geometry.mesh.gmsh_session import gmsh_model
 from pinstress.study.model.pins import weight
 from tests.support.errors import raises
 
@@ -44,6 +48,27 @@ def test_only_one_is_the_same_all_round() -> None:
     whole = CutPin(TURNED, (), ())
     assert whole.revolved
     assert whole.volume == TURNED.volume
+
+
+def test_profile_and_cuts(tmp_path: Path) -> None:
+    """A model asks a pin for these two, whatever it is: a body of revolution is its own profile
+    and has no cuts; a pin with no cut left is one, too; a square bar from a file has no profile.
+    """
+    assert TURNED.profile is TURNED
+    assert not TURNED.cuts
+    assert body_of_revolution(TURNED) is TURNED
+    assert CUT.profile is TURNED
+    assert list(CUT.cuts) == ["hole 1", "flat 1"]
+    assert body_of_revolution(CUT) is None
+    assert body_of_revolution(CutPin(TURNED)) is TURNED
+    with gmsh_model("P") as gmsh:
+        gmsh.model.occ.addBox(0.0, 0.0, 0.0, 1.0, 1.0, 4.0)
+        gmsh.model.occ.synchronize()
+        gmsh.write(str(tmp_path / "bar.step"))
+    body: PinLike = SolidBody(BodyFile("P", tmp_path / "bar.step", 0.01, ()))
+    assert body.profile is None
+    assert not body.cuts
+    assert body_of_revolution(body) is None
 
 
 def test_a_cut_takes_its_volume() -> None:

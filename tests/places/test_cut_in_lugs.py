@@ -11,7 +11,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.pressed import PressedArcs, Rings
 from fea.core.requirement import Requirement
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.free_points import FreePoints, relieved
 from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug

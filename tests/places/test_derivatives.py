@@ -29,7 +29,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.free_surface import surface_points
 from fea.solve.solve import solve_in_lugs, solve_pin
 from fea.support.contact.solve_joint import Resolution

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from assess.fatigue.critical_points import stress_histories
-from assess.fatigue.stress_points import StressPoints, stress_points
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
+from fea.core.solution import StressPoints
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_in_lugs
 from fea.support.lugs.lug import Lug
@@ -83,8 +83,8 @@ def test_a_point_beside_an_edge_has_both_halves_of_its_range() -> None:
     last free value kept while a lug presses it would be half.
     """
     found = solved(1.0)
-    known = stress_points(found.answer, found.loads)
-    assert known is not None
+    assert found.answer is not None
+    known = found.answer.points(found.loads)
     assert found.joint is not None
     edge = pin(1.0).band("B").z0
     rows = np.flatnonzero(known.surface & (np.abs(known.points[:, 2] - edge) < 0.04 * D))
@@ -108,8 +108,8 @@ def test_of_a_pin_with_cuts_too() -> None:
     """
     swing = []
     for found in (solved(1.15), solved(1.15, 0.05 * D)):
-        known = stress_points(found.answer, found.loads)
-        assert known is not None
+        assert found.answer is not None
+        known = found.answer.points(found.loads)
         r, z = np.hypot(*known.points.T[:2]), known.points[:, 2]
         fillet = known.surface & (z < pin(1.15).stations[3]) & (r < 0.52 * D) & (r > 0.5 * D)
         swing.append(float(_swing(known, known.points[fillet]).max()))

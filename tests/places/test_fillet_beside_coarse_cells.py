@@ -9,7 +9,8 @@ import pytest
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.support.contact.solve_joint import ContactModel, Resolution
 from fea.support.lugs.lug import Lug

@@ -41,9 +41,9 @@ def clevis(fillet: float, apart: float) -> Pin:
     )
 
 
-def solved(pin: Pin, joints: str, asked: Requirement) -> Solution:
+def solved(pin: Pin, joints: str, requirement: Requirement) -> Solution:
     lugs = tuple(Lug(n, 0.06, STEEL, edge_radius=2e-4, tilt=2e5) for n in "LMR")
-    return solve(PinProblem(pin, STEEL, lugs, (PULL,)), replace(asked, joints=joints))[0]  # type: ignore[arg-type]
+    return solve(PinProblem(pin, STEEL, lugs, (PULL,)), replace(requirement, joints=joints))[0]  # type: ignore[arg-type]
 
 
 def test_places_of_a_row() -> None:

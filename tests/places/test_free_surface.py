@@ -13,8 +13,8 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.pressed import ARC_ANGLES, ARC_COUNT, UNREAD_EDGE_RINGS, PressedArcs
 from fea.core.voigt import von_mises
 from fea.harmonic.beneath import ARC_STRIDE, _distance, depths
-from fea.harmonic.evaluate import SectionProblem, harmonic_solution
 from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference
 from fea.support.contact.pressure_loads import stacked
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution

@@ -13,7 +13,7 @@ from fea.core.pressed import PressedArcs
 from fea.core.requirement import Requirement
 from fea.core.solution import Picture
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.free_surface import FreeSurface
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import _first, sectors_of
@@ -42,8 +42,8 @@ TURNING = PinLoads("turning", ("A", "B"), FORCES, times=np.array([0.0, 1.0]))
 def found() -> Solution:
     """In single shear, in rigidly guided lugs that nearly touch."""
     lugs = tuple(Lug(n, 0.05, STEEL, 2e-5, 0.0, np.inf) for n in "AB")
-    asked = Requirement(0.05, cells="rough", meshes=1)
-    return solve_in_lugs(PinProblem(PIN, STEEL, lugs, (TURNING,)), asked)[0]
+    requirement = Requirement(0.05, cells="rough", meshes=1)
+    return solve_in_lugs(PinProblem(PIN, STEEL, lugs, (TURNING,)), requirement)[0]
 
 
 @pytest.fixture(scope="module")

@@ -80,10 +80,10 @@ def test_a_pin_is_sized_by_what_lies_beneath() -> None:
     assert [x.over for x in before.depends_on] == ["beneath"]
     assert (low_factor(before) or 0.0) < 2.6 < (before.safety_factor or 0.0)
     (task,) = tasks(study, [pin_of(study, "P")], prepare(study).loads)
-    asked = prepare(study).asked
-    found = solutions(study, task, asked, lambda _: None)
+    requirement = prepare(study).requirement
+    found = solutions(study, task, requirement, lambda _: None)
     made = [x for x in found if isinstance(x, Solution)]
-    remedy = change(asked, task, tuple(made))
+    remedy = change(requirement, task, tuple(made))
     assert remedy is not None
     strength = before.yield_strength or 0.0
     needed = strength * 2.6 / (low_factor(before) or 1.0)

@@ -18,7 +18,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.zone import DISTANCE_VARIATIONS
-from fea.harmonic.evaluate import SectionProblem, harmonic_solution
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import find_singularities, free_of_arcs, singularities_of
 from fea.solid.sharp_edges import SharpEdges
 from fea.solve.solve import solve_pin
@@ -150,8 +150,8 @@ def test_a_clamps_edge_beside_a_hole(steel: Material) -> None:
     loads = PinLoads("t", ("L",), np.array([[[0.0, 0.0, FORCE]]]))
     found = []
     for distance in (0.1, 0.2):
-        asked = Requirement(distance=distance, meshes=2)
-        peak = solve_pin(pin, steel, ("held",), (loads,), asked)[0].peak
+        requirement = Requirement(distance=distance, meshes=2)
+        peak = solve_pin(pin, steel, ("held",), (loads,), requirement)[0].peak
         found.append(peak.max_von_mises)
         assert [zone.excluded for zone in peak.singular_at][1] == pytest.approx(0.05 * D)
         assert peak.location is not None

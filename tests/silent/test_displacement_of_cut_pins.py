@@ -21,10 +21,9 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.solution import Picture
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.region import zone
 from fea.solve.solve import solve_pin
-from fea.solve.surface_fields import amounts, unit_surface
 from geometry import Cut, CutPin, Flat, Hole, Pin, PinLike, Segment
 from pinbase.arrays import Floats
 from tests.support.each import sampled
@@ -44,9 +43,11 @@ def loaded(force: list[float], moment: list[float] | None = None) -> PinLoads:
     return PinLoads("c", ("B",), np.array([[force]]), np.array([[moment or [0.0, 0.0, 0.0]]]))
 
 
-def shown(pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, asked: Requirement) -> Picture:
+def shown(
+    pin: PinLike, clamps: tuple[str, ...], loads: PinLoads, requirement: Requirement
+) -> Picture:
     """The surface at its governing instant."""
-    (solution,) = solve_pin(pin, STEEL, clamps, (loads,), asked)
+    (solution,) = solve_pin(pin, STEEL, clamps, (loads,), requirement)
     assert solution.answer is not None
     picture = solution.answer.picture(solution.loads, solution.instant)
     assert picture is not None
@@ -166,9 +167,8 @@ def test_there_is_no_jump_where_pieces_begin_and_end() -> None:
 
 def test_the_view_has_the_same(bar_with_flats: CutField) -> None:
     """The page superposes unit fields; what it shows is what is in the VTU file."""
-    surface = unit_surface(bar_with_flats)
-    assert surface is not None
-    seen = surface.displacement @ amounts(bar_with_flats, ALL)[0, :, 0]
+    surface = bar_with_flats.surface()
+    seen = surface.unit.displacement @ surface.amounts(ALL)[0, :, 0]
     largest = np.linalg.norm(seen, axis=1).max()
     assert largest > math.hypot(*at_tip(bar_with_flats.picture(ALL, 0))[:3])
     assert np.abs(seen - bar_with_flats.picture(ALL, 0).displacement).max() < 1e-9 * largest

@@ -37,13 +37,15 @@ def test_a_long_taper_breaks_where_its_diameter_has_grown_by_half(steel: Materia
     nominal = 32.0 * 1000.0 * (x + D / 2.0) / (math.pi * (D + TAPER * x) ** 3)
     top = int(nominal.argmax())
     assert D + TAPER * x[top] == pytest.approx(1.5 * TAPER * tip, rel=1e-3)
-    asked = Requirement(model="harmonic", tolerance=0.002)
-    (found,) = solve_pin(LONG, steel, ("end",), (replace(PUSH, distribution="cosine"),), asked)
+    requirement = Requirement(model="harmonic", tolerance=0.002)
+    (found,) = solve_pin(
+        LONG, steel, ("end",), (replace(PUSH, distribution="cosine"),), requirement
+    )
     peak = found.peak
     assert peak.max_von_mises == pytest.approx(nominal[top], rel=2e-3)
     assert peak.location is not None
     assert peak.location[2] == pytest.approx(D + x[top], abs=D)
-    beam = replace(asked, model="beam")
+    beam = replace(requirement, model="beam")
     (by_beam,) = solve_pin(LONG, steel, ("end",), (PUSH,), beam)
     assert "no-notch-factor" in by_beam.peak.reasons  # of the ends of cones
     assert by_beam.peak.verdict == "unconverged"
@@ -93,8 +95,8 @@ FILLETED = Pin(
 def test_harmonic_and_solid_agree_at_the_end_of_a_cone(steel: Material) -> None:
     loads = PinLoads("c", ("B",), np.array([[[1000.0, 0.0, 800.0]]]), distribution="cosine")
     peaks = [
-        solve_pin(FILLETED, steel, ("start",), (loads,), asked)[0].peak
-        for asked in (Requirement(model="harmonic"), Requirement(model="solid", meshes=2))
+        solve_pin(FILLETED, steel, ("start",), (loads,), requirement)[0].peak
+        for requirement in (Requirement(model="harmonic"), Requirement(model="solid", meshes=2))
     ]
     one, other = peaks
     assert one.verdict == "converged"

@@ -4,16 +4,16 @@ contact.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.places import BandPressure, ContactPlace, PressedCell
-from fea.cut.evaluate import CutField
-from fea.harmonic.beneath import Beneath, Steps, beneath, depths, stairs
-from fea.harmonic.evaluate import HarmonicField
+from fea.cut.field import CutField
+from fea.harmonic.beneath import Beneath, stairs
+from fea.harmonic.field import HarmonicField
 from fea.support.contact.edge_peak import contact_edges
 from fea.support.contact.solve_joint import JointContact
 from pinbase.arrays import Ints
@@ -34,12 +34,11 @@ def contact_place(
     error: of the stress beneath contact, relative.
     row: the maximum of surface and section, Pa, below which the depth of stress is not needed.
     """
-    under = answer if isinstance(answer, CutField) else _Plain(answer)
-    deepest = under.beneath(loads)
+    deepest = answer.beneath(loads)
     limits = reached(material, required)
     instants = dict.fromkeys((deepest.instant, _instant(loads, contact)))
     least = min(row, *limits) if limits else row
-    steps = [x for t in instants for x in under.depths(loads, t, least)]
+    steps = [x for t in instants for x in answer.depths(loads, t, least)]
     known = stairs(*np.array(steps).reshape(-1, 2).T)
     place = ContactPlace(
         deepest.value,
@@ -54,19 +53,6 @@ def contact_place(
     )
     reach, required_too = (*(place.depth(x) for x in limits), None, None)[:2]
     return replace(place, reach=reach, reach_required=required_too)
-
-
-@dataclass(frozen=True)
-class _Plain:
-    """The field of a pin without cuts, with the interface of one with cuts."""
-
-    answer: HarmonicField
-
-    def beneath(self, loads: PinLoads) -> Beneath:
-        return beneath(self.answer.fields, loads, self.answer.singularities)
-
-    def depths(self, loads: PinLoads, instant: int, least: float) -> Steps:
-        return depths(self.answer.fields, loads, instant, self.answer.singularities, least)
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:

@@ -26,7 +26,7 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.peak import Reason
 from fea.core.verdict import Evidence
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.region import zone
 from fea.support.cell_pressure import CellPressure
 from fea.support.contact.bending import stations

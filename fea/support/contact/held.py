@@ -23,10 +23,10 @@ from fea.core.peak import Maximum, Reason, meets_limit
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.verdict import Evidence
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.region import RingedCutPin
 from fea.harmonic.beneath import beneath
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.section.place import FoundSection, found_section
 from fea.section.row import row_of, with_contact
 from fea.support.cell_pressure import CellPressure

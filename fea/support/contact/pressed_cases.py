@@ -17,7 +17,8 @@ from fea.core.material import Material
 from fea.core.over_time import Between, knots
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement, decided
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.contact import ContactState

@@ -41,7 +41,7 @@ class PressureLoads(PinLoads):
 
     @property
     def on_rings(self) -> PinLoads:
-        """The resultants on the rings, from which section forces follow."""
+        """The resultants of the pressures on the rings, and the shares of axial forces."""
         return PinLoads(
             self.case, self.surfaces, self.forces, self.moments, body=self.body, times=self.times
         )

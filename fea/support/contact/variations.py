@@ -17,7 +17,8 @@ from fea.core.linear_solver import SolveError
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.harmonic.beneath import maxima_beneath
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import SectionField
 from fea.singular.singularities import singularities_of
 from fea.support.contact.coarser_cells import on_coarser_cells

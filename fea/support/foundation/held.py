@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from fea.beam.error_model import PLAIN_SECTION_ERROR
-from fea.beam.maximum import VonMisesMaxima
+from fea.beam.maximum import VonMisesMaxima, stress_points
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.over_time import rise_between, through_time
@@ -24,7 +24,7 @@ from fea.core.peak import ErrorParts, Maximum, Reason, Refinement
 from fea.core.pin_loads import Floats, LoadAmounts, Loads, PinLoads, UnitLoad
 from fea.core.places import Place, Places, SurfacePlace
 from fea.core.requirement import Requirement
-from fea.core.solution import Picture
+from fea.core.solution import StressPoints
 from fea.core.verdict import Evidence, judge
 from fea.section.place import FoundSection
 from fea.section.section_stress import AtSection, SectionField
@@ -42,7 +42,7 @@ from fea.support.foundation.variations import FoundationRange
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.records import BandContact, JointRange, JointResult
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
-from geometry import Pin, PinLike
+from geometry import PinLike, body_of_revolution
 
 FOUNDATION_OMISSIONS = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
@@ -63,9 +63,10 @@ class FoundationSupport:
     ) -> HeldFoundation:
         """Hold the pin, as every support does; nothing is discretised."""
         progress(f"pin {problem.pin.name}, beam on foundations")
-        assert isinstance(problem.pin, Pin)
+        pin = body_of_revolution(problem.pin)
+        assert pin is not None
         over = FoundationRange(
-            problem.pin, problem.material, problem.lugs, requirement.distance, assumed=False
+            pin, problem.material, problem.lugs, requirement.distance, assumed=False
         )
         return HeldFoundation(problem, over)
 
@@ -73,13 +74,14 @@ class FoundationSupport:
         """Return whether the foundation's error, at least a tenth, may be small enough; never for a
         pin with cuts.
         """
-        if not isinstance(problem.pin, Pin):
+        pin = body_of_revolution(problem.pin)
+        if pin is None:
             return False
         known = problem.material.yield_strength is not None and requirement.required is not None
         may = requirement.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
             requirement.goal == "decide" and known
         )
-        beyond = beyond_foundations(problem.pin, problem.lugs)
+        beyond = beyond_foundations(pin, problem.lugs)
         return requirement.model == "auto" and may and not beyond
 
 
@@ -152,8 +154,8 @@ class HeldFoundation:
 
     def bounded_everywhere(self, requirement: Requirement) -> bool:
         """Return whether no sharp corner of the pin or edge of a lug makes its stress singular."""
-        nu, pin = self.problem.material.poisson_ratio, self.problem.pin
-        assert isinstance(pin, Pin)
+        nu, pin = self.problem.material.poisson_ratio, body_of_revolution(self.problem.pin)
+        assert pin is not None
         rounded = all(lug.edge_radius > 0.0 for lug in self.problem.lugs)
         return rounded and not find_singularities(pin, (), (), nu, requirement.distance)
 
@@ -162,11 +164,13 @@ class HeldFoundation:
 
         Contact, whose pressure is largest at the edges of lugs and on stubby pins, must not govern.
         """
-        peak, answer = solution.peak, solution.answer
-        if peak.verdict != "converged" or not isinstance(answer, FoundationField):
+        peak = solution.peak
+        if peak.verdict != "converged":
             return False
-        load = answer.largest_load(solution)
-        return (peak.max_von_mises or 0.0) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * load
+        joint = self.over.own.model.solve(solution.loads.at(np.array([solution.instant])))
+        load = np.linalg.norm(joint.line_load, axis=2) / (2.0 * joint.bands.radius)
+        largest = float(load.max())  # per length, over the diameter, Pa
+        return (peak.max_von_mises or 0.0) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * largest
 
 
 class FoundationField:
@@ -184,29 +188,25 @@ class FoundationField:
         top = self._von_mises(loads)
         return float(top.von_mises[top.place]), top.place[1]
 
-    @property
-    def points(self) -> Floats:
-        """The points at which stress is computed, (S, 2): r, z in m."""
-        return np.stack([self.stress.r, self.stress.z], axis=1)
-
-    def harmonics(self, loads: PinLoads) -> Floats:
-        """The stress at the points, (3, S, 6, T) Pa: constant, times cos theta, times sin theta."""
-        return self.stress.harmonics(self.stress.model.solve(loads))
+    def points(self, loads: PinLoads) -> StressPoints:
+        """Stress at the beam's points, for fatigue."""
+        stress = self.stress
+        points = np.stack([stress.r, stress.z], axis=1)
+        return stress_points(points, stress.harmonics(stress.model.solve(loads)))
 
     def _von_mises(self, loads: Loads) -> VonMisesMaxima:
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)
         return self.stress.von_mises(self.stress.model.solve(links, whole))
 
-    def picture(self, loads: PinLoads, instant: int) -> Picture | None:
+    def surface(self) -> None:
         """Return None, since a beam has no field over its surface."""
-        return None
 
-    def largest_load(self, solution: Solution) -> float:
-        """The largest load per length over the diameter at the governing instant, Pa."""
-        here = solution.loads.at(np.array([solution.instant]))
-        joint = self.stress.model.solve(here)
-        return float((np.linalg.norm(joint.line_load, axis=2) / (2.0 * joint.bands.radius)).max())
+    def picture(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
+
+    def volume(self, loads: PinLoads, instant: int) -> None:
+        """Return None, for the same reason."""
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:

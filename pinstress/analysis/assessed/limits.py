@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 from assess.plastic.records import LimitLoad
 from fea.core.peak import Maximum
-from geometry import Pin
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
 from pinstress.study.model.tasks import Task
@@ -30,11 +29,11 @@ UNASKED_LIMIT_LOAD_SECONDS = 20.0  # s of processor time of a limit load that wa
 
 def limit_rung(study: Study, pin: str) -> Rung | None:
     """Return the model for the limit loads of a pin, None where they are not requested."""
-    asked = study.table.analysis.limit_load
-    if isinstance(asked, list):
-        return "solid" if pin in asked else None
+    requested = study.table.analysis.limit_load
+    if isinstance(requested, list):
+        return "solid" if pin in requested else None
     rungs: dict[str, Rung | None] = {"auto": "auto", "always": "solid", "never": None}
-    return rungs[asked]
+    return rungs[requested]
 
 
 def rung_of(plan: Plan, pin: str) -> Rung | None:
@@ -44,8 +43,8 @@ def rung_of(plan: Plan, pin: str) -> Rung | None:
 
 def limit_seconds(plan: Plan) -> float:
     """Return the processor time that a limit load may take, s; infinite where it was requested."""
-    asked = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
-    return inf if asked else UNASKED_LIMIT_LOAD_SECONDS
+    requested = plan.limit_load or plan.study.table.analysis.limit_load != "auto"
+    return inf if requested else UNASKED_LIMIT_LOAD_SECONDS
 
 
 def limit_loads(
@@ -67,14 +66,14 @@ def _limit_load(
     tell(f"pin {task.pin.name}, limit load in {peak.case}")
     pin, loads = task.pin, peak.governing
     assert loads is not None
-    if task.lugs and isinstance(pin, Pin):
+    if task.lugs and pin.revolved:
         if solved.rings is None:
             return LimitLoad("none", note=NOT_ON_FOUNDATIONS_NOTE)
         pin, loads = solved.rings, solved.pressed(loads)
     clamps = tuple(pin.surface(name) for name in task.clamps)
     seconds = limit_seconds(plan)
     try:
-        return limit_load(pin, task.material, clamps, loads, rung, plan.asked.memory, seconds)
+        return limit_load(pin, task.material, clamps, loads, rung, plan.requirement.memory, seconds)
     except ArithmeticError as error:  # the elastic answer stands
         return LimitLoad("none", note=str(error))
 

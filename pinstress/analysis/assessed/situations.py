@@ -15,7 +15,6 @@ from assess.strength.bending_arms import BendingArms, bending_arms
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
-from geometry import CutPin, Pin
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import PinResult
@@ -80,8 +79,8 @@ def _situation(
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
     even = study.table.analysis.bending_moment == "formula"
-    profile = task.pin.profile if isinstance(task.pin, CutPin) else task.pin
-    if not isinstance(profile, Pin):
+    profile = task.pin.profile
+    if profile is None:
         s = Situation(None, task.material, loads, factors=load_factors(study))
         return s, "a profile, which a pin from a file does not have"
     s = Situation(

@@ -10,7 +10,7 @@ from importlib.metadata import version
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
-from geometry import Cut, CutPin, Flat, Hole, Passage, Slot
+from geometry import Cut, Flat, Hole, Passage, PinLike, Slot
 from geometry.shape.cut_edges import drawn
 from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
@@ -60,7 +60,7 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
         for row in outcome.rows
     ]
     rows.sort(key=lambda row: (pins.index(row[1].pin), cases.index(row[1].case)))
-    results = _results(study, plan.loads, rows, plan.published, plan.asked.tolerance)
+    results = _results(study, plan.loads, rows, plan.published, plan.requirement.tolerance)
     fatigue: plain.Fatigue | None = None
     fatigue_margins: list[PinMargin] = []
     if study.table.fatigue is not None:
@@ -209,15 +209,16 @@ def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
         for length, diameter, bore, label, kind in outline(pin)
     )
     heavy = weight(pin, density) if density else None
-    cuts = tuple(cut_shapes(pin)) if isinstance(pin, CutPin) else ()
+    cuts = tuple(cut_shapes(pin))
     solids = tuple(dict.fromkeys(ends for peak in peaks for ends in peak.solids))
     made_of = task.material.name
     return plain.PinShape(pin.name, segments, made_of, heavy, far_ends(pin), cuts, solids)
 
 
-def cut_shapes(pin: CutPin) -> Iterator[CutShape]:
+def cut_shapes(pin: PinLike) -> Iterator[CutShape]:
     """Yield the cuts of a pin as reports draw them, in SI."""
     for name, cut in pin.cuts.items():
+        assert pin.profile is not None
         drawing = drawn(cut, pin.profile)
         size, offset, depth = _cut_sizes(cut)
         low, high = (cut.z, cut.z) if isinstance(cut, Hole) else _cut_ends(cut)

@@ -9,9 +9,8 @@ import numpy as np
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.section.section_stress import SectionField
-from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.support import Solution
-from geometry import Pin
+from geometry import body_of_revolution
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.results import Floats, LandingRange
@@ -50,15 +49,14 @@ def _maxima(task: Task, solution: Solution, loads: PinLoads) -> Floats:
     if task.lugs:
         pin = solution.rings
     else:
-        pin = task.pin if isinstance(task.pin, Pin) else None
+        pin = body_of_revolution(task.pin)
         clamps = tuple(task.pin.surface(name) for name in task.clamps)
     assert solution.answer is not None
     surface, places = solution.answer.maxima(acting), solution.peak.places
     if places is None or places.section is None or pin is None:
         return surface
-    feels = acting.on_rings if isinstance(acting, PressureLoads) else acting
-    sections = SectionField(pin, task.material, clamps, (feels,))
-    return np.maximum(surface, sections.maxima(feels))
+    sections = SectionField(pin, task.material, clamps, (acting.on_rings,))
+    return np.maximum(surface, sections.maxima(acting.on_rings))
 
 
 def _spread(peak: Maximum) -> tuple[float, float] | None:

@@ -7,7 +7,7 @@ from math import atan2, hypot
 import numpy as np
 
 from fea.core.pin_loads import Floats, PinLoads
-from fea.harmonic.half_section import MeridianPlane
+from fea.core.unit_surface import SectionPlane
 from geometry.shape.chords import needed
 from reports.data.surface import HalfSection, Mask
 
@@ -20,7 +20,7 @@ RADIUS_TOLERANCE = 2e-3  # of the radius
 
 
 def half_section(
-    plane: MeridianPlane, loads: PinLoads, instant: int, maximum: float, at: tuple[float, ...]
+    plane: SectionPlane, loads: PinLoads, instant: int, maximum: float, at: tuple[float, ...]
 ) -> HalfSection:
     """Return the half section through the surface's maximum, which lies outside the excluded zones.
 
@@ -52,7 +52,7 @@ def half_section(
     return HalfSection(angle, stations[rows], inner[rows], outer[rows], part[columns], stress)
 
 
-def _stations(plane: MeridianPlane) -> Floats:
+def _stations(plane: SectionPlane) -> Floats:
     """Return stations along z, close together where the mesh is fine, double at shoulders."""
     r, z = plane.skin.T
     low, high = float(z.min()), float(z.max())

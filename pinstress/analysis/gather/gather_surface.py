@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import atan2
 
 import numpy as np
 
-from fea.beam.model import BeamField
 from fea.core.pin_loads import Floats, PinLoads
-from fea.core.solution import StressField
-from fea.core.zone import Zone
-from fea.harmonic.evaluate import HarmonicField
-from fea.harmonic.half_section import MeridianPlane
-from fea.solve.surface_fields import (
-    amounts,
-    excluded,
-    largest_at,
-    largest_there,
-    unit_surface,
-    unread,
-)
+from fea.core.unit_surface import SectionPlane, SurfaceField
 from fea.support.cell_pressure import CellPressure
 from fea.support.support import Solution
 from pinbase.arrays import Ints
@@ -43,56 +31,36 @@ def surfaces_of(
 
     pressures: contact pressure of the lugs, by solution.
     """
-    together: dict[int, list[tuple[Solution, CellPressure | None]]] = {}
+    together: dict[int, list[_Shown]] = {}
     for solution, pressure in zip(solutions, pressures, strict=True):
-        mesh_id = id(_unit_fields(solution.answer))
-        together.setdefault(mesh_id, []).append((solution, pressure))
-    surfaces = (_surface(loads, task, group) for group in together.values())
-    return tuple(surface for surface in surfaces if surface is not None)
+        field = None if solution.answer is None else solution.answer.surface()
+        if field is not None:
+            shown = _Shown(at_samples(solution, loads[solution.peak.case]), field, pressure)
+            together.setdefault(id(field.unit), []).append(shown)
+    return tuple(_surface(task, group) for group in together.values())
 
 
-def _unit_fields(answer: StressField | None) -> object:
-    """Return the object that answers from one mesh share."""
-    if isinstance(answer, HarmonicField):
-        return answer.fields
-    if answer is None or isinstance(answer, BeamField):
-        return None
-    from fea.cut.evaluate import CutField
-    from fea.solid.evaluate import SolidField
+@dataclass(frozen=True)
+class _Shown:
+    """A case on its surface; solution: at its samples. pressure: contact pressure of its lugs."""
 
-    if isinstance(answer, CutField):
-        return answer.solution
-    return answer.solution.fields if isinstance(answer, SolidField) else None
+    solution: Solution
+    field: SurfaceField
+    pressure: CellPressure | None
 
 
-def _surface(
-    loads: dict[str, CaseLoads],
-    task: Task,
-    solved: Sequence[tuple[Solution, CellPressure | None]],
-) -> Surface | None:
-    """Return the surface of the cases solved on one mesh; None where no model has fields."""
-    answers = [(s, s.answer, p) for s, p in solved if s.answer is not None]
-    with_fields = [(s, a, p) for s, a, p in answers if unit_surface(a) is not None]
-    if not with_fields:
-        return None
-    surface = unit_surface(with_fields[0][1])
-    assert surface is not None
-    plane = _plane(with_fields[0][1])
-    cases = [
-        _pressed(_case(loads[s.peak.case], task, s, plane), surface.points, p)
-        for s, _, p in with_fields
-    ]
+def _surface(task: Task, solved: Sequence[_Shown]) -> Surface:
+    """Return the surface of the cases solved on one mesh."""
+    surface, plane = solved[0].field.unit, solved[0].field.plane
+    cases = [_pressed(_case(task, s, plane), surface.points, s.pressure) for s in solved]
     keep = np.ones(len(surface.points), dtype=bool)
     if surface.revolved:
-        required = np.any(
-            [_own(c, s, surface.points) for c, (s, _, _) in zip(cases, with_fields, strict=True)],
-            axis=0,
-        )
+        required = np.any([_own(c, surface.points) for c in cases], axis=0)
         surface, cases = fewer_loads(surface, cases)
         keep = meridian_points(surface, cases, required)
         cases = [
-            replace(c, unread=_unread(loads[c.case], s, np.flatnonzero(keep), c.location))
-            for c, (s, _, _) in zip(cases, with_fields, strict=True)
+            replace(c, unread=_unread(s, np.flatnonzero(keep), c.location))
+            for c, s in zip(cases, solved, strict=True)
         ]
     return Surface(
         pin=task.pin.name,
@@ -107,57 +75,34 @@ def _surface(
     )
 
 
-def _plane(answer: StressField) -> MeridianPlane | None:
-    if not isinstance(answer, HarmonicField):
-        return None
-    return MeridianPlane(answer.fields, answer.singularities)
-
-
-def _case(
-    case: CaseLoads, task: Task, solution: Solution, plane: MeridianPlane | None
-) -> SurfaceCase:
+def _case(task: Task, of: _Shown, plane: SectionPlane | None) -> SurfaceCase:
     """Return a case's fields at its samples and the governing instant."""
-    shown, answer = at_samples(solution, case), solution.answer
-    assert answer is not None
-    maxima = answer.maxima(shown.loads)
-    top, at = float(maxima[shown.instant]), largest_at(answer, shown.loads, shown.instant)
+    loads, instant, field = of.solution.loads, of.solution.instant, of.field
+    assert of.solution.answer is not None
+    maxima = of.solution.answer.maxima(loads)
+    top, at = float(maxima[instant]), field.location(loads, instant)
     return SurfaceCase(
-        case=solution.peak.case,
-        times=shown.loads.times,
-        instant=shown.instant,
-        amounts=amounts(answer, shown.loads),
+        case=of.solution.peak.case,
+        times=loads.times,
+        instant=instant,
+        amounts=field.amounts(loads),
         maxima=maxima,
-        excluded=excluded(answer),
-        largest=largest_there(answer, shown.loads, shown.instant),
-        zones=_zones(answer),
-        loads=_courses(task, shown.loads),
-        section=half_section(plane, shown.loads, shown.instant, top, at) if plane and at else None,
+        excluded=field.excluded,
+        largest=field.largest(loads, instant),
+        zones=np.array([(p.r, p.z, p.radius) for p in field.zones]).reshape(-1, 3),
+        loads=_courses(task, loads),
+        section=half_section(plane, loads, instant, top, at) if plane and at else None,
         location=at,
     )
 
 
-def _unread(
-    case: CaseLoads, solution: Solution, points: Ints, at: tuple[float, ...] | None
-) -> Mask | None:
+def _unread(of: _Shown, points: Ints, at: tuple[float, ...] | None) -> Mask | None:
     """Return where points (J,) of a meridian are not read, by instant and by angle from a
     location.
     """
-    assert solution.answer is not None
     start = 0.0 if at is None else atan2(at[1], at[0])
     turns = start + 2.0 * np.pi * np.arange(SURFACE_SECTORS) / SURFACE_SECTORS
-    return unread(solution.answer, at_samples(solution, case).loads, points, turns)
-
-
-def _zones(answer: StressField) -> Floats:
-    singularities: tuple[Zone, ...] = ()
-    if isinstance(answer, HarmonicField):
-        singularities = answer.singularities
-    else:
-        from fea.cut.evaluate import CutField
-
-        if isinstance(answer, CutField):
-            singularities = answer.singularities
-    return np.array([(p.r, p.z, p.radius) for p in singularities]).reshape(-1, 3)
+    return of.field.unread(of.solution.loads, points, turns)
 
 
 def _courses(task: Task, loads: PinLoads) -> tuple[LoadCourse, ...]:
@@ -180,7 +125,7 @@ def _pressed(case: SurfaceCase, points: Floats, pressure: CellPressure | None) -
     return replace(case, rings=rings, pressure=pressure.pressure, first=pressure.angle)
 
 
-def _own(case: SurfaceCase, solution: Solution, points: Floats) -> Mask:
+def _own(case: SurfaceCase, points: Floats) -> Mask:
     """Return the points (P,) of a meridian that the case needs.
 
     These are the point of its maximum, if that is on the surface, and those where contact pressure

@@ -18,7 +18,7 @@ from fea.core.requirement import Requirement
 from fea.core.solution import StressField
 from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.support.support import Solution
-from geometry import GeometryError, Pin
+from geometry import GeometryError, Pin, body_of_revolution
 from pinstress.analysis.remedies.secant import NoSizeError, smallest
 from pinstress.study.model.pins import slenderness
 from pinstress.study.model.tasks import Task
@@ -44,13 +44,13 @@ class FailingCase:
     part: float
 
 
-def change(asked: Requirement, task: Task, solutions: tuple[Solution, ...]) -> Remedy | None:
+def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]) -> Remedy | None:
     """Return the change that a pin needs in the worst of its cases.
 
     None where no case is below the required factor (yield where none is required), with its error
     and beneath contact.
     """
-    strength, required = task.material.yield_strength, asked.required or 1.0
+    strength, required = task.material.yield_strength, requirement.required or 1.0
     worst = max(solutions, key=lambda s: max(s.peak.max_von_mises or 0.0, _beneath(s)))
     peak = worst.peak
     if strength is None or not peak.max_von_mises:
@@ -61,7 +61,7 @@ def change(asked: Requirement, task: Task, solutions: tuple[Solution, ...]) -> R
     high = max(peak.upper_end, _beneath(worst))
     failing = FailingCase(task, worst, strength / required / high)
     impulse = task.impulses.get(peak.case)
-    problem = _problem(asked, failing)
+    problem = _problem(requirement, failing)
     times, why = _diameters(problem, failing, required)
     share = None if impulse is None else _share(failing, impulse.loads)
     return Remedy(
@@ -113,12 +113,12 @@ def _maxima(answer: StressField, loads: PinLoads, shares: Floats) -> Floats:
     return answer.maxima(replace(loads, forces=forces, moments=moments, body=body))
 
 
-def _problem(asked: Requirement, failing: FailingCase) -> Problem | None:
+def _problem(requirement: Requirement, failing: FailingCase) -> Problem | None:
     """Return the governing instant on one mesh; None where that would take too long."""
     task, loads = failing.task, failing.solution.peak.governing
-    if task.lugs or not isinstance(task.pin, Pin) or loads is None:
+    if task.lugs or not task.pin.revolved or loads is None:
         return None
-    return Problem(task.pin, task.material, task.clamps, loads, asked.distance)
+    return Problem(task.pin, task.material, task.clamps, loads, requirement.distance)
 
 
 def _diameters(
@@ -128,8 +128,8 @@ def _diameters(
 
     A pin must stay longer than wide.
     """
-    pin = failing.task.pin
-    if problem is None or not isinstance(pin, Pin):
+    pin = body_of_revolution(failing.task.pin)
+    if problem is None or pin is None:
         return None, SIZED_BY_COMMAND
     try:
         return _widening(problem, pin, required * failing.part, required), ""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import groupby
 
-from geometry import Pin, PinLike
+from geometry import Pin, PinLike, body_of_revolution
 from geometry.shape.dimensions import Dimension, dimensions
 from pinstress.study.model.pins import by_corners
 from pinstress.study.reading.file import Study
@@ -25,10 +25,11 @@ def dimensions_of(study: Study, pin: PinLike) -> Iterator[Dimension]:
     "meridian[3][2]" is the radius of the third corner.
     """
     table = study.table.pin[pin.name]
-    if not isinstance(pin, Pin) or table.geometry is not None:
+    profile = body_of_revolution(pin)
+    if profile is None or table.geometry is not None:
         return
     if table.profile is not None:
-        yield from dimensions(pin)
+        yield from dimensions(profile)
         return
     for key, value, changes in (*_along(table), *_across(table), *_radii(table)):
         yield Dimension(key, value, partial(_changed, pin.name, table, changes))

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from assess.derivatives.in_lugs import Joint, JointParameter
-from geometry import Pin
+from geometry import body_of_revolution
 from geometry.shape.dimensions import Dimension
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.study.model.lugs import known_lugs
@@ -33,8 +33,8 @@ class StudyParameter:
 
 def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
     """Yield the non-zero parameters of a pin in lugs, and its clearances."""
-    pin = task.pin
-    assert isinstance(pin, Pin)
+    pin = body_of_revolution(task.pin)
+    assert pin is not None
     for d in dimensions_of(study, pin):
         changed = partial(_with_dimension, study, task, d)
         yield StudyParameter("length", JointParameter(d.key, d.value, d.value, changed))
@@ -86,8 +86,8 @@ def _with_material(study: Study, task: Task, name: str, key: str, value: float) 
 
 
 def _made_anew(study: Study, task: Task) -> Joint:
-    pin = task.pin
-    assert isinstance(pin, Pin)
+    pin = body_of_revolution(task.pin)
+    assert pin is not None
     made_of = material(study, study.table.pin[pin.name].material)
     return pin, made_of, known_lugs(study, pin)
 

@@ -24,11 +24,12 @@ from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.places import Place
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField, SectionProblem, harmonic_solution
+from fea.harmonic.field import HarmonicField
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.support.support import Solution
-from geometry import Pin
+from geometry import body_of_revolution
 from geometry.mesh.gmsh_session import MeshError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
@@ -55,7 +56,7 @@ NOT_AXISYMMETRIC_NOTE = "no derivatives, only of bodies of revolution: solve the
 
 def sensitivities(
     study: Study,
-    asked: Requirement,
+    requirement: Requirement,
     task: Task,
     solutions: Iterable[Solution],
     step: float,
@@ -71,7 +72,7 @@ def sensitivities(
     return tuple(
         _of_lugs(study, task, s, step if every else None)
         if task.lugs
-        else _of_case(asked, task, s, dimensions, step)
+        else _of_case(requirement, task, s, dimensions, step)
         for s in ranked[: None if every else 1]
     )
 
@@ -127,14 +128,14 @@ def governing_place(peak: Maximum) -> Place:
 
 
 def differentiated(
-    asked: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
+    requirement: Requirement, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> Derivatives | None:
     """Return the derivatives of a solution's maximum; None where it has none.
 
     Raises: MeshError, SolveError.
     """
-    peak, pin, answer = solution.peak, task.pin, solution.answer
-    if not peak.max_von_mises or peak.governing is None or not isinstance(pin, Pin):
+    peak, pin, answer = solution.peak, body_of_revolution(task.pin), solution.answer
+    if not peak.max_von_mises or peak.governing is None or pin is None:
         return None
     clamps = tuple(pin.surface(name) for name in task.clamps)
     error, history = (peak.own_error or 0.0) / peak.max_von_mises, None
@@ -143,7 +144,7 @@ def differentiated(
         section, zones, history = answer.solution, answer.singularities, solution.loads
     elif isinstance(answer, BeamField):
         case = (peak.governing,)
-        zones = singularities_of(pin, task.material, clamps, case, asked.distance)
+        zones = singularities_of(pin, task.material, clamps, case, requirement.distance)
         section = harmonic_solution(
             SectionProblem(pin, task.material, clamps, case, zones), 0, MESH_RATIO
         )
@@ -172,7 +173,7 @@ def scaled(gradient: Derivatives, maximum: float) -> Derivatives:
 
 
 def _of_case(
-    asked: Requirement,
+    requirement: Requirement,
     task: Task,
     solution: Solution,
     dimensions: tuple[Dimension, ...],
@@ -182,10 +183,10 @@ def _of_case(
     maximum = peak.max_von_mises or 0.0
     factor = peak.safety_factor(task.material.yield_strength)
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
-    if not isinstance(task.pin, Pin):
+    if not task.pin.revolved:
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     try:
-        gradient = differentiated(asked, task, solution, dimensions)
+        gradient = differentiated(requirement, task, solution, dimensions)
     except (MeshError, SolveError) as error:
         return replace(out, note=f"no derivatives: {error}")
     if gradient is None or peak.governing is None:
@@ -218,7 +219,7 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
     maximum, strength = peak.max_von_mises or 0.0, task.material.yield_strength
     factor, links = peak.safety_factor(strength), peak.governing
     out = PinSensitivities(peak.pin, peak.case, maximum, factor)
-    if not isinstance(task.pin, Pin):
+    if not task.pin.revolved:
         return replace(out, note=NOT_AXISYMMETRIC_NOTE)
     if joined.rings is None or links is None:
         return replace(out, note=NO_CONTACT_NOTE)

@@ -13,9 +13,8 @@ from fea.core.requirement import Requirement
 from fea.solve.refine import LOCAL_MODEL
 from fea.solve.single_mesh import ModelMesh, Problem
 from fea.solve.solve import solve_in_lugs, solve_pin
-from fea.support.contact.pressure_loads import PressureLoads
 from fea.support.support import PinProblem, Solution
-from geometry import Pin
+from geometry import body_of_revolution
 from geometry.mesh.elements import Element
 from pinbase.processes.pool import Progress
 from pinstress.analysis.plan import all_loads
@@ -61,7 +60,7 @@ class ChartPlan:
 
     study: Study
     problem: Problem | JointProblem
-    asked: Requirement
+    requirement: Requirement
     peak: Maximum
     beam_error: float | None = None
     chosen: JointRung | None = None
@@ -76,14 +75,14 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     loads = all_loads(study, select(study.table.case, [case], "case", "case"))
     (task,) = tasks(study, [pin_of(study, pin)], loads)
     table = study.table.analysis
-    asked = Requirement(
+    requirement = Requirement(
         require_tolerance(tolerance) or table.tolerance,
         goal=table.goal,
         required=table.required_safety_factor,
         distance=table.excluded_distance,
     )
     if task.lugs:
-        return _plan_in_lugs(study, task, asked)
+        return _plan_in_lugs(study, task, requirement)
     clamps = tuple(task.pin.surface(c) for c in task.clamps)
 
     def first(model: Requirement) -> Solution:
@@ -92,17 +91,17 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
         )
         return solutions[0]
 
-    solution = first(replace(asked, meshes=1))
+    solution = first(replace(requirement, meshes=1))
     peak = solution.peak
-    problem = Problem(task.pin, task.material, clamps, solution.loads, asked.distance)
+    problem = Problem(task.pin, task.material, clamps, solution.loads, requirement.distance)
     _require_stress(study, peak)
     beam_error = None
-    if isinstance(task.pin, Pin):
+    if task.pin.revolved:
         with suppress(ValueError, ArithmeticError):  # the chart will say why
-            beam = first(replace(asked, model="beam")).peak
+            beam = first(replace(requirement, model="beam")).peak
             if beam.max_von_mises and beam.error_estimate is not None:
                 beam_error = beam.error_estimate / beam.max_von_mises
-    return ChartPlan(study, problem, asked, peak, beam_error)
+    return ChartPlan(study, problem, requirement, peak, beam_error)
 
 
 def _require_stress(study: Study, peak: Maximum) -> None:
@@ -112,30 +111,30 @@ def _require_stress(study: Study, peak: Maximum) -> None:
         raise study.error(text, at=f"pin.{peak.pin}", code="nothing-to-chart")
 
 
-def _plan_in_lugs(study: Study, task: Task, asked: Requirement) -> ChartPlan:
+def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPlan:
     """Return the plan for a pin in its lugs, solved as a run would."""
-    if not isinstance(task.pin, Pin):
+    pin = body_of_revolution(task.pin)
+    if pin is None:
         raise study.error(
             f"pin {task.pin.name} has cuts and is held by lugs; charts of contact are of pins "
             'without cuts: remove them, or set analysis.joints = "prescribed"',
             at=f"pin.{task.pin.name}",
             code="not-axisymmetric",
         )
-    given = PinProblem(task.pin, task.material, task.lugs, task.loads, task.between)
-    (solution,) = solve_in_lugs(given, asked)
+    given = PinProblem(pin, task.material, task.lugs, task.loads, task.between)
+    (solution,) = solve_in_lugs(given, requirement)
     _require_stress(study, solution.peak)
     assert solution.joint is not None
-    loads = solution.loads
     problem = JointProblem(
-        task.pin,
+        pin,
         task.material,
         task.lugs,
-        loads.links if isinstance(loads, PressureLoads) else loads,
+        solution.loads.links,
         solution.instant,
-        asked.distance,
+        requirement.distance,
     )
     end = chosen_in_lugs(problem, solution.peak, solution.joint)
-    return ChartPlan(study, problem, asked, solution.peak, chosen=end)
+    return ChartPlan(study, problem, requirement, solution.peak, chosen=end)
 
 
 def chart(
@@ -162,13 +161,13 @@ def chart(
         progress(message, min(behind / about, 1.0))
         behind += 1
 
-    climb = Climb(plan.problem, plan.asked, plan.peak.model, measure, runs, tell)
+    climb = Climb(plan.problem, plan.requirement, plan.peak.model, measure, runs, tell)
     if plan.chosen is not None:
         climb_in_lugs(climb, plan.chosen, calculix)
         rung, seen, cells = contact_reference(climb)
         return _joined(plan, climb, (rung, seen), cells)
     pin = plan.problem.pin
-    if isinstance(pin, Pin):
+    if pin.revolved:
         climb.to(ModelMesh("beam"))
         climb_harmonic(climb)
     elif climb.auto == LOCAL_MODEL:
@@ -179,7 +178,7 @@ def chart(
     elements: tuple[Element, ...] = ("linear", "straight", "curved")
     for element in elements:
         climb_solid(climb, element, meshes)
-    if isinstance(pin, Pin):
+    if pin.revolved:
         reference = harmonic_reference(climb)
     else:
         reference = local_reference(climb) if climb.auto == LOCAL_MODEL else solid_reference(climb)
@@ -224,7 +223,7 @@ def _joined(
         pin=plan.problem.pin.name,
         case=plan.problem.loads.case,
         stress_unit=plan.study.system.stress,
-        tolerance=plan.asked.tolerance,
+        tolerance=plan.requirement.tolerance,
         points=tuple(points),
         reference=Reference(
             at.model, name(at), best.unknowns,

@@ -13,7 +13,6 @@ from fea.cut.evaluate import LOCAL_MESHES
 from fea.harmonic.evaluate import SECTION_MESHES
 from fea.solve.refine import LOCAL_MODEL, MESH_RATIO, sequence_of
 from fea.solve.single_mesh import ModelMesh, Problem
-from geometry import Pin
 from geometry.mesh.elements import Element
 from pinstress.explore.chart.measured_process import Measure, Measured, MeasureJob
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
@@ -37,7 +36,7 @@ class Climb:
     """
 
     problem: Problem | JointProblem
-    asked: Requirement
+    requirement: Requirement
     auto: str
     measure: Measure
     runs: int
@@ -75,11 +74,12 @@ class Climb:
 
     def enough(self, model: str, results: tuple[MeshMaximum, ...]) -> bool:
         """Return whether a run of the model would end here."""
-        return accurate_enough(self.asked, self.problem.material, self.seen(model, results))
+        return accurate_enough(self.requirement, self.problem.material, self.seen(model, results))
 
     def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
         """Return successive meshes as a history, as a run sees them."""
         meshes = sequence_of(self.problem.pin, model)
+        assert meshes is not None, model
         name, case = self.problem.pin.name, self.problem.loads.case
         return MeshHistory(name, case, model, results, (0.0,) * len(results), meshes, first)
 
@@ -113,7 +113,7 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
     pin = climb.problem.pin
     step = 2 if pin.meshed else 1  # it can only be halved
     first = 0 if pin.meshed else FIRST_SOLID_LEVEL[element]
-    most = MAX_CHARTED_UNKNOWNS if isinstance(pin, Pin) else MAX_UNKNOWNS_BELOW_REFERENCE
+    most = MAX_CHARTED_UNKNOWNS if pin.revolved else MAX_UNKNOWNS_BELOW_REFERENCE
     for k in range(meshes or SOLID_MESHES):
         measured = climb.to(ModelMesh("solid", element, first + step * k))
         if measured.over:

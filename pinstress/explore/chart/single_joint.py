@@ -25,7 +25,8 @@ from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.core.voigt import von_mises
 from fea.core.zone import Zone
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.section.section_stress import AtSection, SectionField
 from fea.singular.singularities import outside, singularities_of
 from fea.solve.refine import MESH_RATIO

@@ -75,7 +75,7 @@ def assess(
 
     Raises: InputError for a study without random numbers or without strengths.
     """
-    asked = study.table.reliability
+    settings = study.table.reliability
     parameters, space = random_numbers(study)
     problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
     evaluator, elsewhere = evaluator_of(problem), None
@@ -86,34 +86,34 @@ def assess(
 
         elsewhere = partial(design_rows, cluster, problem, user_cache())
     designs = SolvedDesigns(evaluator, space, jobs, progress, elsewhere)
-    plain = plain_draws(asked.samples, space.size, asked.seed)
+    plain = plain_draws(settings.samples, space.size, settings.seed)
     sampled = Sample(plain, designs.at(plain.u, "plain sampling"))
     forms = _first_orders(study, parameters, designs, sampled, cases)
     centres = [c for form in forms for c in form.centres]
-    weighted = weighted_sample(designs, centres, asked)
-    shares = _indices(designs, asked) if space.lower is None else None
+    weighted = weighted_sample(designs, centres, settings)
+    shares = _indices(designs, settings) if space.lower is None else None
     rows = {(p.pin, p.case): p for p in nominal.pins}
     risks = []
     for k, (pin, case) in enumerate(evaluator.table):
         drivers = _drivers(parameters, designs, forms[k], shares[k] if shares else None)
         row = AssessedRow(pin, case, RiskColumn(k), rows.get((pin, case)), forms[k].result, drivers)
-        risks.append(risk_of(row, sampled, weighted, asked))
+        risks.append(risk_of(row, sampled, weighted, settings))
     if len(risks) > 1:
         everything = _drivers(parameters, designs, None, shares[-1] if shares else None)
         worst = AssessedRow(
             SYSTEM_ROW, SYSTEM_ROW, RiskColumn(None), _worst(nominal), None, everything
         )
-        risks.insert(0, risk_of(worst, sampled, weighted, asked))
+        risks.insert(0, risk_of(worst, sampled, weighted, settings))
     vary = study.table.vary
     assert vary is not None
     return Reliability(
         title=study.table.title,
         study=str(study.path),
-        limit=asked.factor,
-        probability=asked.probability,
-        confidence=asked.confidence,
-        samples=asked.samples,
-        seed=asked.seed,
+        limit=settings.factor,
+        probability=settings.probability,
+        confidence=settings.confidence,
+        samples=settings.samples,
+        seed=settings.seed,
         parameters=tuple((p.key, p.law_text) for p in parameters),
         risks=tuple(risks),
         correlations=tuple(
@@ -158,22 +158,22 @@ def _first_orders(
     for pin in dict.fromkeys(pin for pin, _ in table):
         alone = designs.of_pin(Evaluator(study, parameters, [pin], cases))
         for k, row in enumerate(alone.evaluator.table):
-            place, asked = table.index(row), study.table.reliability
-            starts = starts_of(sampled, place, asked.factor)
-            forms[row] = first_order(alone, k, starts, asked)
+            place, settings = table.index(row), study.table.reliability
+            starts = starts_of(sampled, place, settings.factor)
+            forms[row] = first_order(alone, k, starts, settings)
             if sampled.answers.depends[place]:
-                about = forms[row].centres + _beneath(alone, k, asked)
+                about = forms[row].centres + _beneath(alone, k, settings)
                 forms[row] = replace(forms[row], centres=about)
     return [forms[row] for row in table]
 
 
 def first_order(
-    designs: SolvedDesigns, row: int, starts: list[Array], asked: ReliabilityTable
+    designs: SolvedDesigns, row: int, starts: list[Array], settings: ReliabilityTable
 ) -> _Form:
     """Find design points of a row from the mean and from other starts in other directions."""
     size = designs.space.size
     close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
-    limit = designs.limit(row, asked.factor)
+    limit = designs.limit(row, settings.factor)
     points = [design_point(limit, np.zeros(size), close)]
     _search(points, starts, limit, close)
     _search(points, _failing_beyond(limit, distinct(points), size), limit, close)
@@ -182,7 +182,7 @@ def first_order(
     def unused(u: Array) -> Array:
         return -designs.at(u, "FORM").used[:, row]
 
-    lowest = form_quantile(unused, asked.probability, size, close)
+    lowest = form_quantile(unused, settings.probability, size, close)
     value = -1.0 / lowest.value if lowest.value else np.inf
     centres = [p.u for p in design_points]
     if not lowest.why and all(np.linalg.norm(lowest.u - c) > 1.0 for c in centres):
@@ -194,12 +194,12 @@ def first_order(
     return _Form(result, tuple(centres), nearest)
 
 
-def _beneath(designs: SolvedDesigns, row: int, asked: ReliabilityTable) -> tuple[Array, ...]:
+def _beneath(designs: SolvedDesigns, row: int, settings: ReliabilityTable) -> tuple[Array, ...]:
     """Return the points where excessive stress beneath contact is most likely, for sampling there
     too.
     """
     close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
-    limit = designs.limit(row, asked.factor, deep=True)
+    limit = designs.limit(row, settings.factor, deep=True)
     point = design_point(limit, np.zeros(designs.space.size), close)
     return tuple(p.u for p in distinct([point]))
 
@@ -227,24 +227,24 @@ def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
 
 
 def weighted_sample(
-    designs: SolvedDesigns, centres: list[Array], asked: ReliabilityTable
+    designs: SolvedDesigns, centres: list[Array], settings: ReliabilityTable
 ) -> Sample | None:
     """Solve designs about the centres (d,); return None without centres or samples in the study."""
     separate: list[Array] = []
     for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
         if all(np.linalg.norm(centre - other) > 0.5 for other in separate):
             separate.append(centre)
-    if not separate or not asked.importance_samples:
+    if not separate or not settings.importance_samples:
         return None
-    draws = importance_draws(separate[:MAX_CENTRES], asked.importance_samples, asked.seed)
+    draws = importance_draws(separate[:MAX_CENTRES], settings.importance_samples, settings.seed)
     return Sample(draws, designs.at(draws.u, "importance sampling"))
 
 
 def _indices(
-    designs: SolvedDesigns, asked: ReliabilityTable
+    designs: SolvedDesigns, settings: ReliabilityTable
 ) -> list[list[tuple[Spread, Spread]]] | None:
     """Return the Sobol indices of all rows and, last, of the system."""
-    base = base_samples(asked.sobol_samples)
+    base = base_samples(settings.sobol_samples)
     if not base or designs.space.size < 2:
         return None
 
@@ -252,7 +252,7 @@ def _indices(
         answers = designs.at(u, "Sobol indices")
         return np.concatenate([answers.factors, answers.system.factors], axis=1)
 
-    return indices(factors, designs.space.size, base, asked.seed, asked.confidence)
+    return indices(factors, designs.space.size, base, settings.seed, settings.confidence)
 
 
 def _search(

@@ -17,9 +17,9 @@ Array = NDArray[np.float64]
 SCRAMBLED_SETS = 8  # independently scrambled, from whose scatter the intervals come
 
 
-def base_samples(asked: int) -> int:
+def base_samples(samples: int) -> int:
     """Return the size of each set, a power of two; zero if there are fewer than a set needs."""
-    size = asked // SCRAMBLED_SETS
+    size = samples // SCRAMBLED_SETS
     return 2 ** (size.bit_length() - 1) if size >= 2 else 0
 
 

@@ -49,26 +49,26 @@ class Sample:
     answers: Answers
 
     def probability(
-        self, asked: ReliabilityTable, column: RiskColumn, part: float = 0.0
+        self, settings: ReliabilityTable, column: RiskColumn, part: float = 0.0
     ) -> Estimate:
         """Return the probability of failure.
 
         part: part of its error by which each stress is increased.
         """
         used, errors = column.of(self.answers)
-        margin = 1.0 - asked.factor * used * (1.0 + part * errors)
-        return probability(self.draws, margin, 0.0, asked.confidence)
+        margin = 1.0 - settings.factor * used * (1.0 + part * errors)
+        return probability(self.draws, margin, 0.0, settings.confidence)
 
-    def deep(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
+    def deep(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
         """Return the probability of failure or of dependence on the stress beneath contact."""
-        margin = 1.0 - asked.factor * column.deep(self.answers)
-        return probability(self.draws, margin, 0.0, asked.confidence)
+        margin = 1.0 - settings.factor * column.deep(self.answers)
+        return probability(self.draws, margin, 0.0, settings.confidence)
 
-    def quantile(self, asked: ReliabilityTable, column: RiskColumn) -> Estimate:
+    def quantile(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
         """Return the factor of safety that is missed with the stated probability."""
         with np.errstate(divide="ignore"):
             factors = 1.0 / column.of(self.answers)[0]
-        return quantile(self.draws, factors, asked.probability, asked.confidence)
+        return quantile(self.draws, factors, settings.probability, settings.confidence)
 
 
 @dataclass(frozen=True)
@@ -84,12 +84,12 @@ class AssessedRow:
 
 
 def risk_of(
-    row: AssessedRow, sampled: Sample, weighted: Sample | None, asked: ReliabilityTable
+    row: AssessedRow, sampled: Sample, weighted: Sample | None, settings: ReliabilityTable
 ) -> Risk:
     """Return the risk of a row by plain and importance sampling."""
-    plain = sampled.probability(asked, row.column)
-    by_weights = weighted and weighted.probability(asked, row.column)
-    low = weighted and weighted.quantile(asked, row.column)
+    plain = sampled.probability(settings, row.column)
+    by_weights = weighted and weighted.probability(settings, row.column)
+    low = weighted and weighted.quantile(settings, row.column)
     nominal = row.nominal
     bare = Risk(
         row.pin,
@@ -99,7 +99,7 @@ def risk_of(
         _bounded(plain),
         plain.count,
         plain.unknown,
-        _bounded(sampled.quantile(asked, row.column)),
+        _bounded(sampled.quantile(settings, row.column)),
         _bounded(by_weights) if by_weights else None,
         _bounded(low) if low else None,
         row.form,
@@ -108,34 +108,34 @@ def risk_of(
     best = weighted if weighted and bare.by_weights else sampled
     return replace(
         bare,
-        mesh=_by_errors(best, row, asked),
-        joint=_by_joint(best, row, asked),
-        beneath=_beneath(sampled, weighted, row, asked),
+        mesh=_by_errors(best, row, settings),
+        joint=_by_joint(best, row, settings),
+        beneath=_beneath(sampled, weighted, row, settings),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
 
 
 def _beneath(
-    sampled: Sample, weighted: Sample | None, row: AssessedRow, asked: ReliabilityTable
+    sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
 ) -> Spread | None:
     """Return the probability with the stress beneath contact; None where that never governs."""
     if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
         return None
-    plain = _bounded(sampled.deep(asked, row.column))
-    return plain.or_narrower(_bounded(weighted.deep(asked, row.column)) if weighted else None)
+    plain = _bounded(sampled.deep(settings, row.column))
+    return plain.or_narrower(_bounded(weighted.deep(settings, row.column)) if weighted else None)
 
 
-def _by_errors(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
+def _by_errors(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByErrors | None:
     used, errors = row.column.of(best.answers)
     known = errors[np.isfinite(used) & (used > 0.0)]
     if not len(known):
         return None
-    ends = (_bounded(best.probability(asked, row.column, part)) for part in (-1.0, 1.0))
+    ends = (_bounded(best.probability(settings, row.column, part)) for part in (-1.0, 1.0))
     error = float(np.median(known))
     return ByErrors(-error, error, *ends)
 
 
-def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErrors | None:
+def _by_joint(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByErrors | None:
     """Return the probability with the relative range over the joint of the nominal study."""
     nominal = row.nominal
     span = nominal.joint.range if nominal and nominal.joint else None
@@ -144,7 +144,9 @@ def _by_joint(best: Sample, row: AssessedRow, asked: ReliabilityTable) -> ByErro
     used, _ = row.column.of(best.answers)
     scales = [end / nominal.max_von_mises for end in span.max_von_mises]
     ends = (
-        _bounded(probability(best.draws, 1.0 - asked.factor * used * s, 0.0, asked.confidence))
+        _bounded(
+            probability(best.draws, 1.0 - settings.factor * used * s, 0.0, settings.confidence)
+        )
         for s in scales
     )
     return ByErrors(scales[0] - 1.0, scales[1] - 1.0, *ends)

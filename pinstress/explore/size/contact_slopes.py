@@ -8,7 +8,6 @@ import numpy as np
 
 from fea.core.places import Place
 from fea.support.support import Solution
-from geometry import Pin
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
 from pinstress.analysis.remedies.joint_parameters import joint_parameters
@@ -60,7 +59,6 @@ def by_contact(
 
 def _band_rates(task: Task, dimensions: tuple[Dimension, ...], connection: str) -> Floats:
     """Return derivatives (n,) of the diameter on which a link bears, by the dimensions."""
-    assert isinstance(task.pin, Pin)  # others are not differentiated
     now, out = task.pin.band(connection).radius, []
     for d in dimensions:
         less = d.changed(d.value * (1.0 - BAND_RATE_STEP)).band(connection).radius

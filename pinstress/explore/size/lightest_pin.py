@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from geometry import Pin
 from pinbase.arrays import Floats
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.remedies.dimensions import dimensions_of
@@ -181,7 +180,7 @@ def lightest_pin(
     stress = PinStress(problem, tell)
     before: float | None = None
     try:
-        if start.scale is not None or not isinstance(problem.shape.whole, Pin):
+        if start.scale is not None or not problem.shape.whole.revolved:
             raise UndifferentiatedError
         shape, known = problem.shape, start.values or {}
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
@@ -240,9 +239,7 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
 
     try:
         best = smallest(factor_at, problem.required, first)
-        way = SCALED_AS_WHOLE_NOTE.format(
-            "" if isinstance(problem.shape.whole, Pin) else CUTS_REASON
-        )
+        way = SCALED_AS_WHOLE_NOTE.format("" if problem.shape.whole.revolved else CUTS_REASON)
     except (NoSizeError, ImpossibleError, InputError) as error:
         return Lightest(
             problem.name, before=factors.get(first), solved=len(factors), why=str(error)
@@ -262,15 +259,15 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
         return f"its material {table.material} has no yield_strength"
     shaft = pin_of(study, pin)
     shape = VariedShape(study, shaft, aim.vary, aim.limits)
-    if not shape.dimensions and isinstance(shaft, Pin):
+    if not shape.dimensions and shaft.revolved:
         has = [
             kind
             for kind in DIMENSION_KINDS
             if any(kind_of(d.key) == kind for d in dimensions_of(study, shaft))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
-    asked = replace(plan.asked, goal="value")
-    return SizingProblem(study, pin, shape, asked, plan.loads, aim.required, aim.of_pin(pin))
+    requirement = replace(plan.requirement, goal="value")
+    return SizingProblem(study, pin, shape, requirement, plan.loads, aim.required, aim.of_pin(pin))
 
 
 class _Search:

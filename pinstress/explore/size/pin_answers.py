@@ -87,16 +87,18 @@ class SizedStudy:
         """
         trial = self.at(scale)
         plan = self._plan(trial, cases)
-        tolerance = plan.asked.tolerance
-        asked = replace(plan.asked, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE))
+        tolerance = plan.requirement.tolerance
+        requirement = replace(
+            plan.requirement, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE)
+        )
         if accuracy == "rough":
-            asked = replace(asked, cells="rough")
+            requirement = replace(requirement, cells="rough")
         elif self.in_lugs:
-            asked = replace(asked, cells="usual")
+            requirement = replace(requirement, cells="usual")
         peaks = [
             solution.peak
             for task in plan.tasks
-            for solution in solutions(trial, task, asked, tell, self.memo)
+            for solution in solutions(trial, task, requirement, tell, self.memo)
         ]
         return _answer(scale, accuracy, peaks, plan.tasks, tolerance)
 
@@ -104,7 +106,7 @@ class SizedStudy:
         """Solve a pin as a run does, with standard diameters.
 
         counting: the cases that are solved to the goal of the study; of the others only whether
-        they reach the factor is asked.
+        they reach the factor is requirement.
         """
         plan = self._plan(self.at(scale, rounded=True), None)
         if plan.study.table.fatigue is None:
@@ -118,7 +120,9 @@ class SizedStudy:
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
         plan = prepare(trial, pins=[self.pin], cases=cases or list(self.plan.loads))
-        return replace(plan, asked=replace(plan.asked, memory=self.plan.asked.memory))
+        return replace(
+            plan, requirement=replace(plan.requirement, memory=self.plan.requirement.memory)
+        )
 
 
 def _split(task: Task, counting: tuple[str, ...]) -> list[Task]:
@@ -130,7 +134,7 @@ def _split(task: Task, counting: tuple[str, ...]) -> list[Task]:
 def _with_goal(plan: Plan, task: Task, counting: tuple[str, ...]) -> Plan:
     if plan.study.table.fatigue is not None or task.loads[0].case in counting:
         return plan
-    return replace(plan, asked=replace(plan.asked, goal="decide"))
+    return replace(plan, requirement=replace(plan.requirement, goal="decide"))
 
 
 def _answer(

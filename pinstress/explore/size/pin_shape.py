@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from geometry import Pin, PinLike
+from geometry import Pin, PinLike, body_of_revolution
 from geometry.shape.dimensions import Dimension
 from geometry.shape.polygon import turn_at
 from pinbase.arrays import Floats
@@ -107,8 +107,9 @@ class VariedShape:
     @property
     def pin(self) -> Pin:
         """The pin as it is; only bodies of revolution have dimensions."""
-        assert isinstance(self.whole, Pin)
-        return self.whole
+        pin = body_of_revolution(self.whole)
+        assert pin is not None
+        return pin
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -4,8 +4,7 @@ govern; solved as a run solves them, so that a run confirms them.
 For a body of revolution the largest stress is found in both halves of each segment, and that of its
 sections; for a pin in contact that of the surface, of sections, and beneath contact, all of which
 must meet the factor. In a row that is singular, stress is read at half the excluded distance, where
-the upper end of the reported range is. All stresses of a surface are raised by the ratio of the one
-that counts to the largest of them.
+the upper end of the reported range is.
 
 A pin in contact is searched on rough cells, which take a fifth or less of the time of the finest;
 the difference of usual cells is found where it matters (`sure`), and added to all stresses on the
@@ -16,35 +15,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
-from assess.derivatives.in_section import section_derivatives
-from assess.derivatives.places import PartsOfSection, PartTop, halves
-from assess.derivatives.records import SolvedCase
-from fea.beam.error_model import CLAMPED_SPAN_ERROR
-from fea.core.linear_solver import SolveError
+from assess.derivatives.places import PartsOfSection
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.core.zone import DISTANCE_VARIATIONS
-from fea.harmonic.evaluate import HarmonicField
-from fea.support.support import Solution
-from geometry import ArgumentError, Pin
+from geometry import ArgumentError
 from geometry.shape.dimensions import Dimension
-from pinbase.arrays import Floats, Mask
+from pinbase.arrays import Floats
 from pinstress.analysis.remedies.dimensions import dimensions_of
-from pinstress.analysis.remedies.sensitivities import differentiated
 from pinstress.analysis.solve import solutions
-from pinstress.explore.size.contact_slopes import UndifferentiatedError, by_contact
-from pinstress.explore.size.counted import surface_and_section
+from pinstress.explore.size.contact_slopes import UndifferentiatedError
 from pinstress.explore.size.optimise import ImpossibleError, StressPlace, worst
 from pinstress.explore.size.other_dimensions import paths_of, study_with
 from pinstress.explore.size.pin_shape import VariedShape
+from pinstress.explore.size.row_parts import RowPart, SizedRow, no_slopes, parts_in_lugs
 from pinstress.explore.size.scaled_study import wider_eyes
-from pinstress.explore.size.singular_places import DIAMETER_EXPONENT, CasePlace, SingularPlaces
+from pinstress.explore.size.singular_places import CasePlace, SingularPlaces
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import Task, tasks
@@ -68,7 +58,7 @@ class SizingProblem:
     """A pin of a study under loads that do not change.
 
     shape: its shape.
-    asked: requirements on the solution.
+    requirement: requirements on the solution.
     loads: by case.
     required: the factor.
     more: by case, the multiple of the required factor that is needed there, mostly 1.
@@ -77,7 +67,7 @@ class SizingProblem:
     study: Study
     name: str
     shape: VariedShape
-    asked: Requirement
+    requirement: Requirement
     loads: dict[str, CaseLoads]
     required: float
     more: dict[str, float]
@@ -110,21 +100,6 @@ class SolvedPin:
     def largest(self) -> float:
         """Return the logarithm of the largest stress, as it counts, over what is allowed."""
         return worst(self.places)
-
-
-@dataclass(frozen=True)
-class _Found:
-    """The largest stress of a part, Pa as it counts, and the function that returns its derivatives.
-
-    besides: terms that are added to the derivatives of its logarithm by those of the dimensions.
-    """
-
-    name: str
-    case: str
-    stress: float
-    slopes: Callable[[], Floats]
-    guess: Floats | None = None
-    besides: Floats | float = 0.0
 
 
 class PinStress:
@@ -233,13 +208,13 @@ class PinStress:
         self.count += 1
         self._tell(f"pin {self.problem.name}, design {self.count}")
         peaks: list[Maximum] = []
-        stresses: list[tuple[_Found, float]] = []
+        stresses: list[tuple[RowPart, float]] = []
         singular: list[CasePlace] = []
         under: list[CasePlace] = []
-        asked = replace(self.problem.asked, cells=cells)
+        requirement = replace(self.problem.requirement, cells=cells)
         try:
             for task in self._tasks(study, values):
-                for peak, parts in self._of_task(study, task, asked, values is not None):
+                for peak, parts in self._of_task(study, task, requirement, values is not None):
                     peaks.append(peak)
                     allowed = self._allowed(task, peak)
                     stresses += [(part, allowed) for part in parts]
@@ -284,7 +259,7 @@ class PinStress:
             chosen = tuple(case for case, size in largest.items() if size >= least)
         return tasks(study, pins, {case: loads[case] for case in chosen})
 
-    def _slope(self, part: _Found) -> Floats:
+    def _slope(self, part: RowPart) -> Floats:
         try:
             return part.slopes()
         except ArithmeticError as error:
@@ -297,33 +272,26 @@ class PinStress:
         return strength / (self.problem.required * self.problem.more.get(peak.case, 1.0))
 
     def _of_task(
-        self, study: Study, task: Task, asked: Requirement, differentiated: bool
-    ) -> Iterator[tuple[Maximum, list[_Found]]]:
+        self, study: Study, task: Task, requirement: Requirement, differentiated: bool
+    ) -> Iterator[tuple[Maximum, list[RowPart]]]:
         """Yield the peaks, each with the stresses of its parts."""
-        if differentiated and not isinstance(task.pin, Pin):
+        if differentiated and not task.pin.revolved:
             raise UndifferentiatedError
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
-        for solution in solutions(study, task, asked, lambda _: None):
+        for solution in solutions(study, task, requirement, lambda _: None):
             self.in_contact |= solution.rings is not None
             peak = solution.peak
             _require_solved(peak)
             if not peak.max_von_mises:
                 continue
             if task.lugs:
-                before = self.problem.study
-                yield peak, [
-                    _Found(
-                        f"{peak.case}, {place}", peak.case, stress,
-                        partial(by_contact, before, study, (task, solution, place), dimensions),
-                    )
-                    for place, stress in surface_and_section(peak)
-                    if stress
-                ]  # fmt: skip
-            elif not differentiated:
-                yield peak, [_Found(peak.case, peak.case, peak.upper_end, _none)]
+                yield peak, parts_in_lugs(self.problem.study, study, task, solution, dimensions)
+            elif differentiated:
+                of = SizedRow(self.problem.shape, self.problem.requirement, task, solution)
+                yield peak, of.parts(dimensions, section)
             else:
-                yield peak, self._parts(task, solution, dimensions, section)
+                yield peak, [RowPart(peak.case, peak.case, peak.upper_end, no_slopes)]
 
     def _dimensions(self, study: Study, task: Task) -> tuple[Dimension, ...]:
         by = {d.key: d for d in dimensions_of(study, task.pin)}
@@ -331,88 +299,6 @@ class PinStress:
             return tuple(by[key] for key in self.problem.shape.keys)
         except KeyError:
             raise ImpossibleError("two of its dimensions have become equal") from None
-
-    def _parts(
-        self,
-        task: Task,
-        solution: Solution,
-        dimensions: tuple[Dimension, ...],
-        parts: PartsOfSection,
-    ) -> list[_Found]:
-        """Return the stresses of the parts of a row that no lugs hold."""
-        peak, answer, pin = solution.peak, solution.answer, task.pin
-        assert isinstance(pin, Pin)  # others are not differentiated
-        if not isinstance(answer, HarmonicField):
-
-            def whole() -> Floats:
-                derivatives = differentiated(self.problem.asked, task, solution, dimensions)
-                if derivatives is None:
-                    raise SolveError("no derivatives", "no-derivatives")
-                slope = np.array([derivatives.by_dimension.get(d.key, 0.0) for d in dimensions])
-                return slope / derivatives.maximum
-
-            return [_Found(peak.case, peak.case, peak.upper_end, whole)]
-        zones = answer.singularities
-        if peak.verdict != "converged" and peak.interval is not None:
-            zones = tuple(zone.varied(min(DISTANCE_VARIATIONS)) for zone in zones)
-        clamps = tuple(pin.surface(name) for name in task.clamps)
-        solved = SolvedCase(pin, task.material, clamps, solution.loads, answer.solution, zones)
-        masks = halves(pin.stations, answer.fields.points)
-        tops = parts.tops(solved, solution.loads, masks)
-        ends = dict(surface_and_section(peak))
-        times = ends["surface"] / max(top.top.value for top in tops)
-
-        def slopes(top: PartTop, mask: Mask) -> Callable[[], Floats]:
-            return lambda: parts.slopes(solved, solution.loads, top, mask) / top.top.value
-
-        def of_section() -> Floats:
-            assert peak.places is not None
-            assert peak.places.section is not None
-            times, now = solution.loads.times, peak.places.section.time
-            instant = 0 if times is None or now is None else int(np.abs(times - now).argmin())
-            at = replace(solved, loads=solution.loads.at(np.array([instant])), history=None)
-            derivatives = section_derivatives(at, dimensions)
-            slope = np.array([derivatives.by_dimension.get(d.key, 0.0) for d in dimensions])
-            return slope / derivatives.maximum
-
-        besides = self._by_clamps(peak, ends.get("section", 0.0)) if len(clamps) > 1 else 0.0
-        section = [
-            _Found(f"{peak.case}, section", peak.case, stress, of_section, besides=besides)
-            for place, stress in ends.items()
-            if place == "section" and stress
-        ]
-        named = {name: (mask, k // 2) for k, (name, mask) in enumerate(masks)}
-        return section + [
-            _Found(
-                f"{peak.case}, {top.part}",
-                peak.case,
-                times * top.top.value,
-                slopes(top, named[top.part][0]),
-                DIAMETER_EXPONENT * self.problem.shape.part_of_diameter(named[top.part][1]),
-            )
-            for top in tops
-            if top.top.value > 0.0
-        ]
-
-    def _by_clamps(self, peak: Maximum, stress: float) -> Floats | float:
-        """Return derivatives that the clamped-span error of a section's stress adds to those of its
-        logarithm.
-
-        The error of a beam between two clamps goes with the largest diameter until it reaches its
-        limit.
-        """
-        place = peak.places.section if peak.places else None
-        error = stress / place.max_von_mises - 1.0 if place and place.max_von_mises else 0.0
-        if error >= CLAMPED_SPAN_ERROR:
-            return 0.0
-        outer = [max(s.diameters) for s in self.problem.shape.pin.segments]
-        thickest = int(np.argmax(outer))
-        return error / (1.0 + error) * self.problem.shape.part_of_diameter(thickest)
-
-
-def _none() -> Floats:
-    """Return no derivatives, where they are not asked for."""
-    return np.zeros(0)
 
 
 def _among(designs: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from fea.core.peak import Maximum
-from geometry import Pin, PinLike
+from geometry import PinLike, body_of_revolution
 from pinbase.arrays import Floats
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.optimise import StressPlace
@@ -72,9 +72,10 @@ class SingularPlaces:
     def _slope(
         self, name: str, pin: PinLike, values: Floats | None, value: float, z: float
     ) -> Floats | None:
-        if values is None or not isinstance(pin, Pin):
+        profile = body_of_revolution(pin)
+        if values is None or profile is None:
             return None
-        x, segment = np.log(values), int(np.searchsorted(pin.stations[1:-1], z))
+        x, segment = np.log(values), int(np.searchsorted(profile.stations[1:-1], z))
         if name not in self._known:
             slope = DIAMETER_EXPONENT * self._shape.part_of_diameter(segment)
         else:

@@ -132,9 +132,9 @@ class Cluster:
     def _identities(self) -> dict[str, Any]:
         """Return the scheduler's information on each of its workers."""
         try:
-            asked: Any = self.client.scheduler
+            scheduler: Any = self.client.scheduler
             said: dict[str, Any] = self.client.sync(
-                asked.identity, callback_timeout=SCHEDULER_TIMEOUT
+                scheduler.identity, callback_timeout=SCHEDULER_TIMEOUT
             )
         except TimeoutError:
             if self.client.status != "running":  # it tries to connect again
@@ -150,12 +150,12 @@ class Cluster:
 
     def _ask(self, new: Sequence[str]) -> None:
         """Ask workers for their versions; those that do not answer are asked again."""
-        asked = {"text": inspect.getsource(asking), "packages": self._packages}
+        variables = {"text": inspect.getsource(asking), "packages": self._packages}
 
         async def one(address: str) -> Any:
             with suppress(TimeoutError, OSError):
                 run: Any = self.client.run(
-                    eval, VERSIONS_EXPRESSION, asked, workers=[address], on_error="return"
+                    eval, VERSIONS_EXPRESSION, variables, workers=[address], on_error="return"
                 )
                 return (await asyncio.wait_for(run, SCHEDULER_TIMEOUT)).get(address)
             return None

@@ -128,7 +128,9 @@ class Evaluator:
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
         self.files: tuple[Path, ...] = ()
-        self._memory = plan.asked.memory  # free when it began: to ask again takes a millisecond
+        self._memory = (
+            plan.requirement.memory
+        )  # free when it began: to ask again takes a millisecond
         self._cases = tuple(plan.loads)
         rows = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
         self._pins = tuple(dict.fromkeys(pin for pin, _ in rows))
@@ -236,17 +238,17 @@ class Evaluator:
         except (InputError, ArithmeticError, MemoryError) as error:
             yield from ((c, _failed(study, name, c, error)) for c in right)
             return
-        asked = requirement_of(study, memory=self._memory)
+        requirement = requirement_of(study, memory=self._memory)
         for task in todo:
-            yield from self._solved(study, task, asked, right)
+            yield from self._solved(study, task, requirement, right)
 
     def _solved(
-        self, study: Study, task: Task, asked: Requirement, loads: Mapping[str, CaseLoads]
+        self, study: Study, task: Task, requirement: Requirement, loads: Mapping[str, CaseLoads]
     ) -> Iterable[tuple[str, DesignRow]]:
         density = task.material.density
         mass = density * task.pin.volume if density else None
         try:
-            rows = self._rows_of(study, task, asked, loads)
+            rows = self._rows_of(study, task, requirement, loads)
         except (InputError, ArgumentError, ArithmeticError, MemoryError) as error:
             names = [loads.case for loads in task.loads]
             yield from ((c, _failed(study, task.pin.name, c, error)) for c in names)
@@ -274,12 +276,12 @@ class Evaluator:
             )
 
     def _rows_of(
-        self, study: Study, task: Task, asked: Requirement, loads: Mapping[str, CaseLoads]
+        self, study: Study, task: Task, requirement: Requirement, loads: Mapping[str, CaseLoads]
     ) -> tuple[PinResult, ...]:
-        key = _question(study, task, asked, [loads[x.case].range for x in task.loads])
+        key = _question(study, task, requirement, [loads[x.case].range for x in task.loads])
         known = self._rows.get(key)
         if known is None:
-            solved = solutions(study, task, asked, lambda _: None, self.memo)
+            solved = solutions(study, task, requirement, lambda _: None, self.memo)
             known = self._rows.put(key, tuple(bare_row(task, s, loads) for s in solved))
         return known
 
@@ -309,14 +311,14 @@ def _elastic_lug(lug: Lug) -> Lug:
 
 
 def _question(
-    study: Study, task: Task, asked: Requirement, ranges: Sequence[ImpulseLoads | None]
+    study: Study, task: Task, requirement: Requirement, ranges: Sequence[ImpulseLoads | None]
 ) -> str:
     """Return a hash of all on which a pin's answers depend in a study whose mechanism does not
     change.
 
     ranges: of impulses by case, as other ones may have the same forces.
     """
-    decides = asked.goal == "decide"
+    decides = requirement.goal == "decide"
     asks = (
         shape_of(task.pin),
         task.clamps,
@@ -327,7 +329,7 @@ def _question(
         task.ranges,
         ranges,
         task.material if decides else elastic(task.material),
-        replace(asked, memory=None),
+        replace(requirement, memory=None),
     )
     return hashlib.sha256(pack(asks)).hexdigest()
 

@@ -206,9 +206,9 @@ def identity(study: Study, *chosen: object) -> Identity:
     document.get("vary", {}).pop("count", None)
     values, version = inputs(study), program()
     others = {key: value for key, value in values.items() if key != "vary.count"}
-    asked = study.text, values, chosen, version
+    study_inputs = study.text, values, chosen, version
     but_count = tomlkit.dumps(document), others, chosen, version
-    whole, but = (hashlib.sha256(repr(x).encode()).hexdigest() for x in (asked, but_count))
+    whole, but = (hashlib.sha256(repr(x).encode()).hexdigest() for x in (study_inputs, but_count))
     return Identity(whole, but, *((vary.count, vary.sample) if vary else (0, "")))
 
 

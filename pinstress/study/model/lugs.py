@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.cut.inside import crosses_end
 from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.support.lugs.lug import Bushing, Lug, LugRange
-from geometry import ArgumentError, Band, Cut, CutPin, Hole, Pin, PinLike
+from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.pins import LugRangeTable, LugTable, PinTable
@@ -57,8 +57,8 @@ def given_lugs(study: Study, pin: PinLike, holding: tuple[Lug, ...]) -> tuple[Lu
     Raises: InputError for impossible lugs.
     """
     given = study.table.pin[pin.name].lug
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if not given or not isinstance(profile, Pin):
+    profile = pin.profile
+    if not given or profile is None:
         return ()
     every = holding or _fitting(study, profile, f"pin.{pin.name}.lug")
     return tuple(lug for lug in every if lug.connection in given)
@@ -114,23 +114,22 @@ def _in_contact(study: Study, pin: PinLike, instead: str) -> Pin:
     """
     table, joints = study.table.pin[pin.name], study.table.analysis.joints
     at = f"pin.{pin.name}" + ".lug" * bool(table.lug)
-    if isinstance(pin, CutPin) and joints == "foundation":
+    if pin.cuts and joints == "foundation":
         raise study.error(
             f"pin {pin.name} has cuts, which a beam on foundations leaves out; use "
             'analysis.joints = "contact"',
             at,
             "not-axisymmetric",
         )
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if not isinstance(profile, Pin):
+    profile = pin.profile
+    if profile is None:
         raise study.error(
             f"pin {pin.name} is from a file that is no profile; lugs require a profile, which may "
             f"have holes, flats, slots and passages: {instead}",
             at,
             "not-axisymmetric",
         )
-    cuts = pin.cuts if isinstance(pin, CutPin) else {}
-    for cut, feature in cuts.items():
+    for cut, feature in pin.cuts.items():
         for name in dict.fromkeys((*profile.connections, *table.lug)):
             band = profile.band(name)
             if crosses_end(feature, profile, band.z0, band.z1):
@@ -183,21 +182,22 @@ def assumed_lugs(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> Assumed
 
     Defaults fill in for values that the study omits.
     """
-    if not isinstance(pin, Pin):
+    profile = body_of_revolution(pin)
+    if profile is None:
         return AssumedLugs(why="the pin has cuts or is from a file")
     clamped = [pin.surface(name) for name in clamps]
-    bare = [name for name in clamped if name not in pin.labels]
+    bare = [name for name in clamped if name not in profile.labels]
     if bare:
         return AssumedLugs(why=f"no lug surrounds its clamp ({', '.join(bare)})")
     table = study.table.pin[pin.name]
-    free = _freed(pin, clamped)
+    free = _freed(profile, clamped)
     names = dict.fromkeys([*free.connections, *clamped, *table.lug])
     if len(names) < 2:
         return AssumedLugs(why="one band alone does not show how the pin is supported")
     made_of = material(study, table.material)
     try:
         assumed = tuple(
-            _lug(study, pin, name, table.lug.get(name, LugTable()), made_of) for name in names
+            _lug(study, profile, name, table.lug.get(name, LugTable()), made_of) for name in names
         )
     except ArgumentError as error:
         return AssumedLugs(why=str(error))

@@ -93,8 +93,8 @@ def shape_notes(pin: PinLike) -> str:
 
 
 def _lost_shape(pin: PinLike) -> str:
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if isinstance(profile, Pin) and profile.merged:
+    profile = pin.profile
+    if profile is not None and profile.merged:
         return (
             f"diameters or bores that differ by up to "
             f"{profile.merged / METRES_PER_UNIT['mm']:.2g} mm, "
@@ -128,8 +128,8 @@ def far_ends(pin: PinLike) -> tuple[tuple[float, float], ...]:
     """Return the diameter and bore (m) at the far ends of what `outline` draws; empty where all
     are cylinders.
     """
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if not isinstance(profile, Pin) or profile.stepped:
+    profile = pin.profile
+    if profile is None or profile.stepped:
         return ()
     return tuple((s.diameters[1], s.bores[1]) for s in profile.segments)
 
@@ -140,8 +140,7 @@ def outline(pin: PinLike) -> list[tuple[float, float, float, str, str]]:
     Each has length, diameter, bore (m), name, and "band" or "plain". A shape from a file is drawn
     by its bands, and the space between them.
     """
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if isinstance(profile, Pin):
+    if (profile := pin.profile) is not None:
         return [
             (s.length, s.diameter, s.bore, label if s.connection or s.name else "",
              "band" if s.connection else "plain")

@@ -50,10 +50,10 @@ def chosen_cases(study: Study, wanted: Iterable[str] | None) -> list[str]:
     Raises: ChoiceError.
     """
     names = select([*study.table.case, *study.table.sequence], wanted, "case")
-    asked = dict.fromkeys(names)
-    for name in asked.keys() & study.table.sequence.keys():
-        asked |= dict.fromkeys(step.case for step in study.table.sequence[name].steps)
-    return [name for name in study.table.case if name in asked]
+    chosen = dict.fromkeys(names)
+    for name in chosen.keys() & study.table.sequence.keys():
+        chosen |= dict.fromkeys(step.case for step in study.table.sequence[name].steps)
+    return [name for name in study.table.case if name in chosen]
 
 
 def require_times(study: Study, times: Mapping[str, Floats | None]) -> None:

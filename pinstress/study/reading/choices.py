@@ -59,19 +59,19 @@ def select(
             f"{argument}: must be a list of names such as [{like!r}], not {as_text(wanted)}",
             code="not-a-list",
         )
-    asked: list[object] = list(wanted)
-    if not asked:
+    wanted_names: list[object] = list(wanted)
+    if not wanted_names:
         raise ChoiceError(
             f"{argument}: the list is empty; choose among {listed(known)}", code="empty"
         )
-    for name in asked:
+    for name in wanted_names:
         if not isinstance(name, str) or name not in known:
             hint = near(name, known)
             raise ChoiceError(
                 f"{argument}: the study has no {what} {as_text(name)}; {hint}",
                 code=f"unknown-{what}",
             )
-    chosen = set(asked)
+    chosen = set(wanted_names)
     return [name for name in known if name in chosen]
 
 

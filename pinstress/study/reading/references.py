@@ -195,8 +195,8 @@ def _parameters(material: MaterialTable, fatigue: FatigueTable) -> dict[str, flo
     sn = material.fatigue
     if fatigue.method == "fkm-p-ram" or sn is None:
         return ultimate
-    asked = fatigue.failure_probability
-    scattered = asked is not None and asked != sn.failure_probability
+    probability = fatigue.failure_probability
+    scattered = probability not in (None, sn.failure_probability)
     scatter = {"fatigue.scatter": sn.scatter} if scattered else {}
     sensitivity = {"fatigue.mean_stress_sensitivity": sn.mean_stress_sensitivity}
     if fatigue.method == "critical-plane":

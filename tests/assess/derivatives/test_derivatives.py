@@ -19,7 +19,8 @@ from fea.beam.stress_concentration import BENDING_FIT, shoulder_factor
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.harmonic.assembly import Section, elasticity
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO
 from fea.support.contact.pressure_loads import PressureLoads

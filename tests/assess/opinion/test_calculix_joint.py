@@ -24,7 +24,7 @@ from assess.opinion.calculix_joint_mesh import Fineness, Hexahedra, annulus_mesh
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
 from fea.support.contact.solve_joint import ContactModel, Resolution
@@ -335,8 +335,8 @@ def test_calculix_agrees_on_a_clevis(clearance: float) -> None:
     assert other == pytest.approx(mine, rel=0.03)
     apart = np.abs(theirs.force - ours.loads.forces[0, :, :2])
     assert apart.max() < 0.08 * np.abs(theirs.force).max()
-    asked = Requirement(model="harmonic", meshes=2)
-    answer = solve_pin(ours.pin, STEEL, (), (ours.loads,), asked)[0].answer
+    requirement = Requirement(model="harmonic", meshes=2)
+    answer = solve_pin(ours.pin, STEEL, (), (ours.loads,), requirement)[0].answer
     assert isinstance(answer, HarmonicField)
     fields, angle = answer.fields, math.atan2(0.8, 0.6)
     near = np.hypot(fields.points[:, 0] - D / 2.0, fields.points[:, 1] - 0.023).argmin()

@@ -48,10 +48,12 @@ def test_samples_do_not_matter(model: Model, samples: int, steel: Material) -> N
     """The largest load is at CREST, whatever the samples: maximum to 1e-9 of that of this instant
     alone, its time to 1e-5 s (a crest is flat), its error with next to nothing of the time.
     """
-    asked = Requirement(model=model)
+    requirement = Requirement(model=model)
     times = np.linspace(0.0, 1.0, samples)
-    (found,) = solve_pin(BAR, steel, (), (loads_at(times),), asked, between={"turn": loads_at})
-    (alone,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), asked)
+    (found,) = solve_pin(
+        BAR, steel, (), (loads_at(times),), requirement, between={"turn": loads_at}
+    )
+    (alone,) = solve_pin(BAR, steel, (), (loads_at(np.array([CREST])),), requirement)
     assert found.peak.max_von_mises == pytest.approx(alone.peak.max_von_mises, rel=1e-9)
     assert found.peak.time == pytest.approx(CREST, abs=1e-5)
     assert found.loads.times is not None
@@ -59,7 +61,7 @@ def test_samples_do_not_matter(model: Model, samples: int, steel: Material) -> N
     assert set(times) <= set(found.loads.times)
     assert found.peak.parts is not None
     assert alone.peak.parts is not None
-    limit = 0.05 * asked.tolerance * (found.peak.max_von_mises or 0.0)
+    limit = 0.05 * requirement.tolerance * (found.peak.max_von_mises or 0.0)
     assert 0.0 < found.peak.parts.time <= 1.1 * limit  # which the first mesh decides
     assert alone.peak.parts.time == 0.0
 

@@ -11,7 +11,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import VON_MISES
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.local_model import LocalModel, Read
 from fea.cut.parity import Parities
 from fea.cut.region import pieces, refusal, zone
@@ -278,8 +278,8 @@ def test_a_hole_in_a_cone_beside_the_whole_solid() -> None:
     loads = PinLoads("pull", ("A", "B"), pull)
     pin = CutPin(CONE, (Hole(0.04, d),))
     local, solid = (
-        solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
-        for asked in (Requirement(), Requirement(tolerance=0.05, model="solid"))
+        solve_pin(pin, STEEL, (), (loads,), requirement)[0].peak
+        for requirement in (Requirement(), Requirement(tolerance=0.05, model="solid"))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises is not None

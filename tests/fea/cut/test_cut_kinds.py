@@ -273,8 +273,8 @@ def bending(force: float = 1500.0, axial: float = 0.0) -> PinLoads:
     return PinLoads("bending", SHAFT.connections, forces[None])
 
 
-def peak(pin: CutPin, asked: Requirement) -> Maximum:
-    return solve_pin(pin, STEEL, (), (bending(),), asked)[0].peak
+def peak(pin: CutPin, requirement: Requirement) -> Maximum:
+    return solve_pin(pin, STEEL, (), (bending(),), requirement)[0].peak
 
 
 def test_a_sharp_flat_is_singular_and_says_what_would_help() -> None:

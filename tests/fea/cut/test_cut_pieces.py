@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.cut import region
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.local_fields import LocalFields
 from fea.solve.single_mesh import ModelMesh, Problem, result_on
 from fea.solve.solve import solve_pin

@@ -9,7 +9,7 @@ from fea.core.linear_solver import SolveError
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.requirement import Requirement
-from fea.cut.evaluate import CutField
+from fea.cut.field import CutField
 from fea.cut.local_model import LocalModel
 from fea.cut.lost_loads import bearings, trial_forces
 from fea.cut.region import loaded_bands, pieces
@@ -109,8 +109,8 @@ def test_a_cut_between_clamps_beside_the_whole_solid() -> None:
     pin = CutPin(TWICE, (Hole(0.025, 0.008, 0.3),))
     loads = PinLoads("pull", ("B",), np.array([[[0.0, 0.0, 40e3]]]))
     local, solid = (
-        solve_pin(pin, STEEL, ("start", "end"), (loads,), asked)[0]
-        for asked in (Requirement(0.01), Requirement(0.1, "solid"))
+        solve_pin(pin, STEEL, ("start", "end"), (loads,), requirement)[0]
+        for requirement in (Requirement(0.01), Requirement(0.1, "solid"))
     )
     assert (local.peak.model, solid.peak.model) == ("harmonic+local", "solid")
     assert local.peak.max_von_mises is not None
@@ -175,8 +175,8 @@ def test_a_flat_or_keyway_in_a_loaded_band_beside_the_whole_solid(name: str) -> 
     loads = PinLoads("pressed", ("A", "B", "C"), forces, distribution="cosine")
     pin = CutPin.of(three(0.03), [IN_BAND[name]])
     local, solid = (
-        solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
-        for asked in (Requirement(0.02), Requirement(0.1, "solid", meshes=2))
+        solve_pin(pin, STEEL, (), (loads,), requirement)[0].peak
+        for requirement in (Requirement(0.02), Requirement(0.1, "solid", meshes=2))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises == pytest.approx(solid.max_von_mises, rel=0.04)
@@ -188,8 +188,8 @@ def test_a_hole_in_a_loaded_band_beside_the_whole_solid() -> None:
     loads = PinLoads("pressed", ("A", "B", "C"), forces, distribution="cosine")
     pin = CutPin(three(0.02), (Hole(0.04, d),))
     local, solid = (
-        solve_pin(pin, STEEL, (), (loads,), asked)[0].peak
-        for asked in (Requirement(0.01), Requirement(0.1, "solid", meshes=2))
+        solve_pin(pin, STEEL, (), (loads,), requirement)[0].peak
+        for requirement in (Requirement(0.01), Requirement(0.1, "solid", meshes=2))
     )
     assert (local.model, solid.model) == ("harmonic+local", "solid")
     assert local.max_von_mises == pytest.approx(solid.max_von_mises, rel=0.04)

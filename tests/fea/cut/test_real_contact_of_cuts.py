@@ -175,8 +175,10 @@ def test_real_contact_is_within_the_error(
     found, stress = real_contact(problem, plain, half)
     uncut = bending(problem, problem.solve(LOADS.forces[0, :, :2]))
     assert bending(problem, found) / uncut == pytest.approx(moment, abs=0.02)
-    asked = Requirement(0.05, distance=EDGE / D)
-    (ours,) = solve_in_lugs(PinProblem(CutPin.of(CLEVIS, (cut,)), STEEL, LUGS, (LOADS,)), asked)
+    requirement = Requirement(0.05, distance=EDGE / D)
+    (ours,) = solve_in_lugs(
+        PinProblem(CutPin.of(CLEVIS, (cut,)), STEEL, LUGS, (LOADS,)), requirement
+    )
     peak = ours.peak
     assert peak.max_von_mises is not None
     assert peak.error_estimate is not None

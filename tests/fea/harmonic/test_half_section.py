@@ -9,7 +9,7 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.half_section import MeridianPlane
 from fea.harmonic.superposition import Circumference
 from fea.solve.solve import solve_pin
@@ -28,8 +28,8 @@ def plane() -> MeridianPlane:
         Segment(0.02, 0.02, 0.0, "P1", "P1"),
     )
     steel = Material("steel", 200e9, 0.3)
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(Pin("p", segments), steel, ("start",), (LOADS,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(Pin("p", segments), steel, ("start",), (LOADS,), requirement)
     assert isinstance(found.answer, HarmonicField)
     return MeridianPlane(found.answer.fields, found.answer.singularities)
 

@@ -11,9 +11,10 @@ from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.harmonic.assembly import Section
 from fea.harmonic.boundary import Outline
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
 from fea.harmonic.model import HarmonicModel
 from fea.harmonic.pressure_edge import EDGE_DIRECTIONS, jumps
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.harmonic.superposition import Circumference
 from fea.solve.refine import MESH_RATIO
 from fea.solve.solve import solve_pin

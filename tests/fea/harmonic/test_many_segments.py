@@ -13,8 +13,9 @@ from fea.core.memory import section_memory
 from fea.core.mesh_result import MeshMaximum
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import SectionProblem, harmonic_result, harmonic_solution
+from fea.harmonic.evaluate import harmonic_result
 from fea.harmonic.quiet_corners import NUMEROUS_FILLETS_ABOVE, numerous_fillets
+from fea.harmonic.section_solution import SectionProblem, harmonic_solution
 from fea.singular.singularities import singularities_of
 from fea.solve.refine import MESH_RATIO, count_loads
 from fea.solve.solve import solve_pin
@@ -124,12 +125,12 @@ def test_quiet_fillets_stay_coarse_and_the_others_do_not(steel: Material) -> Non
 def test_memory_ends_a_section_too(steel: Material) -> None:
     """What the first mesh takes is enough for no second one, and that is reported."""
     pin = shaft(4, 1.0)
-    asked = Requirement(model="harmonic", tolerance=1e-6, meshes=2)
+    requirement = Requirement(model="harmonic", tolerance=1e-6, meshes=2)
     loads = ends(pin)
-    (free,) = solve_pin(pin, steel, ("start",), (loads,), asked)
+    (free,) = solve_pin(pin, steel, ("start",), (loads,), requirement)
     first = free.peak.history[0].dofs
     enough = section_memory(first, count_loads((loads,)))
-    (found,) = solve_pin(pin, steel, ("start",), (loads,), replace(asked, memory=enough))
+    (found,) = solve_pin(pin, steel, ("start",), (loads,), replace(requirement, memory=enough))
     assert [h.dofs for h in found.peak.history] == [first]
     assert "memory-limit" in found.peak.reasons
     assert f"{2 * first:,} unknowns" in found.peak.note

@@ -8,7 +8,7 @@ import pytest
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
-from fea.harmonic.evaluate import HarmonicField
+from fea.harmonic.field import HarmonicField
 from fea.harmonic.revolve import revolve_solid
 from fea.harmonic.shown_surface import VIEW_SECTORS
 from fea.solve.solve import solve_pin
@@ -21,8 +21,8 @@ LOADS = PinLoads("c", ("B",), np.array([[[0.0, 0.0, 0.0]], [[300.0, -400.0, 200.
 
 @pytest.fixture(scope="module")
 def answer(steel: Material) -> HarmonicField:
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(PIN, steel, ("start",), (LOADS,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(PIN, steel, ("start",), (LOADS,), requirement)
     assert isinstance(found.answer, HarmonicField)
     return found.answer
 

@@ -107,8 +107,10 @@ def test_meshes_decide_by_the_interval(steel: Material) -> None:
     assert steel.yield_strength is not None
     low, high = known.peak.interval
     for limit, open_ in ((0.5 * low, False), (0.5 * (low + high), True)):
-        asked = Requirement(1e-4, goal="decide", required=steel.yield_strength / limit, meshes=4)
-        (found,) = solve_pin(HELD, steel, ("held",), (PULLED,), asked)
+        requirement = Requirement(
+            1e-4, goal="decide", required=steel.yield_strength / limit, meshes=4
+        )
+        (found,) = solve_pin(HELD, steel, ("held",), (PULLED,), requirement)
         assert ("mesh-decides" in found.peak.reasons) is not open_
         assert meets_limit(found.peak, limit) is (None if open_ else False)
 

@@ -14,7 +14,7 @@ from fea.core.peak import ErrorParts
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
-from fea.solid.evaluate import SolidField
+from fea.solid.field import SolidField
 from fea.solid.model import SolidModel, acting
 from fea.solid.superposition import envelope
 from fea.solve.solve import solve_pin

@@ -16,7 +16,7 @@ from fea.core.requirement import Requirement
 from fea.core.voigt import von_mises
 from fea.solid.assembly import Discretisation
 from fea.solid.boundary import resultants, surface
-from fea.solid.evaluate import SolidField
+from fea.solid.field import SolidField
 from fea.solid.model import SolidModel, UnitFields, acting
 from fea.solid.nodal_loads import Unit, nodal_loads
 from fea.solid.superposition import envelope
@@ -232,8 +232,8 @@ def test_a_floating_pin_in_balance_by_a_moment(steel: Material) -> None:
     left = [out_of_balance(pin, case) for case in cases]
     assert [b.force for b in left] == pytest.approx([0.0] * 4)
     assert [b.couple for b in left] == pytest.approx([0.0, 6.0, 60.0, 1.0], abs=1e-12)
-    asked = Requirement(0.5, model="solid", meshes=1)
-    ok, less, none, refused = solve_pin(pin, steel, (), cases, asked)
+    requirement = Requirement(0.5, model="solid", meshes=1)
+    ok, less, none, refused = solve_pin(pin, steel, (), cases, requirement)
     assert ok.peak.imbalance is None
     assert less.peak.imbalance == pytest.approx((0.0, 6.0 / 500.0 / 0.14))
     assert none.peak.imbalance == pytest.approx((0.0, 60.0 / 500.0 / 0.14))

@@ -13,7 +13,8 @@ from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.core.requirement import Requirement
 from fea.singular.singularities import find_singularities
-from fea.solid.evaluate import SolidField, solid_result, solid_solution
+from fea.solid.evaluate import solid_result, solid_solution
+from fea.solid.field import SolidField
 from fea.solid.model import SolidModel
 from fea.solve.solve import solve_pin
 from geometry import Pin, Segment
@@ -106,10 +107,10 @@ def test_a_sharp_corner_and_a_clamp_edge_are_singular(steel: Material) -> None:
     """
     pin = Pin("P", (Segment(0.02, 0.03), Segment(0.02, 0.02, connection="B")))
     load = PinLoads("case", ("B",), np.array([[[0.0, 1000.0, 0.0]]]))
-    asked = Requirement(0.2, model="solid", meshes=3)
+    requirement = Requirement(0.2, model="solid", meshes=3)
     peak, exact = (
         solve_pin(pin, steel, ("start",), (load,), a)[0].peak
-        for a in (asked, Requirement(0.2, model="harmonic"))
+        for a in (requirement, Requirement(0.2, model="harmonic"))
     )
     assert (peak.model, exact.model) == ("solid", "harmonic")
     for found in (peak, exact):

@@ -39,8 +39,8 @@ YIELD = 1.0e9  # of `steel`
 
 def test_a_beam_decides_where_its_error_leaves_no_doubt(steel: Material) -> None:
     for required, meets in ((2.0, True), (1e4, False)):
-        asked = Requirement(goal="decide", required=required)
-        (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+        requirement = Requirement(goal="decide", required=required)
+        (found,) = solve_pin(BAR, steel, (), (BALANCED,), requirement)
         peak = found.peak
         assert (peak.model, peak.verdict) == ("beam", "unconverged")
         assert peak.reasons == ("above-tolerance", "beam-decides")
@@ -68,14 +68,14 @@ def test_a_wide_tolerance_is_a_beams_and_a_narrow_one_is_not(steel: Material) ->
 def test_a_strength_or_a_requirement_that_is_missing_decides_nothing(steel: Material) -> None:
     weak = replace(steel, yield_strength=None)
     for material, required in ((weak, 2.0), (steel, None)):
-        asked = Requirement(goal="decide", required=required, tolerance=0.2)
-        (found,) = solve_pin(BAR, material, (), (BALANCED,), asked)
+        requirement = Requirement(goal="decide", required=required, tolerance=0.2)
+        (found,) = solve_pin(BAR, material, (), (BALANCED,), requirement)
         assert found.peak.model == "harmonic"
 
 
 def test_meshes_that_run_out_are_told(steel: Material) -> None:
-    asked = Requirement(model="harmonic", tolerance=1e-6, meshes=3)
-    (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+    requirement = Requirement(model="harmonic", tolerance=1e-6, meshes=3)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), requirement)
     assert (found.peak.verdict, len(found.peak.history)) == ("unconverged", 3)
     assert found.peak.reasons == ("above-tolerance", "requested", "mesh-limit")
     assert found.peak.why == (
@@ -84,8 +84,8 @@ def test_meshes_that_run_out_are_told(steel: Material) -> None:
 
 
 def test_one_mesh_has_no_error_estimate(steel: Material) -> None:
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), requirement)
     assert found.peak.verdict == "unconverged"
     assert found.peak.error_estimate == found.peak.max_von_mises
     assert "too-few-meshes" in found.peak.reasons
@@ -121,8 +121,8 @@ def test_what_bands_take_up_is_told(steel: Material) -> None:
 
 def test_no_beam_where_a_corner_has_no_maximum(steel: Material) -> None:
     sharp = Pin("S", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="D1")))
-    asked = Requirement(goal="decide", required=1e4, meshes=3)
-    (found,) = solve_pin(sharp, steel, ("start",), (ONE_SIDED,), asked)
+    requirement = Requirement(goal="decide", required=1e4, meshes=3)
+    (found,) = solve_pin(sharp, steel, ("start",), (ONE_SIDED,), requirement)
     assert found.peak.model == "harmonic"
 
 
@@ -188,8 +188,8 @@ def test_a_harmonic_mesh_decides_before_it_is_exact(steel: Material) -> None:
         0
     ].peak.max_von_mises
     assert exact is not None
-    asked = Requirement(goal="decide", required=1.1 * YIELD / exact, tolerance=1e-6)
-    (found,) = solve_pin(BAR, steel, (), (BALANCED,), asked)
+    requirement = Requirement(goal="decide", required=1.1 * YIELD / exact, tolerance=1e-6)
+    (found,) = solve_pin(BAR, steel, (), (BALANCED,), requirement)
     assert (found.peak.model, found.peak.verdict) == ("harmonic", "unconverged")
     assert "mesh-decides" in found.peak.reasons
     assert len(found.peak.history) < SECTION_MESHES.max_meshes

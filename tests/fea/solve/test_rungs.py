@@ -53,8 +53,8 @@ def test_a_harmonic_rung_is_the_mesh_of_a_run(cantilever_pin: Pin, steel: Materi
     problem = Problem(cantilever_pin, steel, ("start",), load)
     first = result_on(problem, ModelMesh("harmonic", level=0))
     second = result_on(problem, ModelMesh("harmonic", level=1), (first,))
-    asked = Requirement(model="harmonic", meshes=2)
-    (run,) = solve_pin(cantilever_pin, steel, ("start",), (load,), asked)
+    requirement = Requirement(model="harmonic", meshes=2)
+    (run,) = solve_pin(cantilever_pin, steel, ("start",), (load,), requirement)
     assert [s.dofs for s in run.peak.history] == [first.unknowns, second.unknowns]
     assert [s.max_von_mises for s in run.peak.history] == [first.maximum, second.maximum]
 

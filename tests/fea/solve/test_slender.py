@@ -81,7 +81,7 @@ def test_no_beam_stands_in_for_a_harmonic_model_that_was_asked_for(
     def no_mesh(*_: object) -> None:
         raise MeshError("pin P: no mesh", "none")
 
-    monkeypatch.setattr("fea.harmonic.evaluate.meridian_mesh", no_mesh)
+    monkeypatch.setattr("fea.harmonic.section_solution.meridian_mesh", no_mesh)
     pin, loads, _ = cantilever(10 * D)
     with raises(MeshError, "none"):
         solve_pin(pin, steel, ("start",), (loads,), Requirement(model="harmonic"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,10 +11,11 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Model, Requirement
 from fea.core.solution import StressField
+from fea.core.unit_surface import UnitSurface
 from fea.core.voigt import von_mises
-from fea.solve import surface_fields as shown_by
+from fea.solid import field as solid_field
+from fea.solid.field import SolidField
 from fea.solve.solve import solve_pin
-from fea.solve.surface_fields import UnitSurface, amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 from pinbase.arrays import Mask
 
@@ -26,8 +29,8 @@ def loads(distribution: str) -> PinLoads:
 
 
 def solved(pin: Pin, steel: Material, model: Model, acting: PinLoads) -> StressField:
-    asked = Requirement(model=model, meshes=1)
-    (solution,) = solve_pin(pin, steel, ("start",), (acting,), asked)
+    requirement = Requirement(model=model, meshes=1)
+    (solution,) = solve_pin(pin, steel, ("start",), (acting,), requirement)
     assert solution.answer is not None
     return solution.answer
 
@@ -58,8 +61,9 @@ def test_meridian_superposes_to_the_picture(
 ) -> None:
     acting = loads(distribution)
     answer = solved(cantilever_pin, steel, "harmonic", acting)
-    surface, picture = unit_surface(answer), answer.picture(acting, INSTANT)
-    assert surface is not None
+    shown, picture = answer.surface(), answer.picture(acting, INSTANT)
+    assert shown is not None
+    surface = shown.unit
     assert surface.revolved
     assert picture is not None
     rings = picture.points.reshape(-1, 60, 3)  # points that coincide are one there
@@ -67,7 +71,7 @@ def test_meridian_superposes_to_the_picture(
     moved = picture.displacement.reshape(-1, 60, 3)
     for sector in (0, 7, 31):
         theta = 2.0 * np.pi * sector / 60
-        found, along = superposed(surface, amounts(answer, acting)[INSTANT], theta)
+        found, along = superposed(surface, shown.amounts(acting)[INSTANT], theta)
         first = [
             int(np.linalg.norm(surface.points - [np.hypot(x, y), 0.0, z], axis=1).argmin())
             for x, y, z in rings[:, 0]
@@ -78,27 +82,33 @@ def test_meridian_superposes_to_the_picture(
         assert np.stack([x, y, z], axis=1) == pytest.approx(moved[:, sector], rel=1e-9, abs=1e-15)
 
 
-def test_largest_largest_there_is_the_maximum(cantilever_pin: Pin, steel: Material) -> None:
+def test_largest_is_the_maximum(cantilever_pin: Pin, steel: Material) -> None:
     acting = loads("cosine")
     answer = solved(cantilever_pin, steel, "harmonic", acting)
+    shown = answer.surface()
+    assert shown is not None
     for instant in (0, 1):
-        around = largest_there(answer, acting, instant)
-        largest = float(around[~excluded(answer)].max())
+        around = shown.largest(acting, instant)
+        largest = float(around[~shown.excluded].max())
+        x, y, z = shown.location(acting, instant) or (0.0, 0.0, 0.0)
+        meridian = shown.unit.points[~shown.excluded][around[~shown.excluded].argmax()]
+        assert (np.hypot(x, y), z) == pytest.approx((meridian[0], meridian[2]))
         assert largest == pytest.approx(float(answer.maxima(acting)[instant]), rel=1e-9)
-        assert float(around[excluded(answer)].max()) > 0.0
+        assert float(around[shown.excluded].max()) > 0.0
 
 
 def test_solid_superposes_to_the_picture(cantilever_pin: Pin, steel: Material) -> None:
     acting = loads("uniform")
     answer = solved(cantilever_pin, steel, "solid", acting)
-    surface, picture = unit_surface(answer), answer.picture(acting, INSTANT)
-    assert surface is not None
+    shown, picture = answer.surface(), answer.picture(acting, INSTANT)
+    assert shown is not None
+    surface = shown.unit
     assert not surface.revolved
     assert picture is not None
-    found, along = superposed(surface, amounts(answer, acting)[INSTANT], 0.0)
-    assert largest_there(answer, acting, INSTANT) == pytest.approx(found, rel=1e-9)
-    assert np.array_equal(excluded(answer), near_places(surface.points))
-    read = found[~excluded(answer)]
+    found, along = superposed(surface, shown.amounts(acting)[INSTANT], 0.0)
+    assert shown.largest(acting, INSTANT) == pytest.approx(found, rel=1e-9)
+    assert np.array_equal(shown.excluded, near_places(surface.points))
+    read = found[~shown.excluded]
     # the maximum is also looked for inside, on the rims of what is excluded
     assert 0.9 < read.max() / answer.maxima(acting)[INSTANT] <= 1.0 + 1e-9
     on = np.flatnonzero(~np.isnan(picture.envelope))
@@ -122,11 +132,11 @@ def test_a_fine_mesh_is_shown_by_its_corners(
     round-off of sums of six terms, whose order may depend on how many points there are.
     """
     answer = solved(cantilever_pin, steel, "solid", loads("uniform"))
-    every = unit_surface(answer)
-    monkeypatch.setattr(shown_by, "MAX_SHOWN_NODES", 100)
-    corners = unit_surface(answer)
-    assert every is not None
-    assert corners is not None
+    assert isinstance(answer, SolidField)
+    every = answer.surface().unit
+    monkeypatch.setattr(solid_field, "MAX_SHOWN_NODES", 100)
+    shown = SolidField(replace(answer.solution)).surface()  # which keeps no surface from before
+    corners = shown.unit
     assert 4 * len(corners.triangles) == len(every.triangles)
     assert corners.triangles.max() == len(corners.points) - 1
     row = {tuple(p): k for k, p in enumerate(every.points.tolist())}
@@ -134,9 +144,9 @@ def test_a_fine_mesh_is_shown_by_its_corners(
     assert len(same) < 0.3 * len(every.points)
     largest = np.abs(every.stress).max()
     np.testing.assert_allclose(corners.stress, every.stress[same], rtol=0.0, atol=1e-14 * largest)
-    assert np.array_equal(excluded(answer), near_places(corners.points))
+    assert np.array_equal(shown.excluded, near_places(corners.points))
 
 
 def test_a_beam_has_no_surface(cantilever_pin: Pin, steel: Material) -> None:
     answer = solved(cantilever_pin, steel, "beam", loads("uniform"))
-    assert unit_surface(answer) is None
+    assert answer.surface() is None

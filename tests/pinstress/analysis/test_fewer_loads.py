@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fea.core.pin_loads import Floats
-from fea.solve.surface_fields import UnitSurface
+from fea.core.unit_surface import UnitSurface
 from pinstress.analysis.thinning import fewer_loads
 from reports.data.surface import SurfaceCase
 

@@ -9,7 +9,6 @@ from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.requirement import Requirement
 from fea.solve.solve import solve_pin
-from fea.solve.surface_fields import amounts, excluded, largest_there, unit_surface
 from geometry import Pin
 from geometry.shape.chords import needed
 from pinstress import load_study, run
@@ -51,15 +50,14 @@ def test_straight_lines_need_their_ends_and_jumps_both_sides() -> None:
 def test_a_thinned_meridian_has_the_same_stresses(cantilever_pin: Pin, steel: Material) -> None:
     forces = np.array([[[30.0, -70.0, 20.0]], [[500.0, 200.0, -900.0]]])
     acting = PinLoads("c", ("P1",), forces, distribution="cosine")
-    asked = Requirement(model="harmonic", meshes=1)
-    (found,) = solve_pin(cantilever_pin, steel, ("start",), (acting,), asked)
+    requirement = Requirement(model="harmonic", meshes=1)
+    (found,) = solve_pin(cantilever_pin, steel, ("start",), (acting,), requirement)
     assert found.answer is not None
-    surface, left_out = unit_surface(found.answer), excluded(found.answer)
-    assert surface is not None
-    largest = largest_there(found.answer, acting, 1)
-    case = SurfaceCase(
-        "c", None, 1, amounts(found.answer, acting), np.array([0.0, 1.0]), left_out, largest
-    )
+    shown = found.answer.surface()
+    assert shown is not None
+    surface, left_out = shown.unit, shown.excluded
+    largest = shown.largest(acting, 1)
+    case = SurfaceCase("c", None, 1, shown.amounts(acting), np.array([0.0, 1.0]), left_out, largest)
     keep = meridian_points(surface, [case], np.arange(len(left_out)) == 7)
     assert keep[7]
     assert keep.sum() < 0.5 * len(keep)

@@ -214,7 +214,7 @@ def test_a_failure_keeps_the_earlier_results(tmp_path: Path) -> None:
 def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], jobs: str
 ) -> None:
-    import fea.harmonic.evaluate
+    import fea.harmonic.section_solution
     import geometry.mesh.section_mesh
     from geometry.mesh.solid_mesh import MeshError
 
@@ -226,7 +226,7 @@ def test_a_pin_whose_numerics_fail_is_told_and_the_others_go_on(
         return good(pin, *rest)  # type: ignore[arg-type]
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(fea.harmonic.evaluate, "meridian_mesh", no_mesh)
+    monkeypatch.setattr(fea.harmonic.section_solution, "meridian_mesh", no_mesh)
     Path("study.toml").write_text(two_pins(QUICK))
     command = ["run", "study.toml", "--no-pictures", "--jobs", jobs]
     assert run_command_line(command) == 1  # auto has the beam answer, and says why
@@ -246,17 +246,17 @@ CRASHES = """
 import os, signal, sys
 from pinbase.processes.threads import hold_threads
 hold_threads()
-import fea.harmonic.evaluate
+import fea.harmonic.section_solution
 from pinstress.cli.commands import commands, run_command_line
 
-good = fea.harmonic.evaluate.meridian_mesh
+good = fea.harmonic.section_solution.meridian_mesh
 
 def crash(pin, *rest):
     if pin.name == "B":
         os.kill(os.getpid(), signal.SIGKILL)
     return good(pin, *rest)
 
-fea.harmonic.evaluate.meridian_mesh = crash
+fea.harmonic.section_solution.meridian_mesh = crash
 sys.exit(run_command_line(["run", "study.toml", "--no-pictures", "--jobs", "2"]))
 """
 

@@ -69,8 +69,8 @@ def test_rounded_mouths_under_weight() -> None:
     forces = np.array([[[-0.5 * F, 0.0, 0.0], [F, weight, 0.0], [-0.5 * F, 0.0, 0.0]]])
     loads = PinLoads("pull", ("A", "B", "C"), forces, body=np.array([0.0, -9.81, 0.0]))
     cut = CutPin(CLEVIS, (Hole(0.023, 0.15 * D, np.pi / 2.0, mouth_radius=5e-4),))
-    asked = Requirement(0.05, cells="rough", meshes=1)
-    (found,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), asked)
+    requirement = Requirement(0.05, cells="rough", meshes=1)
+    (found,) = solve_in_lugs(PinProblem(cut, STEEL, LUGS, (loads,)), requirement)
     assert found.peak.model == "harmonic+local"
     assert "imbalance-reacted" not in found.peak.reasons
 

@@ -52,11 +52,13 @@ def test_meshes_decide_as_soon_as_there_are_enough(felt: float, maximum: float, 
     """Two of a pin in contact, three of others: fewer can agree by chance."""
     ends = None if felt < maximum else (0.9 * maximum, 1.15 * maximum)
     first, second = mesh(maximum, felt, ends), mesh(1.002 * maximum, felt, ends)
-    asked = replace(DECIDE, tolerance=1e-3)
-    assert accurate_enough(asked, STEEL, seen(first, second, fewest=2)) is done
-    assert not accurate_enough(asked, STEEL, seen(first, fewest=2))
-    assert not accurate_enough(asked, STEEL, seen(first, second))
-    assert not accurate_enough(replace(asked, goal="value"), STEEL, seen(first, second, fewest=2))
+    requirement = replace(DECIDE, tolerance=1e-3)
+    assert accurate_enough(requirement, STEEL, seen(first, second, fewest=2)) is done
+    assert not accurate_enough(requirement, STEEL, seen(first, fewest=2))
+    assert not accurate_enough(requirement, STEEL, seen(first, second))
+    assert not accurate_enough(
+        replace(requirement, goal="value"), STEEL, seen(first, second, fewest=2)
+    )
 
 
 def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> None:
@@ -65,9 +67,9 @@ def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> No
     here = seen(first, second, fewest=2)
     high = here.range[1]
     for section, done in ((1.001 * high, True), (0.999 * high, False)):
-        asked = Requirement(1e-4, elsewhere={"c": section})
-        assert accurate_enough(asked, STEEL, here) is done
-        assert ("surface-below-sections" in met(asked, STEEL, here).codes) is done
+        requirement = Requirement(1e-4, elsewhere={"c": section})
+        assert accurate_enough(requirement, STEEL, here) is done
+        assert ("surface-below-sections" in met(requirement, STEEL, here).codes) is done
     assert not accurate_enough(Requirement(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
 
 

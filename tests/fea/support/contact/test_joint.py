@@ -49,8 +49,8 @@ def joint(model: ContactModel) -> JointContact:
 
 @pytest.fixture(scope="module")
 def solution(joint: JointContact) -> Solution:
-    asked = Requirement(model="harmonic", meshes=2)
-    return solve_pin(joint.pin, STEEL, (), (joint.loads,), asked)[0]
+    requirement = Requirement(model="harmonic", meshes=2)
+    return solve_pin(joint.pin, STEEL, (), (joint.loads,), requirement)[0]
 
 
 def von_mises(solution: Solution, r: float, z: float, angle: float) -> float:

@@ -267,7 +267,8 @@ def test_larger_cells_decide_and_have_the_range_of_the_usual_ones() -> None:
     steel = replace(STEEL, yield_strength=3e9)
     given = PinProblem(PIN, steel, rounded, (STEADY,))
     (usual,), (decided,) = (
-        solve_in_lugs(given, asked) for asked in (QUICK, replace(QUICK, goal="decide", required=1))
+        solve_in_lugs(given, requirement)
+        for requirement in (QUICK, replace(QUICK, goal="decide", required=1))
     )
     peaks = usual.peak, decided.peak
     assert decided.rings is not None

@@ -44,9 +44,11 @@ def on_foundations(pin: Pin, lugs: tuple[Lug, ...], loads: PinLoads = PULL) -> S
     return stress_bounds(FoundationStress.of(model), model.solve(loads))
 
 
-def solved(lugs: tuple[Lug, ...], pin: Pin, asked: Requirement, joints: str = "auto") -> Solution:
+def solved(
+    lugs: tuple[Lug, ...], pin: Pin, requirement: Requirement, joints: str = "auto"
+) -> Solution:
     given = PinProblem(pin, STEEL, lugs, (PULL,))
-    (found,) = solve(given, replace(asked, joints=joints))  # type: ignore[arg-type]
+    (found,) = solve(given, replace(requirement, joints=joints))  # type: ignore[arg-type]
     return found
 
 
@@ -251,8 +253,8 @@ def decided(required: float, edges: float = 3e-4) -> Solution:
     """The clevis of about 300 MPa, with rounded or sharp edges of its lugs."""
     pin, lugs = usual()
     rounded = tuple(replace(lug, edge_radius=edges) for lug in lugs)
-    asked = Requirement(goal="decide", required=required)
-    (found,) = solve(PinProblem(pin, STRONG, rounded, (PULL,)), asked)
+    requirement = Requirement(goal="decide", required=required)
+    (found,) = solve(PinProblem(pin, STRONG, rounded, (PULL,)), requirement)
     return found
 
 

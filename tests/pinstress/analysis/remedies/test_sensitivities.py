@@ -163,12 +163,12 @@ def test_in_contact_by_all_of_the_joint() -> None:
     assert total("length") + 2.0 * forces == pytest.approx(0.0, abs=1e-6)
     assert total("stress") + forces == pytest.approx(1.0, abs=1e-6)
     (task,) = plan.tasks
-    (joined,) = solutions(study, task, plan.asked, lambda _: None)
+    (joined,) = solutions(study, task, plan.requirement, lambda _: None)
     assert isinstance(joined, Solution)
     lengths = {row.key: row.stress for row in found.rows if row.kind == "length"}
     some = [key for key in lengths if key.endswith("diameter")]
-    asked = [x.of_joint for x in joint_parameters(study, task) if x.of_joint.key in some]
-    alone = differentiated_in_lugs(joined, task, asked, alone=True)
+    some_parameters = [x.of_joint for x in joint_parameters(study, task) if x.of_joint.key in some]
+    alone = differentiated_in_lugs(joined, task, some_parameters, alone=True)
     assert alone is not None
     ours = alone.by_parameter
     assert set(ours) == set(some)

@@ -99,8 +99,8 @@ def test_the_mesh_on_which_auto_ends_is_marked(plan: ChartPlan) -> None:
     """
     assert plan.peak.model == "harmonic"
     for tolerance, third in ((0.05, True), (0.002, False)):
-        asked = replace(plan.asked, tolerance=tolerance)
-        found = chart(replace(plan, asked=asked), MadeUp({}))
+        requirement = replace(plan.requirement, tolerance=tolerance)
+        found = chart(replace(plan, requirement=requirement), MadeUp({}))
         (marked,) = [p for p in found.points if p.chosen]
         assert (marked.model, marked.dofs) == ("harmonic", 4000 if third else 16000)
 
@@ -142,7 +142,7 @@ def test_the_sentence_names_the_cheapest_and_the_ratio(plan: ChartPlan) -> None:
     assert times == pytest.approx(640, rel=2e-2)
     assert "40 times the memory" in told
     assert "does not stay" not in told
-    strict = replace(plan, asked=replace(plan.asked, tolerance=0.01))
+    strict = replace(plan, requirement=replace(plan.requirement, tolerance=0.01))
     told = summary(chart(strict, MadeUp({})))
     assert "does not stay within 1 % on these meshes; its smallest error is 4 %." in told
     times = int(told.split(" takes ")[1].split(" times")[0])

@@ -1,4 +1,4 @@
-"""Stress for fatigue at points on which lugs press at some instants.
+"""Stress tensors for fatigue at points of a body of revolution, some of which lugs press on.
 
 A point of a band is free under one load and pressed under the opposite one. While it is free its
 stress is read. While a lug presses on it, it has the stress of the same fibre without that of the
@@ -12,28 +12,46 @@ included.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import KDTree
 
+from fea.core.pin_loads import PinLoads
 from fea.core.pressed import ARC_COUNT, PressedArcs
-from fea.harmonic.free_surface import FreeSurface, SurfacePoints
-from fea.harmonic.stress_at import Stress
+from fea.core.solution import StressAt, StressPoints
+from fea.core.zone import Zone
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.free_surface import FreeSurface, SurfacePoints, surface_points
+from fea.harmonic.stress_at import stress_at
 from fea.harmonic.surface_stress import EDGE_STATIONS
-from pinbase.arrays import Floats, Ints, Mask
+from pinbase.arrays import Floats, Ints
 
-if TYPE_CHECKING:
-    from fea.cut.evaluate import CutField
-
-# Weight of distances along the pin, so that neighbours have nearly the same angle; by judgement.
-AXIAL_DISTANCE_WEIGHT = 0.1
 # Substitutes that are tried before all others, and pairs of points and instants at once: they
 # change time and memory, never the result. Chosen by judgement.
 SUBSTITUTES_FIRST, SUBSTITUTE_BATCH = (8, 64), 4096
 
 
-class StandIns:
+def stress_points(
+    fields: MeridianFields, zones: tuple[Zone, ...], loads: PinLoads, nu: float
+) -> StressPoints:
+    """The points of the surface, and where lugs press on it those that replace others.
+
+    zones: of unbounded stress, in which fatigue is not looked for. nu: Poisson's ratio.
+    """
+    if loads.pressed is None:
+        surface = fields.outside(zones)
+        surface[fields.skin :] = False
+        at = stress_at(fields, loads)
+        return StressPoints.on_meridian(fields.points, surface, len(loads), at)
+    of = surface_points(fields, loads.pressed.rings, nu)
+    substitutes, plain = Substitutes(of, loads.pressed), np.flatnonzero(of.relieved < 0)
+    at = replaced(stress_at(of.fields, loads), substitutes.rows)
+    return StressPoints.on_meridian(
+        of.fields.points[plain], of.fields.outside(zones)[plain], len(loads),
+        lambda rows, angles, instants: at(plain[rows], angles, instants),
+    )  # fmt: skip
+
+
+class Substitutes:
     """Points of a surface of revolution that replace others where these are not read."""
 
     def __init__(self, of: SurfacePoints, pressed: PressedArcs) -> None:
@@ -46,7 +64,7 @@ class StandIns:
         self._order = np.full((len(self._x), len(self._may)), -1)
 
     def rows(self, rows: Ints, angles: Floats, instants: Ints) -> Ints:
-        """The points (J, T) that stand for points (J,) at angles (J,), rad, at instants (T,)."""
+        """The points (J, T) that replace points (J,) at angles (J,), rad, at instants (T,)."""
         arc = np.rint(angles / (2.0 * np.pi) * ARC_COUNT).astype(np.int64) % ARC_COUNT
         out = np.tile(rows[:, None], len(instants))
         point, t = (x.ravel() for x in np.indices(out.shape))
@@ -83,47 +101,15 @@ class StandIns:
         return self._order[here, :count][place]
 
 
-class CutStandIns:
-    """Points of the surface of a pin with cuts that replace others where these are not read."""
-
-    def __init__(self, answer: CutField, pressed: PressedArcs) -> None:
-        from fea.cut.free_points import FreePoints, relieved
-
-        cut, pieces = answer.surface, answer.solution.pieces
-        on_outline = [np.isin(np.arange(len(p.points)), p.outer) for p in pieces]
-        first = len(cut.points) - sum(len(x) for x in on_outline)
-        outline = np.concatenate([np.ones(first, dtype=bool), *on_outline])
-        self.pressed, self._stress = pressed, cut.stress
-        self.free = FreePoints.of(cut.points, outline, pressed.rings)
-        self.amid = np.flatnonzero(self.free.amid >= 0)
-        self.points = np.concatenate([cut.points, cut.points[self.amid]])
-        nu = answer.solution.section.nu
-        more = relieved(cut.stress[self.amid], cut.points[self.amid], nu)
-        self.stress = np.concatenate([cut.stress, more])
-        rows = np.concatenate([np.arange(len(cut.points)), self.amid])
-        self._both = self.free.some(rows, len(cut.points))
-        self._may: Mask = cut.read[rows]
-
-    def rows(self, rows: Ints, instant: int) -> Ints:
-        """The rows (J,) of `stress` that stand for points (J,) at an instant."""
-        read = self._both.read(self.pressed, instant)
-        lost, out = np.flatnonzero(~read[rows]), rows.copy()
-        may = np.flatnonzero(read & self._may)
-        if len(lost) and len(may):
-            scaled = self.points * [1.0, 1.0, AXIAL_DISTANCE_WEIGHT]
-            out[lost] = may[np.atleast_1d(KDTree(scaled[may]).query(scaled[rows[lost]])[1])]
-        return out
-
-
-def replaced(stress: Stress, stands: Callable[[Ints, Floats, Ints], Ints]) -> Stress:
+def replaced(stress: StressAt, substitutes_of: Callable[[Ints, Floats, Ints], Ints]) -> StressAt:
     """A function that gives stress (J, T, 6) with substitutes for points where they are not read.
 
-    stands: gives the points (J, T) that stand for others at instants.
+    substitutes_of: gives the points (J, T) that replace others at instants.
     """
 
     def at(rows: Ints, angles: Floats, instants: Ints) -> Floats:
         out = stress(rows, angles, instants)
-        substitutes = stands(rows, angles, instants)
+        substitutes = substitutes_of(rows, angles, instants)
         j, t = np.nonzero(substitutes != rows[:, None])
         if len(j):
             # Substitutes repeat themselves: each is read once at an angle, at all instants.

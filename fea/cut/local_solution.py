@@ -1,0 +1,166 @@
+"""Unit fields of a piece about a pin's cuts on one mesh, made from those of the uncut pin."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.mesh_result import Point
+from fea.core.zone import Zone
+from fea.cut.frames import cartesian, in_pin, on_skin, turn_of
+from fea.cut.inner_corners import inner_corners
+from fea.cut.local_fields import LocalFields, point_of, unmirrored
+from fea.cut.local_model import LocalModel, rotated
+from fea.cut.lost_loads import bearings
+from fea.cut.movement import displacement, rigid
+from fea.harmonic.fields import MeridianFields
+from fea.singular.singularities import outside
+from fea.solid.nodal_loads import Unit
+from geometry.mesh.cut_piece import Piece, Spots, piece_mesh
+from pinbase.arrays import Floats, Mask
+
+# Refinement, chosen by judgement; `python -m benchmarks cut-pins` checks the errors it leads to.
+LOCAL_MESH_RATIO = 2.0**0.75  # of element sizes from one mesh to the next, where stress is high
+CUT_LOW_STRESS_POWER = 0.4  # power of that ratio elsewhere
+END_NODE_TOLERANCE = 1e-6  # of a piece's length: nodes on its end
+
+
+@dataclass(frozen=True)
+class LocalFineness:
+    """The fineness of a mesh relative to the first one: along the edges of cuts, and at spots.
+
+    Spots are places where stress is high.
+    """
+
+    edges: float
+    spots: float
+
+    @staticmethod
+    def of(level: int) -> LocalFineness:
+        """The fineness of mesh number `level`."""
+        return LocalFineness(
+            LOCAL_MESH_RATIO ** (level * CUT_LOW_STRESS_POWER), LOCAL_MESH_RATIO**level
+        )
+
+
+def mesh_of(
+    piece: Piece,
+    material: Material,
+    clamps: tuple[str, ...],
+    finer: LocalFineness,
+    high: Sequence[Point],
+    bands: Sequence[tuple[float, float]] = (),
+) -> LocalModel:
+    """The mesh of a piece, finest about points where stress was high on the meshes before.
+
+    high: m, in the pin's frame.
+    bands: loaded ones of the pin, with cuts in them.
+
+    Raises: MeshError.
+    """
+    here = [p for p in high if piece.z0 <= p[2] <= piece.z1]
+    spots: Spots = ()
+    if here:
+        spots = [point_of(x) for x in unmirrored(piece, np.array(here))]
+    mesh = piece_mesh(piece, finer.edges, spots, finer.spots)
+    held, loaded = _largest_among(piece, clamps), bearings(piece, bands)
+    return LocalModel(piece, mesh, material, held, loaded, finer.spots)
+
+
+def _largest_among(piece: Piece, clamps: tuple[str, ...]) -> tuple[str, ...]:
+    """Clamped surfaces that a piece has: its own ends are the pin's where they are at them."""
+    return tuple(
+        name
+        for name in clamps
+        if name in piece.profile.labels
+        or (name == "start" and not piece.open_ends[0])
+        or (name == "end" and not piece.open_ends[1])
+    )
+
+
+def section_points(model: LocalModel) -> Floats:
+    """The points (r, z), m, at which the stress of the uncut pin is needed."""
+    x = model.images[:, model.cut].reshape(-1, 3)
+    return np.stack([np.hypot(x[:, 0], x[:, 1]), x[:, 2] + model.piece.origin], axis=1)
+
+
+def local_fields(
+    model: LocalModel,
+    fields: MeridianFields,
+    at_points: Floats,
+    units: tuple[Unit, ...],
+    singularities: Sequence[Zone],
+    distance: float,
+    weight: Floats | float = 1.0,
+) -> LocalFields:
+    """The unit fields of a piece on one mesh.
+
+    fields: of the uncut pin.
+    at_points: its stress (S, 6, K) at the section_points.
+    distance: as for inner_corners.
+    weight: as for LocalModel.solve.
+
+    Raises: SolveError.
+    """
+    piece, x, turn = model.piece, model.images, turn_of(model.piece.angle)
+    r, z = np.hypot(x[..., 0], x[..., 1]), x[..., 2] + piece.origin
+    columns = [fields.loads.index(load) for load, _ in units]
+    # Step 1: the uncut pin's stress at nodes of the faces, by phase, along x, y, z of the piece.
+    amplitude = _uncut_stress(model, fields, at_points, r, z)[..., columns]
+    stress = cartesian(amplitude, np.arctan2(x[..., 1], x[..., 0]), piece.angle, units)
+    # Step 2: the piece is solved under it.
+    largest = np.abs(fields.stress[..., columns]).max(axis=(0, 1))
+    read = model.solve(stress, largest, [load.shears for load, _ in units], weight)
+    # Step 3: back into the pin's frame.
+    points = read.points @ turn.T + [0.0, 0.0, piece.origin]
+    outer, flat_r, flat_z = np.flatnonzero(~read.cut), r.ravel(), z.ravel()
+    moved = in_pin(read.moved, piece)
+    displaced = np.einsum("ab,pbl->pal", turn, read.displaced)
+    return LocalFields(
+        piece,
+        units,
+        points,
+        model.triangles,
+        rotated(read.stress, np.broadcast_to(turn, (len(points), 3, 3))),
+        displacement(fields, flat_r, flat_z, np.arctan2(points[:, 1], points[:, 0]), units),
+        displaced - rigid(moved[0], points),
+        outside(singularities, flat_r, flat_z),
+        outer,
+        read.difference[outer],
+        _at_open_ends(piece, points[outer]),
+        moved,
+        model.unknowns,
+        tuple(
+            replace(corner, distance=np.tile(corner.distance, len(x)))
+            for corner in inner_corners(model, model.points, distance)
+        ),
+        np.tile(model.scatter, len(x)),
+        model.finer,
+        model.material.poisson_ratio,
+    )
+
+
+def _uncut_stress(
+    model: LocalModel, fields: MeridianFields, at_points: Floats, r: Floats, z: Floats
+) -> Floats:
+    """The stress (.., 6, K) of the uncut pin at the nodes of a model's faces, at r, z (..), m.
+
+    at_points: that inside the pin, for faces of cuts; on other faces it is that of the skin.
+    """
+    amplitude = np.zeros((*r.shape, *fields.stress.shape[1:]))
+    amplitude[:, model.cut] = at_points.reshape(len(r), -1, *at_points.shape[1:])
+    profile = ~model.cut
+    amplitude[:, profile] = on_skin(fields, r[:, profile], z[:, profile])
+    return amplitude
+
+
+def _at_open_ends(piece: Piece, points: Floats) -> Mask:
+    """Mask (P,) of the points (P, 3) at an end of a piece where the pin goes on."""
+    at_end = np.zeros(len(points), dtype=bool)
+    for end, cut in zip((piece.z0, piece.z1), piece.open_ends, strict=True):
+        if cut:
+            at_end |= np.abs(points[:, 2] - end) < END_NODE_TOLERANCE * (piece.z1 - piece.z0)
+    return at_end

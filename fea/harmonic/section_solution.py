@@ -1,0 +1,270 @@
+"""Unit fields of a body of revolution on one mesh of its section, fine where stress is high."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache, partial
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.mesh_result import FEATURE_READING_DISTANCE, MeshMaximum
+from fea.core.pin_loads import PinLoads, UnitLoad
+from fea.core.zone import DISTANCE_VARIATIONS, Zone
+from fea.harmonic.beneath import just_beneath
+from fea.harmonic.fields import MeridianFields
+from fea.harmonic.first_mesh import FirstMesh
+from fea.harmonic.model import HarmonicModel
+from fea.harmonic.near_singularities import CORNER_ELEMENT_SIZES
+from fea.harmonic.quiet_corners import low_stress_fillets, numerous_fillets
+from fea.harmonic.stress_recovery import NO_POINTS
+from fea.singular.probes import rim
+from fea.singular.singularities import smooth_edges
+from geometry import Pin
+from geometry.mesh.section_mesh import MeridianMesh, meridian_mesh
+from geometry.mesh.sizing import Grade, SectionSize, Spot, size_at
+from pinbase.arrays import Floats
+from pinbase.memo import Memo
+
+FIRST_MESH_SIZE = SectionSize()  # of the first mesh
+BAND_EDGE_ELEMENT = 0.04  # element at the edge of any band, of the diameter
+LOAD_EDGE_ELEMENT = 0.2  # element at a load's edge, of the excluded distance
+MIN_ZONE_STRESS = 0.5  # of the maximum elsewhere
+LOW_STRESS_POWER = 0.5  # power of the refinement where stresses are low
+RING_END_ELEMENT = 0.25  # of a ring of contact pressure: the elements at its ends
+# Elements of the first mesh about a place of high stress, in which all are refined.
+PATCH_ELEMENTS = 2.0
+
+
+@dataclass(frozen=True)
+class HarmonicSolution:
+    """The fields of a body of revolution on one mesh.
+
+    close: element size at each singularity, relative to its scale.
+    nu: Poisson's ratio.
+    ends: where pressures end on the outline, (r, z) in m.
+    quiet: fillets where the mesh is coarse (fea.harmonic.quiet_corners).
+    elsewhere: stress (P, 6, K) Pa at the points that were requested.
+    """
+
+    fields: MeridianFields
+    close: tuple[float, ...]
+    nu: float
+    ends: tuple[tuple[float, float], ...] = ()
+    quiet: tuple[int, ...] = ()
+    elsewhere: Floats = field(default_factory=lambda: np.zeros((0, 6, 0)))
+
+    @property
+    def mesh(self) -> MeridianMesh:
+        """The mesh of the section."""
+        assert self.fields.mesh is not None
+        return self.fields.mesh
+
+
+@dataclass(frozen=True)
+class SectionProblem:
+    """A body of revolution of a material, clamped at surfaces (by name), in some cases.
+
+    singularities: those of any of the cases.
+    first: the first mesh under contact pressures.
+    besides: additional unit loads to be solved.
+    memo: of meshes and unit fields, shared with other problems.
+    """
+
+    pin: Pin
+    material: Material
+    clamps: tuple[str, ...]
+    cases: tuple[PinLoads, ...]
+    singularities: tuple[Zone, ...]
+    first: FirstMesh | None = None
+    besides: tuple[UnitLoad, ...] = ()
+    memo: Memo | None = None
+
+
+def harmonic_solution(
+    problem: SectionProblem,
+    level: int,
+    ratio: float,
+    before: Collection[MeshMaximum] = (),
+    elsewhere: Floats = NO_POINTS,
+    grades: Sequence[Grade] = (),
+) -> HarmonicSolution:
+    """Solve all unit loads of the cases on mesh number `level`, each `ratio` times finer than the
+    one before.
+
+    before: mesh results from which to refine: by the ratio where they have high stresses, by its
+    root elsewhere; without any, everywhere.
+    elsewhere: points (P, 2), r and z in m, at which stress is read too, but no maximum is searched.
+    grades: fineness of the mesh at these points.
+
+    Raises: MeshError, SolveError.
+    """
+    pin, material, cases = problem.pin, problem.material, problem.cases
+    singularities = problem.singularities
+    close = tuple(
+        CORNER_ELEMENT_SIZES[
+            min(level, len(CORNER_ELEMENT_SIZES) - 1) if _matters(k, before) else 0
+        ]
+        for k in range(len(singularities))
+    )
+    spots = partial(_spots, pin, cases, singularities, close)
+    high = dict.fromkeys(place for result in before for place in result.high)
+    finer = [*grades, *(_at_high_stress(pin, spots, ratio**level, place) for place in high)]
+    factor = ratio ** (level * LOW_STRESS_POWER if high else level)
+
+    loads = _unit_loads(cases) + problem.besides
+    rings = tuple(dict.fromkeys(name for load in loads for name, _ in load.parts))
+    finer += _at_rings(pin, rings)
+    ends = _ends(pin, problem.clamps, loads)
+
+    def solved(size: SectionSize, grades: list[Grade], quiet: tuple[int, ...]) -> MeridianFields:
+        places = spots(factor)
+        read = np.concatenate([elsewhere, _rims(pin, singularities), just_beneath(pin, rings)])
+
+        def model() -> HarmonicModel:
+            section = meridian_mesh(pin, size, places, grades, quiet)
+            return HarmonicModel(pin, section, material, problem.clamps)
+
+        elastic = material.youngs_modulus, material.poisson_ratio, material.density
+        mesh = size, tuple(places), tuple(grades), quiet, read.tobytes(), ends
+        key = pin, elastic, problem.clamps, *mesh
+        if not level and problem.first is not None:
+            return problem.first.fields(model, key, (loads, read, ends))
+        memo = problem.memo or Memo()
+
+        def fields() -> MeridianFields:
+            # Patterns of pressure change with any load, the mesh on which they act does not.
+            solved_before = memo.get(("model", *key), model) if rings else model()
+            return solved_before.solve(loads, read, ends)
+
+        return memo.get(("fields", loads, *key), fields)
+
+    quiet = numerous_fillets(pin)
+    if quiet and before:
+        quiet = next(iter(before)).quiet
+    elif quiet:
+        nu, coarse = material.poisson_ratio, solved(FIRST_MESH_SIZE, [], quiet)
+        quiet = low_stress_fillets(pin, coarse, cases, singularities, nu)
+    fields, more = _apart(solved(FIRST_MESH_SIZE.finer(factor), finer, quiet), len(elsewhere))
+    return HarmonicSolution(fields, close, material.poisson_ratio, ends, quiet, more)
+
+
+def _apart(fields: MeridianFields, count: int) -> tuple[MeridianFields, Floats]:
+    """The fields without the first points after those that have a displacement, and the stress at
+    these.
+    """
+    if not count:
+        return fields, np.zeros((0, *fields.stress.shape[1:]))
+    first = len(fields.displacement)
+    here, rest = slice(first, first + count), np.r_[:first, first + count : len(fields.points)]
+    unread = np.flatnonzero(np.isin(rest, fields.unread))
+    body = replace(fields, points=fields.points[rest], stress=fields.stress[rest], unread=unread)
+    return body, fields.stress[here]
+
+
+def _at_high_stress(
+    pin: Pin, spots: Callable[[float], list[Spot]], factor: float, place: tuple[float, float]
+) -> Grade:
+    """The fineness of the mesh about a place of high stress, `factor` times that of the first mesh.
+
+    spots: gives the spots at which a mesh is fine that is finer by a factor.
+    """
+    coarse = size_at(pin, FIRST_MESH_SIZE, spots(1.0), place)
+    now = size_at(pin, FIRST_MESH_SIZE.finer(factor), spots(factor), place)
+    return Grade((place,), now, PATCH_ELEMENTS * coarse, FIRST_MESH_SIZE.growth)
+
+
+def _at_rings(pin: Pin, rings: tuple[str, ...]) -> list[Grade]:
+    """The fineness of the mesh at the ends of rings of contact pressure.
+
+    It is such that the elements that feel the steps of pressure (fea.core.pressed) lie beside them.
+    """
+    bands = (pin.band(name) for name in rings)
+    return [
+        Grade(
+            ((b.radius, b.z0), (b.radius, b.z1)),
+            RING_END_ELEMENT * b.length,
+            0.0,
+            FIRST_MESH_SIZE.growth,
+        )
+        for b in bands
+    ]
+
+
+def _unit_loads(cases: tuple[PinLoads, ...]) -> tuple[UnitLoad, ...]:
+    loads = tuple(dict.fromkeys(load for case in cases for load in case.coefficients()))
+    return loads or (UnitLoad(cases[0].surfaces[0], "force", 1),)  # whose coefficient is zero
+
+
+@lru_cache(64)
+def _rims(pin: Pin, singularities: tuple[Zone, ...]) -> Floats:
+    """The points (P, 2) about singularities at which stress is read, on every mesh of a pin."""
+    read = [rim(pin, p, d) for p in singularities for d in _distances(p)]
+    return np.concatenate([NO_POINTS, *read])
+
+
+def _distances(singularity: Zone) -> tuple[float, ...]:
+    """The distances from a singularity, m, at which stress is read on a circle about it."""
+    radii = (singularity.varied(times).radius for times in (1.0, *DISTANCE_VARIATIONS))
+    return tuple(dict.fromkeys((*radii, FEATURE_READING_DISTANCE * singularity.feature)))
+
+
+def _ends(
+    pin: Pin, clamps: tuple[str, ...], loads: tuple[UnitLoad, ...]
+) -> tuple[tuple[float, float], ...]:
+    """The places where a pressure ends on a smooth surface, (r, z) in m.
+
+    Contact pressure does not end where a cell does: its steps belong to the cells, and are not
+    read.
+    """
+    pushed = {name for load in loads if load.kind == "pressure" for name in load.surfaces}
+    if not clamps and any(load.n <= 1 and not load.shears for load in loads):
+        pushed |= set(pin.connections)  # which react the imbalance
+    cells = {name for load in loads if load.parts for name in load.surfaces}
+    return smooth_edges(pin, pushed, clamps, cells)
+
+
+def _spots(
+    pin: Pin,
+    cases: tuple[PinLoads, ...],
+    singularities: tuple[Zone, ...],
+    close: tuple[float, ...],
+    factor: float,
+) -> list[Spot]:
+    """The spots where the mesh is refined: singularities, with elements `close` (of their scale),
+    and edges of bands, `factor` times finer than on the first mesh.
+    """
+    spots = [
+        _spot(p, near if p.measured else CORNER_ELEMENT_SIZES[0] / factor, factor)
+        for p, near in zip(singularities, close, strict=True)
+    ]
+    taken = {(s.r, s.z) for s in spots}
+    for name in dict.fromkeys(name for case in cases for name in case.surfaces):
+        band = pin.band(name)
+        for at in {(band.radius, band.z0), (band.radius, band.z1)} - taken:
+            d = 2.0 * band.radius
+            spots.append(Spot(*at, BAND_EDGE_ELEMENT * d / factor, 4.0 * BAND_EDGE_ELEMENT * d))
+    return sorted(spots)
+
+
+def _spot(singularity: Zone, near: float, factor: float) -> Spot:
+    """The spot at a singularity.
+
+    near: size of the element there, of the singularity's scale.
+    """
+    p = singularity
+    size = near * p.scale
+    if p.kind == "edge of a load":
+        size = LOAD_EDGE_ELEMENT * p.radius / factor
+    return Spot(p.r, p.z, size, p.radius)
+
+
+def _matters(singularity: int, before: Collection[MeshMaximum]) -> bool:
+    """Return whether stress in a singularity is so large that it may govern, so that its growth is
+    measured.
+    """
+    return any(
+        result.singularities[singularity].felt >= MIN_ZONE_STRESS * result.maximum
+        for result in before
+    )
