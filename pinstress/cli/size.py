@@ -55,9 +55,11 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
 
     Raises: InputError.
     """
-    target = target_of(study, options.out, options.resume)
+    target = target_of(study, options.out, new=False)
     plan = prepare(study, pins=options.pins)
     state = SizeState(target, identity(study, goal, {task.pin.name for task in plan.tasks}))
+    if not options.resume and not state.path.exists():
+        require_new(target, OTHER_FILE_REMEDY)
     sizing = _Sizing(study, goal, target, state)
     sizing.start(options.resume)
     jobs = processes(options.jobs)
@@ -170,15 +172,15 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> SizingG
     return SizingGoal(required, standard_diameters(study.table.size, step))
 
 
-def target_of(study: Study, out: Path | None, resume: bool = False) -> Path:
+def target_of(study: Study, out: Path | None, new: bool = True) -> Path:
     """Return the path of the file to be written.
 
-    resume: whether it may exist.
+    new: whether it must not exist.
 
     Raises: InputError where it cannot be written.
     """
     target = out or study.path.with_name(f"{study.name}_sized.toml")
-    if not resume and not SizeState(target, "").path.exists():
+    if new:
         require_new(target, OTHER_FILE_REMEDY)
     if not target.parent.is_dir():
         raise InputError(f"--out: there is no folder {target.parent}", code="no-folder")

@@ -106,7 +106,7 @@ class SizedStudy:
         """Solve a pin as a run does, with standard diameters.
 
         counting: the cases that are solved to the goal of the study; of the others only whether
-        they reach the factor is requirement.
+        they reach the factor is decided.
         """
         plan = self._plan(self.at(scale, rounded=True), None)
         if plan.study.table.fatigue is None:

@@ -87,7 +87,8 @@ def slope(trials: Sequence[PinTrial], where: Where) -> float:
     for before in reversed(trials[:-1]):
         apart = abs(math.log(last.scale / before.scale))
         same = last.accuracy == before.accuracy
-        if apart >= math.log(MIN_RATIO if same else MIN_RATIO_MIXED):
+        known = math.isfinite(before.at(where))  # not of foundations, without contact
+        if known and apart >= math.log(MIN_RATIO if same else MIN_RATIO_MIXED):
             rise = math.log(last.at(where) / before.at(where))
             return rise / math.log(last.scale / before.scale)
     return last.exponent_at(where)

@@ -68,3 +68,13 @@ def test_scatter_between_solutions_is_no_slope() -> None:
     assert slope([PinTrial(1.0, 2.0, 1.0, 2.2, "quick"), *trials], "row") == pytest.approx(
         math.log(8.9 / 2.0) / math.log(2.02)
     )
+
+
+def test_a_place_that_only_the_last_solution_has_goes_by_its_law() -> None:
+    """A quick solution on foundations has nothing beneath contact, the full one in contact has."""
+    trials = [
+        PinTrial(1.0, 2.0, math.inf, 2.2, "rough"),
+        PinTrial(2.0, 9.0, 4.0, 2.2, "full"),
+    ]
+    assert slope(trials, "beneath") == BEARING_EXPONENT
+    assert needed_scale(trials, 8.0) == pytest.approx(2.0 * 2.0 ** (1.0 / BEARING_EXPONENT))
