@@ -86,8 +86,10 @@ class Engine:
     def row(
         self, changes: Changes, pin: str, case: str, *, accuracy: Accuracy = "full"
     ) -> PinResult:
-        """One row of the answer, for which no other pin is solved. Raises: InputError."""
-        return self._solved(changes, [pin], accuracy)[pin, case]
+        """One row of the answer, for which no other pin is solved, and nothing that only explains
+        it. Raises: InputError.
+        """
+        return self._solved(changes, [pin], accuracy, explained=False)[pin, case]
 
     def slopes(
         self, changes: Changes, pin: str, case: str, keys: Collection[str]
@@ -112,9 +114,10 @@ class Engine:
         pins: Iterable[str] | None,
         accuracy: Accuracy,
         sensitive: bool = False,
+        explained: bool = True,
     ) -> RunResults:
         plan = prepare(self.changed(changes), pins=pins, cases=self._cases)
-        plan = replace(plan, sensitive=sensitive)
+        plan = replace(plan, sensitive=sensitive, explained=explained)
         plan = _quick(plan) if accuracy == "quick" else plan
         return solve(plan, cache=SolvedPins(self._memo), memo=self._memo)
 

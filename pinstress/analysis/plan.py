@@ -54,6 +54,8 @@ class Plan:
     also: the fields that are wanted in addition to those of the model at the governing instant.
     sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
     limit_load: whether the limit loads of all rows that yield are wanted, however long they take.
+    explained: whether what explains the rows is wanted, too: surfaces, histories, remedies,
+    sensitivities.
     """
 
     study: Study
@@ -65,6 +67,7 @@ class Plan:
     also: ExtraFields = None
     sensitive: bool = False
     limit_load: bool = False
+    explained: bool = True
 
 
 def prepare(

@@ -130,12 +130,15 @@ def _attempt(
 def _solve_once(
     plan: Plan, task: Task, keep: Keep | None, cache: OutcomeStore, memo: Memo | None, tell: Tell
 ) -> PinOutcome:
-    """Return a task's outcome from the cache; else solve it, and store it there."""
+    """Return a task's outcome from the cache; else solve it, and store it there.
+
+    Rows alone are also those of an outcome with what explains them.
+    """
     key, lacking = entry_keys(plan, task, cache)
-    entry = cache.read(key, Entry)
-    if lacking is not None and (entry is None or not entry.answers(task)):
-        entry = cache.read(lacking, Entry)
-    if entry is not None and entry.answers(task):
+    more = () if plan.explained else entry_keys(replace(plan, explained=True), task, cache)
+    entries = (cache.read(x, Entry) for x in (key, lacking, *more) if x is not None)
+    entry = next((x for x in entries if x is not None and x.answers(task)), None)
+    if entry is not None:
         tell(f"pin {task.pin.name}, as solved before")
         if keep is not None:
             for field in entry.fields:
@@ -207,6 +210,8 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
 
     study = plan.study
     solved = solutions(study, task, plan.requirement, tell, memo)
+    if not plan.explained:
+        return _bare(plan, task, solved, tell)
     pressures = [solution.pressure for solution in solved]
     if keep is not None:
         for solution, pressure in zip(solved, pressures, strict=True):
@@ -252,12 +257,17 @@ def judged(plan: Plan, task: Task, tell: Tell, memo: Memo | None = None) -> PinO
 
     Raises: ArgumentError, MeshError, SolveError.
     """
-    solved = solutions(plan.study, task, plan.requirement, tell, memo)
-    rows = (assessed(plan.study, task, row) for row in _rows(plan, task, solved, tell))
+    outcome = _bare(plan, task, solutions(plan.study, task, plan.requirement, tell, memo), tell)
+    return replace(outcome, rows=tuple(assessed(plan.study, task, row) for row in outcome.rows))
+
+
+def _bare(plan: Plan, task: Task, solved: tuple[Solution, ...], tell: Tell) -> PinOutcome:
+    """Return the rows of a task, and histories where fatigue judges by them."""
+    rows = _rows(plan, task, solved, tell)
     if plan.study.table.fatigue is None:
-        return PinOutcome(tuple(rows))
+        return PinOutcome(rows)
     histories, no_histories = _histories(task, solved)
-    return PinOutcome(tuple(rows), histories=histories, no_histories=no_histories)
+    return PinOutcome(rows, histories=histories, no_histories=no_histories)
 
 
 def _with_notes(task: Task, peak: Maximum) -> Maximum:

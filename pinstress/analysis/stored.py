@@ -90,6 +90,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         replace(plan.requirement, memory=None),
         plan.also,
         plan.sensitive,
+        plan.explained,
         study.system,
         None if check is None else check.model_dump(),
         *(() if seconds is None else (seconds,)),

@@ -11,6 +11,7 @@ from fea.solve import solve as solving
 from fea.solve.solve import solve as solve_problem
 from fea.support.support import PinProblem
 from pinbase.memo import Memo
+from pinbase.records import plain
 from pinstress.analysis.engine import Engine
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.in_python import changed_study, study_from
@@ -41,6 +42,27 @@ model = "harmonic"
 tolerance = 0.2
 """
 DIAMETER = "pin.A.profile[2].diameter"
+IN_LUGS = (
+    STUDY.split("[pin.A]")[0]
+    + """
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "left" },
+  { length = 20, diameter = 20, connection = "middle" },
+  { length = 10, diameter = 20, connection = "right" },
+]
+[pin.P.lug.left]
+[pin.P.lug.middle]
+[pin.P.lug.right]
+[case.pull]
+kind = "given"
+forces = { left = [0, 5000], middle = [0, -10000], right = [0, 5000] }
+[analysis]
+required_safety_factor = 2
+tolerance = 0.2
+"""
+)
 
 
 @pytest.fixture
@@ -58,14 +80,15 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def numbers(results: Any) -> dict[str, Any]:
     """All of results.json but what depends on the clock and on the file."""
+    content: dict[str, Any] = timeless(to_json(results))
+    return content
 
-    def timeless(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {k: timeless(v) for k, v in value.items() if k not in ("seconds", "created")}
-        return [timeless(v) for v in value] if isinstance(value, list) else value
 
-    found: dict[str, Any] = timeless(to_json(results))
-    return found
+def timeless(value: Any) -> Any:
+    """A value without what depends on the clock."""
+    if isinstance(value, dict):
+        return {k: timeless(v) for k, v in value.items() if k not in ("seconds", "created")}
+    return [timeless(v) for v in value] if isinstance(value, list) else value
 
 
 def test_an_answer_is_a_run_of_the_changed_study(solved: list[str]) -> None:
@@ -77,6 +100,17 @@ def test_an_answer_is_a_run_of_the_changed_study(solved: list[str]) -> None:
     theirs = pinstress.run(changed_study(study, {DIAMETER: "0.8 in", "pin.B.fillet": 2.5}))
     assert numbers(ours)["pins"] == numbers(theirs)["pins"]
     assert numbers(engine.answer())["pins"] == numbers(pinstress.run(study))["pins"]
+
+
+@pytest.mark.parametrize("study", [STUDY, IN_LUGS])
+def test_a_row_alone_is_that_of_a_run(study: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With its judgement, joint, margins and range, but without what only explains it."""
+    ours = Engine(study_from(study))
+    ran = pinstress.run(study_from(study))
+    monkeypatch.setattr("pinstress.analysis.solve._histories", None)
+    for row in ran.pins:
+        alone = ours.row({}, row.pin, row.case)
+        assert timeless(plain(alone)) == timeless(plain(row))
 
 
 def test_what_a_change_does_not_touch_is_not_solved_again(solved: list[str]) -> None:
