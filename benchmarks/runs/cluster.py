@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benchmarks.timing import table
 from pinstress import Study, shipped_studies, study_from
-from pinstress.explore.sweep.connection import Connection
+from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.sweep import MemoryStore, planned, solved
 from tests.support.programs.dask_cluster import dask_cluster
 
@@ -62,7 +62,7 @@ def _study(number: int) -> Study:
     return study_from(text + VARY.format(mean=mean, forces=FORCES, strengths=STRENGTHS))
 
 
-def _swept(study: Study, connection: Connection | None = None) -> None:
+def _swept(study: Study, connection: ClusterConnection | None = None) -> None:
     solved(planned(study), MemoryStore(), 1, connection)
 
 

@@ -38,7 +38,6 @@ Side = Literal["free", "clamped"]
 
 STEEPEST_ANGLE = 4.493409457909064  # tan a = a: sin a / a is least
 MAX_IMAGINARY_PART = 5.0  # of b: 0.217 cosh b > A + B b^2 there for all -1 < nu < 0.5
-ROOT_TOLERANCE = 1e-15  # of a root, absolute and relative
 EXPONENT_ROUND_OFF = 1e-12  # exponents below are those of no singularity
 
 
@@ -143,45 +142,9 @@ def _different_sides(omega: float, kappa: float) -> complex:
 
 
 def _root(function: Callable[[float], float], low: float, high: float) -> float:
-    """The root between two places where a function has different signs.
+    from scipy.optimize import brentq  # takes long to import
 
-    By inverse quadratic interpolation, secants or bisection, whichever is safe, with the very bits
-    of scipy.optimize.brentq, which would take a tenth of the time of a short run to import.
-
-    Raises: ValueError where the signs are the same.
-    Source: R. P. Brent, Algorithms for Minimization Without Derivatives (1973), ch. 4.
-    """
-    before, x, f_before, fx = low, high, function(low), function(high)
-    other = f_other = last_step = step = 0.0
-    if f_before == 0.0:
-        return before
-    if fx != 0.0 and (f_before < 0.0) == (fx < 0.0):
-        raise ValueError("the function has the same sign at both ends")
-    while fx != 0.0:
-        if f_before != 0.0 and (f_before < 0.0) != (fx < 0.0):
-            other, f_other, last_step, step = before, f_before, x - before, x - before
-        if abs(f_other) < abs(fx):
-            before, x, other, f_before, fx, f_other = x, other, x, fx, f_other, fx
-        tolerance, half = (ROOT_TOLERANCE + ROOT_TOLERANCE * abs(x)) / 2.0, (other - x) / 2.0
-        if abs(half) < tolerance:
-            break
-        trial = math.inf
-        if abs(last_step) > tolerance and abs(fx) < abs(f_before):
-            if before == other:
-                trial = -fx * (x - before) / (fx - f_before)
-            else:
-                rise, rise_other = (f_before - fx) / (before - x), (f_other - fx) / (other - x)
-                across = rise_other * rise * (f_other - f_before)
-                if across:
-                    trial = -fx * (f_other * rise_other - f_before * rise) / across
-        if 2.0 * abs(trial) < min(abs(last_step), 3.0 * abs(half) - tolerance):
-            last_step, step = step, trial
-        else:
-            last_step = step = half
-        before, f_before = x, fx
-        x += step if abs(step) > tolerance else math.copysign(tolerance, half)
-        fx = function(x)
-    return x
+    return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))
 
 
 def _positive(exponent: float) -> float:

@@ -78,7 +78,7 @@ class Pose:
 
 
 @dataclass(frozen=True)
-class PointHistory:
+class PointMotion:
     """A quantity of points at T instants, linear in where they are on their frames and sliders.
 
     turning: (T, F), by the frame. sliding: (T, S), by the slider.
@@ -197,9 +197,9 @@ class Loops:
         """Positions of points, (T, N) complex, m."""
         return self.places(pose).of(points)
 
-    def places(self, pose: Pose) -> PointHistory:
+    def places(self, pose: Pose) -> PointMotion:
         """The positions, m, of whatever points."""
-        return PointHistory(pose.turn, pose.axis * pose.extension)
+        return PointMotion(pose.turn, pose.axis * pose.extension)
 
     def partials(self, pose: Pose, points: Points) -> Complex:
         """Derivatives of the positions of points by the coordinates, (T, n, N) complex."""
@@ -217,13 +217,13 @@ class Loops:
         """Velocities of points, (T, N) complex, at rates (T, n): `partials` times the rates."""
         return self.speeds(pose, rates).of(points)
 
-    def speeds(self, pose: Pose, rates: Floats) -> PointHistory:
+    def speeds(self, pose: Pose, rates: Floats) -> PointMotion:
         """The velocities of whatever points at rates (T, n)."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
         slide = rates[:, angles:] + 1j * omega[:, self.slider_frame] * pose.extension
-        return PointHistory(1j * omega * pose.turn, pose.axis * slide)
+        return PointMotion(1j * omega * pose.turn, pose.axis * slide)
 
     def along_coordinates(self, pose: Pose, forces: Complex, points: Points) -> Floats:
         """Generalised forces (T, n) that do the same work as forces (T, N) N on points."""
@@ -243,14 +243,14 @@ class Loops:
         """
         return self.curvatures(pose, rates).of(points)
 
-    def curvatures(self, pose: Pose, rates: Floats) -> PointHistory:
+    def curvatures(self, pose: Pose, rates: Floats) -> PointMotion:
         """The `bends` of whatever points at rates (T, n)."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
         spin = omega[:, self.slider_frame]
         slide = pose.axis * (2j * spin * rates[:, angles:] - spin**2 * pose.extension)
-        return PointHistory(-(omega**2 * pose.turn), slide)
+        return PointMotion(-(omega**2 * pose.turn), slide)
 
     # --- the equations ----------------------------------------------------------------------------
 

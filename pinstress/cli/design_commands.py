@@ -11,7 +11,7 @@ import click
 from pinstress.cli.shared import choices, cluster_choices, example, read_study
 
 if TYPE_CHECKING:
-    from pinstress.explore.sweep.connection import Connection
+    from pinstress.explore.sweep.connection import ClusterConnection
 
 
 @click.command(
@@ -51,7 +51,7 @@ def sweep(
     return sweep_and_write(loaded, directory, pins, cases, way)
 
 
-def _connection(jobs: int | None, **cluster: Any) -> Connection | None:
+def _connection(jobs: int | None, **cluster: Any) -> ClusterConnection | None:
     """Return the connection to a cluster by the options of a command."""
     from pinstress.explore.sweep.connection import connection_to
 
@@ -103,13 +103,13 @@ def reliability(
 )
 @click.argument("directory", metavar="DIR", type=click.Path(path_type=Path))
 def cluster_keys(directory: Path) -> None:
-    from pinstress.explore.sweep.connection import Connection
+    from pinstress.explore.sweep.connection import ClusterConnection
     from pinstress.explore.sweep.keys import write_keys
 
     keys = write_keys(directory)
     for path in (keys.authority, keys.certificate, keys.key):
         click.echo(str(path))
-    address = Connection("tls://HOST:8786", "HOST", 8786, keys)
+    address = ClusterConnection("tls://HOST:8786", "HOST", 8786, keys)
     click.echo(
         "Start the cluster, on computers that have these files, and use it:\n"
         f"  {address.scheduler_command}\n"

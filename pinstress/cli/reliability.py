@@ -25,7 +25,7 @@ from reports.text.reliability import name, print_reliability
 
 if TYPE_CHECKING:
     from pinstress.explore.sweep.cluster import Cluster
-    from pinstress.explore.sweep.connection import Connection
+    from pinstress.explore.sweep.connection import ClusterConnection
 
 RELIABILITY_JSON = "reliability.json"
 RELIABILITY_PAGE = "reliability.html"
@@ -37,7 +37,7 @@ def reliability_and_write(
     pins: list[str] | None,
     cases: list[str] | None,
     jobs: int | None,
-    connection: Connection | None,
+    connection: ClusterConnection | None,
     quiet: bool,
 ) -> int:
     """Assess a study into a folder and return the exit status.
@@ -76,7 +76,7 @@ def reliability_and_write(
 
 
 @contextmanager
-def _cluster(connection: Connection | None) -> Iterator[Cluster | None]:
+def _cluster(connection: ClusterConnection | None) -> Iterator[Cluster | None]:
     """Connect to a cluster, if there is to be one."""
     if connection is None:
         yield None

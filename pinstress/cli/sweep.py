@@ -23,7 +23,7 @@ from pinstress.cli.output_folder import require_replaceable
 from pinstress.cli.run import console
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.explore.sweep.connection import Connection
+from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.design_columns import designs_of
 from pinstress.explore.sweep.page import render_designs
 from pinstress.explore.sweep.parts import (
@@ -65,7 +65,7 @@ class Way:
     """
 
     jobs: int | None = None
-    connection: Connection | None = None
+    connection: ClusterConnection | None = None
     resume: bool = False
     opens: bool = False
     quiet: bool = False

@@ -139,7 +139,10 @@ def _broken(*_: object) -> None:
     ("what", "reason"),
     [
         ("pinstress.analysis.gather.gather_fatigue.assess", "at point 1, signed-von-mises failed"),
-        ("pinstress.analysis.solve.stress_histories", "no history of stress in cases work, jam"),
+        (
+            "assess.fatigue.critical_points.stress_histories",
+            "no history of stress in cases work, jam",
+        ),
     ],
 )
 def test_a_failure_loses_nothing_else(

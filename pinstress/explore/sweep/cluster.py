@@ -16,7 +16,7 @@ from typing import Any
 from distributed import CancelledError, Client, Future
 
 from pinstress.explore.sweep import versions as asking
-from pinstress.explore.sweep.connection import Connection
+from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.study.reading.errors import InputError
 
 SCHEDULER_TIMEOUT = 10.0  # s within which a scheduler must answer
@@ -42,7 +42,7 @@ class Cluster:
     def __init__(
         self,
         client: Client,
-        connection: Connection,
+        connection: ClusterConnection,
         packages: Sequence[str],
         tell: Callable[[str], None],
     ) -> None:
@@ -210,7 +210,7 @@ def _works(worker: Mapping[str, Any]) -> bool:
 
 @contextmanager
 def connected(
-    connection: Connection, packages: Sequence[str], tell: Callable[[str], None]
+    connection: ClusterConnection, packages: Sequence[str], tell: Callable[[str], None]
 ) -> Iterator[Cluster]:
     """Connect to the user's cluster, and check its workers.
 

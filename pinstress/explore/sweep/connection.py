@@ -29,7 +29,7 @@ ENCRYPTED_EXAMPLE = "tls://HOST:8786"
 
 
 @dataclass(frozen=True)
-class Connection:
+class ClusterConnection:
     """A scheduler and the keys for it.
 
     address: with its scheme, tls:// or tcp://.
@@ -151,7 +151,7 @@ def connection_to(
     tls: Path | str | None = None,
     insecure: bool = False,
     jobs: int | None = None,
-) -> Connection | None:
+) -> ClusterConnection | None:
     """Return the connection that the options of a command describe; None without a scheduler.
 
     scheduler: its address.
@@ -181,7 +181,7 @@ def connection_to(
     scheme, host, port = _parts(scheduler)
     address = scheduler if "://" in scheduler else f"{scheme}://{scheduler}"
     if scheme == "tls":
-        return Connection(address, host, port, _keys(address, tls, insecure))
+        return ClusterConnection(address, host, port, _keys(address, tls, insecure))
     if tls is not None:
         raise InputError(
             f"--tls: {scheduler} is not encrypted; write {ENCRYPTED_EXAMPLE} for a scheduler that "
@@ -196,7 +196,7 @@ def connection_to(
             "--insecure, on a network where everybody is trusted)",
             code="not-encrypted",
         )
-    return Connection(address, host, port)
+    return ClusterConnection(address, host, port)
 
 
 def _keys(address: str, tls: Path | str | None, insecure: bool) -> KeyFiles:

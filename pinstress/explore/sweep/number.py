@@ -70,7 +70,7 @@ def number_at(study: Study, key: str) -> Number:
     """Return the number with a key, or the one that several keys have in common.
 
     Raises: ArgumentError for a key that names no number, or different ones; InputError for a text
-    that is no key.
+    that is not a key.
     """
     match = INDEX_RANGE_PATTERN.search(key)
     if match is None:

@@ -76,7 +76,7 @@ def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
             raise study.error(
                 f"vary: in {len(reasons)} of {len(rows)} designs tried the given forces on pin "
                 f"{pin} in case {case} are out of equilibrium, since they vary one by one: "
-                f"{reasons[0]}; name the link that closes the balance, as pin.{pin}.balance = "
+                f"{reasons[0]}; name the link that balances the others, as pin.{pin}.balance = "
                 f'"{_closing(study, pin, case, evaluator)}", and remove its forces from the cases',
                 at="vary",
                 code="unbalanced-designs",

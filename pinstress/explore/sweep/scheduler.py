@@ -23,7 +23,7 @@ from pinbase.processes.pool import Job, Tell, in_parallel
 from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.explore.sweep.batches import Batch, DesignProblem, SolvedBatch, solve_batch
 from pinstress.explore.sweep.cluster import Cluster, connected, other_versions, short
-from pinstress.explore.sweep.connection import Connection
+from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.versions import versions
 from pinstress.explore.sweep.workers import BatchQueue
 from pinstress.study.model.imported_pin import MAX_BODY_SIZE
@@ -58,7 +58,7 @@ _contents: dict[str, Contents] = {}  # in a worker: of the study that is solved,
 
 
 def cluster_at(
-    connection: Connection, tell: Callable[[str], None]
+    connection: ClusterConnection, tell: Callable[[str], None]
 ) -> AbstractContextManager[Cluster]:
     """Connect to a cluster whose workers can solve designs.
 
@@ -112,7 +112,7 @@ def solve_on(
                 work.done(outcome.done)
 
 
-def require_cluster(connection: Connection) -> None:
+def require_cluster(connection: ClusterConnection) -> None:
     """Check in another process that a cluster can solve designs.
 
     This one then still has no thread of Dask's, beside which it could not fork.
@@ -122,7 +122,7 @@ def require_cluster(connection: Connection) -> None:
     in_parallel([Job("the cluster", partial(_connect, connection))], 2)
 
 
-def _connect(connection: Connection, _: Tell) -> None:
+def _connect(connection: ClusterConnection, _: Tell) -> None:
     with cluster_at(connection, lambda _: None):
         pass
 

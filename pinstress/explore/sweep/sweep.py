@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from pinbase.processes.pool import cores
 from pinstress.explore.sweep.batches import Batches, DesignProblem, SolvedBatch, evaluator_of
-from pinstress.explore.sweep.connection import Connection, connection_to
+from pinstress.explore.sweep.connection import ClusterConnection, connection_to
 from pinstress.explore.sweep.correlations import correlations_of
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.parameters import Parameter, parameters_of
@@ -97,7 +97,7 @@ def solved(
     sweep: Sweep,
     store: Store,
     jobs: int | None = None,
-    connection: Connection | None = None,
+    connection: ClusterConnection | None = None,
     report: Report = lambda _, __: None,
     tell: Callable[[str], None] = log.warning,
 ) -> pa.Table:

@@ -15,7 +15,8 @@ from pinstress.study.schema.units import UNIT_SYSTEMS, to_si
 
 
 def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
-    """Return the forces of a case, in pin axes, with those that close the balance of a pin.
+    """Return the forces of a case, in pin axes, with those of links that balance the others on
+    their pin.
 
     Raises: TableError.
     """
@@ -23,7 +24,7 @@ def given_forces(study: Study, name: str, case: GivenCase) -> Reactions:
 
 
 def _closed(study: Study, name: str, stated: Reactions) -> Reactions:
-    """Return the reactions with those of links that close the balance of their pin."""
+    """Return the reactions with those of links that balance the others on their pin."""
     for pin, table in study.table.pin.items():
         others = [c for c in study.connections(pin) if c in stated.connections]
         if table.balance is None or not others:
@@ -31,7 +32,7 @@ def _closed(study: Study, name: str, stated: Reactions) -> Reactions:
         if table.balance in others:
             raise TableError(
                 closed_message(f"case.{name}: connection {table.balance}", pin),
-                "closes-the-balance",
+                "balances-the-others",
             )
         columns = [stated.connections.index(c) for c in others]
         force = -stated.forces[:, columns].sum(axis=1, keepdims=True)

@@ -118,7 +118,7 @@ def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
                     borne = bears.get(connection)
                     if borne is not None and connection == table.pin[borne].balance:
                         yield Wrong(closed_message(f"case.{name}.{key}.{connection}", borne),
-                                    code="closes-the-balance")  # fmt: skip
+                                    code="balances-the-others")  # fmt: skip
         elif isinstance(case, LegCase):
             if table.spatial_leg is None:
                 yield Wrong(f"case.{name}: kind 'spatial_leg' needs a [spatial_leg]", code="no-leg")

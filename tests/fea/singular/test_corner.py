@@ -5,8 +5,6 @@ corner, collocated at Chebyshev points: no stress function, no characteristic eq
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -15,9 +13,7 @@ import scipy.linalg
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
-from fea.singular import williams
 from fea.singular.williams import Side, antiplane_exponent, plane_eigenvalue, plane_exponent
 from geometry import ArgumentError
 from tests.support.each import each
@@ -179,35 +175,3 @@ def test_impossible_angles_are_refused(omega: float) -> None:
 def test_impossible_ratios_are_refused(nu: float) -> None:
     with raises(ArgumentError, "out-of-range", "Poisson"):
         plane_exponent(math.pi, nu, "clamped", "free")
-
-
-def test_roots_have_the_bits_of_brentq(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At random corners, and of functions that are steep on one side of the root or at it."""
-    root, roots = williams._root, list[tuple[float, float]]()
-
-    def both(function: Callable[[float], float], low: float, high: float) -> float:
-        x = root(function, low, high)
-        roots.append((x, float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))))
-        return x
-
-    monkeypatch.setattr(williams, "_root", both)
-    rng = np.random.default_rng(1)
-    for omega, nu in rng.uniform((0.05, -0.9), (2.0 * np.pi, 0.49), (60, 2)).tolist():
-        for sides in PAIRS:
-            williams.plane_eigenvalue(omega, nu, *sides)
-
-    def one_side(c: float, x: float) -> float:
-        return math.exp(x) - c - 3.0
-
-    def at_root(c: float, x: float) -> float:
-        return math.atan(40.0 * (x - c))
-
-    for c in rng.uniform(-2.0, 2.0, 100).tolist():
-        both(partial(one_side, c), -5.0, 3.0)
-        both(partial(at_root, c), -3.0, 4.0)
-    both(lambda x: x, 0.0, 1.0)
-    both(lambda x: x - 1.0, 0.0, 1.0)
-    assert len(roots) > 500
-    assert [one for one, _ in roots] == [other for _, other in roots]
-    with pytest.raises(ValueError, match="same sign"):
-        root(lambda x: x + 1.0, 0.0, 1.0)

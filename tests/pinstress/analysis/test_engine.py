@@ -107,7 +107,7 @@ def test_a_row_alone_is_that_of_a_run(study: str, monkeypatch: pytest.MonkeyPatc
     """With its judgement, joint, margins and range, but without what only explains it."""
     ours = Engine(study_from(study))
     ran = pinstress.run(study_from(study))
-    monkeypatch.setattr("pinstress.analysis.solve._histories", None)
+    monkeypatch.setattr("assess.fatigue.critical_points.stress_histories", None)
     for row in ran.pins:
         alone = ours.row({}, row.pin, row.case)
         assert timeless(plain(alone)) == timeless(plain(row))

@@ -13,7 +13,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from pinstress.explore.sweep.connection import NO_PAGES, Connection, connection_to
+from pinstress.explore.sweep.connection import NO_PAGES, ClusterConnection, connection_to
 from pinstress.explore.sweep.keys import KeyFiles, write_keys
 from tests.conftest import ROOT
 from tests.support.programs.process_group import started
@@ -49,7 +49,7 @@ class DaskCluster:
         return ["--scheduler", self.address, *keys]
 
     @property
-    def connection(self) -> Connection:
+    def connection(self) -> ClusterConnection:
         """As these options say."""
         connection = connection_to(self.address, self.keys.folder if self.keys else None)
         assert connection is not None

@@ -27,7 +27,7 @@ from cryptography.x509 import load_pem_x509_certificate
 from distributed import Security
 
 import pinstress.explore.sweep.keys as module
-from pinstress.explore.sweep.connection import Connection, connection_to
+from pinstress.explore.sweep.connection import ClusterConnection, connection_to
 from pinstress.explore.sweep.keys import KeyFiles, write_keys
 from pinstress.study.reading.errors import InputError
 from tests.support.each import each
@@ -132,12 +132,12 @@ def test_a_scheduler_of_this_machine_needs_no_keys_and_one_beyond_it_a_word(tmp_
         assert connection is not None
         assert connection.keys is None
         assert connection.address.startswith("tcp://")
-    assert connection_to("10.0.0.5:1", insecure=True) == Connection(
+    assert connection_to("10.0.0.5:1", insecure=True) == ClusterConnection(
         "tcp://10.0.0.5:1", "10.0.0.5", 1
     )
     keys = write_keys(tmp_path / "keys")
     for given in (keys.folder, str(keys.folder)):
-        assert connection_to("tls://h:1", given) == Connection("tls://h:1", "h", 1, keys)
+        assert connection_to("tls://h:1", given) == ClusterConnection("tls://h:1", "h", 1, keys)
     assert connection_to(None) is None
 
 

@@ -49,7 +49,7 @@ count = 8
 """
 ALL = "left = [0, 5000], middle = [0, -10000], right = [0, 5000]"
 OTHERS = "left = [0, 5000], right = [0, 5000]"
-HINT = 'name the link that closes the balance, as pin.P.balance = "middle"'
+HINT = 'name the link that balances the others, as pin.P.balance = "middle"'
 
 
 def clevis(forces: str = OTHERS, balance: str = 'balance = "middle"') -> str:
