@@ -222,6 +222,7 @@ def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
         slenderness=slenderness(pin_of(new, sized.pin)),
         why=sized.why or (judged.why if judged else ""),
         limited=sized.limited,
+        depends=not sized.why and judged is not None and judged.depends,
     )
 
 

@@ -27,6 +27,7 @@ class SizeRow:
     slenderness: length over largest diameter under a link.
     why: the reason why the required factor is not reached, if it is not.
     limited: whether limits of the study forbid it.
+    depends: whether it is reached as described, but not over all ranges of the study.
     stricter: a hand check with a smaller factor, if any.
     """
 
@@ -41,12 +42,15 @@ class SizeRow:
     why: str = ""
     stricter: str = ""
     limited: bool = False
+    depends: bool = False
 
     @property
     def result(self) -> str:
         """The outcome in words."""
         if self.limited:
             return "not reached"
+        if self.depends:
+            return "depends"
         return "not decided" if self.why else "safe"
 
 
@@ -56,13 +60,15 @@ def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console:
 
     tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
     console.print(fitted_table(sizes_table(rows), units, console.width, tints))
-    count = sum(not row.why for row in rows)
+    everywhere = sum(not row.why for row in rows)
+    as_described = everywhere + sum(row.depends for row in rows)
+    ranges = "" if as_described == everywhere else f" as described, {everywhere} over its ranges"
     console.print(
         Text(
-            f"{count} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
+            f"{as_described} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
             f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in the "
-            "new study. Lengths and the weights of links are unchanged; check that the links have "
-            "room for the new diameters."
+            f"new study{ranges}. Lengths and the weights of links are unchanged; check that the "
+            "links have room for the new diameters."
         )
     )
     for line in _remarks(rows):

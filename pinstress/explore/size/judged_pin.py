@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from assess.judgement import DEPENDS, FAILS, NOT_DECIDED
+from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
 from pinstress.explore.size.counted import beneath_factor, low_factor
 from reports.data.dependence import BENEATH_CONTACT
-from reports.data.headline import worst_checks
+from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import PinResult, Results
 from reports.format.numbers import DASH, engineering
 from reports.format.ranges import factor_range
@@ -18,10 +18,11 @@ from reports.format.words import over_words
 class JudgedPin:
     """A pin in a solution.
 
-    factor: the lowest factor, as text.
-    governs: its case.
+    factor: the lowest factor that counts, as text.
+    governs: its case, and beneath contact if that is where it is.
     stricter: a hand check with a smaller factor, if any.
     why: the reason why the factor is not shown to be reached, empty if it is.
+    depends: whether it is reached as described, but not over all ranges of the study.
     cases: the factor that counts in each case, with its error.
     """
 
@@ -29,20 +30,34 @@ class JudgedPin:
     governs: str
     stricter: str
     why: str
+    depends: bool
     cases: tuple[tuple[str, float], ...]
 
 
 def judged_pin(results: Results, pin: str) -> JudgedPin:
     """Return what results say of a pin."""
     rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
-    worst = min(rows, key=lambda p: p.safety_factor or 0.0) if rows else None
+    worst = min(rows, key=lambda p: min(p.safety_factor or 0.0, beneath_factor(p)), default=None)
+    why = why_missed(results, pin)
     return JudgedPin(
-        DASH if worst is None else factor_range(worst, "–"),
-        DASH if worst is None else worst.case,
+        *_lowest(worst),
         "" if worst is None else _stricter(worst),
-        why_missed(results, pin),
+        why,
+        bool(why)
+        and all(p.outcome in (SAFE, DEPENDS) for p in rows)
+        and not _strict_check(results, pin),
         tuple((p.case, factor) for p in rows if (factor := _counted(p)) is not None),
     )
+
+
+def _lowest(worst: PinResult | None) -> tuple[str, str]:
+    """Return the factor of the worst row as text, and where it governs."""
+    if worst is None:
+        return DASH, DASH
+    below = beneath_factor(worst)
+    if below < (worst.safety_factor or 0.0):
+        return engineering(below), f"{worst.case}, beneath contact"
+    return factor_range(worst, "–"), worst.case
 
 
 def _counted(row: PinResult) -> float | None:
@@ -56,7 +71,8 @@ def _stricter(worst: PinResult) -> str:
     """Describe a hand check with a smaller factor than that of the largest stress, if any."""
     checks = [c for c in worst.hand_checks if c.safety_factor is not None and c.governs]
     least = min(checks, key=lambda c: c.safety_factor or 0.0, default=None)
-    if least is None or (least.safety_factor or 0.0) >= (worst.safety_factor or 0.0):
+    counted = min(worst.safety_factor or 0.0, beneath_factor(worst))
+    if least is None or (least.safety_factor or 0.0) >= counted:
         return ""
     return f"{least.method} at {least.at}: {engineering(least.safety_factor)}"
 
@@ -86,8 +102,7 @@ def why_missed(results: Results, pin: str) -> str:
         )
     if loose:
         return f"in {', '.join(loose)} the error of the stress leaves it open"
-    check = worst_checks(results)[pin]
-    if check.row is None and check.outcome == FAILS:
+    if check := _strict_check(results, pin):
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g}"
     if depends:
         every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
@@ -97,3 +112,9 @@ def why_missed(results: Results, pin: str) -> str:
         cases = ", ".join(depends)
         return f"the factor is reached as described, but not {' and not '.join(places)} ({cases})"
     return ""
+
+
+def _strict_check(results: Results, pin: str) -> JudgedCheck | None:
+    """Return the worst check of a pin, if it is not that of a row and fails."""
+    check = worst_checks(results)[pin]
+    return check if check.row is None and check.outcome == FAILS else None
