@@ -59,7 +59,7 @@ class Check(Protocol):
 
 @dataclass(frozen=True)
 class WorstPlace:
-    """Where and when a demand is largest: a band or segment, z there (m), and time (s)."""
+    """The place and time of the largest demand: a band or segment, z there (m), and time (s)."""
 
     at: str = ""
     z: float | None = None
@@ -74,7 +74,7 @@ class WorstPlace:
 
 @dataclass(frozen=True)
 class CheckText:
-    """What is printed of a check, and the margins that carry it.
+    """The text that is printed of a check, and the margins that carry it.
 
     level: at which the check is made, where `at_levels` does not make it at both. dimension: of its
     demand.

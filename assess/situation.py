@@ -112,7 +112,7 @@ class SectionForces:
 
 @dataclass(frozen=True)
 class SolvedRow:
-    """What was solved of a pin in a case, as far as checks read it.
+    """The solution of a pin in a case, as far as checks read it.
 
     peak: the maximum von Mises stress. limit_load: None where it was not requested. required: the
     safety factor against yield that the study asks for.

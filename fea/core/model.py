@@ -16,7 +16,7 @@ from geometry import PinLike
 
 @dataclass(frozen=True)
 class MeshSequence:
-    """How a model refines its meshes, and what is known of them before one is solved.
+    """The refinement of a model's meshes, and all that is known of them before one is solved.
 
     ratio: element size of a mesh over that of the next. growth: unknowns grow as ratio^growth.
     max_meshes, max_unknowns: where a sequence ends. scatter: of the maximum on the first mesh with

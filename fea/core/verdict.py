@@ -34,7 +34,7 @@ KIND_ARTICLES = {
 
 @dataclass(frozen=True)
 class Evidence:
-    """What is known of the maximum of a case before it is judged.
+    """All that is known of the maximum of a case before it is judged.
 
     value: the maximum, Pa, outside the singular zones; parts: of its error.
     location: (x, y, z) in the pin's axes, m.

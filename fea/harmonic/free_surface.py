@@ -175,7 +175,7 @@ def _beside(
 
 @dataclass(frozen=True)
 class ShutBy:
-    """What shuts the points of a surface, as rows of a table of arcs that each instant has.
+    """The arcs that shut the points of a surface, as rows of a table of arcs that each instant has.
 
     The table has the arcs that are pressed at, before and after the R rings (3 R rows); those on
     which the E edges of lugs are read, on which they stand for points beside them, and those on
@@ -192,7 +192,7 @@ class ShutBy:
 
     @classmethod
     def of(cls, rings: Rings, near: Mask, relieved: Ints, cusps: list[Cusp]) -> ShutBy:
-        """What shuts the points of a skin, and after these middles of rings and edges of lugs.
+        """The arcs that shut points of a skin, and after these middles of rings and edges of lugs.
 
         near: (P, 3 R) the points of the skin near the rings, as of Rings.near.
         relieved: (S,) the ring of which each point is the middle, -1 for others.

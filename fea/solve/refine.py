@@ -222,7 +222,7 @@ def _at_crest(
 def _reading(
     evidence: Evidence, mesh: MeshSolution, loads: PinLoads, seen: MeshHistory
 ) -> StressReading:
-    """What the last mesh says about a case."""
+    """The evidence of the last mesh for a case, with its field of stress."""
     instant, field = seen.results[-1].instant, mesh.field(loads.case)
     governing = loads.at(np.array([instant]))
     history = seen.under(governing)

@@ -131,7 +131,7 @@ class Support(Protocol):
 
 @dataclass(frozen=True)
 class StressReading:
-    """What a model has found of a case: evidence that nobody has judged yet.
+    """The answer of a model to a case: evidence that has not been judged yet.
 
     answer: the stress on the last mesh.
     loads: on the pin, with the instants added to find the maximum.

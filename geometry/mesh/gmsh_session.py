@@ -115,7 +115,7 @@ def signals_kept() -> Iterator[None]:
 
 @contextmanager
 def _by_sigaction() -> Iterator[None]:
-    """In any thread, and also handlers that Python does not know (faulthandler's)."""
+    """Restore handlers in any thread, and also those that Python does not know (faulthandler's)."""
     libc = ctypes.CDLL(None)
     kept = {each: ctypes.create_string_buffer(SIGACTION_BYTES) for each in SIGNALS}
     for each, handler in kept.items():
@@ -129,7 +129,7 @@ def _by_sigaction() -> Iterator[None]:
 
 @contextmanager
 def _by_python() -> Iterator[None]:
-    """In the main thread, the only one in which Python sets handlers."""
+    """Restore handlers in the main thread, the only one in which Python sets them."""
     kept = {each: signal.getsignal(each) for each in SIGNALS}
     try:
         yield

@@ -34,7 +34,7 @@ class Reach:
 
 
 class OtherShapeError(Exception):
-    """With the dimension a little larger or smaller the outline has other edges."""
+    """The outline has other edges where the dimension is a little larger or smaller."""
 
 
 DIFFERENCE_STEPS = -2.0, -1.0, 1.0, 2.0  # steps at which differences are taken
@@ -53,8 +53,11 @@ def rate_of(values: Sequence[Floats], step: float) -> Floats:
 
 @dataclass(frozen=True)
 class NodeMotion:
-    """Of the outline's nodes, (B, 2) m per m of a dimension, by its key. pins: with the dimension
-    at DIFFERENCE_STEPS times `step` (m) more.
+    """The motion of the outline's nodes with a dimension.
+
+    key: of the dimension.
+    velocity: (B, 2) m per m.
+    pins: those whose dimension is larger by DIFFERENCE_STEPS times `step`, m.
     """
 
     key: str
@@ -81,14 +84,17 @@ class OutlineNodes:
         self._places = places
 
     def at(self, pin: Pin) -> Floats:
-        """Where they are, (B, 2) in m, on a pin with the same edges. Raises: OtherShapeError."""
+        """The places of the nodes, (B, 2) m, on a pin with the same edges.
+
+        Raises: OtherShapeError.
+        """
         outline = meridian(pin)
         if _shape(outline) != self._shape:
             raise OtherShapeError
         return np.concatenate([p.at(outline[p.edge]) for p in self._places])
 
     def motion(self, dimension: Dimension) -> NodeMotion:
-        """Of every node with a dimension.
+        """The motion of every node with a dimension.
 
         Raises: OtherShapeError where there is no such pin on both sides of it.
         """
@@ -104,7 +110,7 @@ class OutlineNodes:
         raise OtherShapeError
 
     def among(self, key: str, pins: tuple[Pin, ...], step: float) -> NodeMotion:
-        """With pins at DIFFERENCE_STEPS times a step. Raises: OtherShapeError."""
+        """The motion from pins at DIFFERENCE_STEPS times a step, m. Raises: OtherShapeError."""
         return NodeMotion(key, rate_of([self.at(pin) for pin in pins], step), pins, step)
 
     def _cuts(self, edge: Edge) -> list[tuple[int, float]]:
@@ -151,7 +157,7 @@ class _Place:
         return np.array([0.0, *(_cut_at(edge, end, ratio) for end, ratio in self._cuts), 1.0])
 
     def at(self, edge: Edge) -> Floats:
-        """Where the nodes are on the edge of another shape, (.., 2)."""
+        """The places of the nodes on the edge of another shape, (.., 2) m."""
         start = np.array(edge.start)
         if isinstance(edge, Arc):
             angle, (x, y) = self._part * edge.turn, start - edge.centre
@@ -168,7 +174,7 @@ def _shape(outline: tuple[Edge, ...]) -> list[tuple[str | None, bool]]:
 
 
 def _on(edge: Edge, nodes: Floats, named: Ints) -> Ints:
-    """Which of the nodes of its name are on an edge: all, unless others have that name too."""
+    """The nodes of its name that are on an edge: all, unless others have that name too."""
     if edge.name:
         return named
     z = nodes[named, 1]

@@ -50,7 +50,7 @@ log = logging.getLogger(__name__)
 
 
 class OutcomeStore(Protocol):
-    """Where solved pins are kept by the content of all they depend on."""
+    """A store of solved pins by the content of all they depend on."""
 
     def key(self, inputs: object) -> str: ...
     def read(self, key: str, kind: type[T]) -> T | None: ...

@@ -99,10 +99,10 @@ class Engine:
         text, why there are none. Raises: InputError.
         """
         results = self._solved(changes, [pin], "full", sensitive=True)
-        found = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
-        if found.note:
-            return found.note
-        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in found.rows}
+        effects = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
+        if effects.note:
+            return effects.note
+        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in effects.rows}
         missing = [key for key in keys if key not in by_key]
         if missing:
             return f"no derivative with respect to {', '.join(missing)}"

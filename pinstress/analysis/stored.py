@@ -28,7 +28,7 @@ SHAPE_TABLES = "profile", "meridian", "bore_meridian", "band"  # whose keys sens
 
 @dataclass(frozen=True)
 class PinOutcome:
-    """What was solved of a task: a row for each of its cases, and the results of all of them.
+    """The solution of a task: a row for each of its cases, and the results of all of them.
 
     rows: in the order of the cases. Every run completes them, as that takes little time and depends
     on more of the study (assessed.situations, gather).

@@ -43,8 +43,8 @@ class CurvePoint:
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where a pin's factor passes the required one: between two values next to each other, and by
-    interpolation.
+    """A value at which a pin's factor passes the required one: between two values next to each
+    other, and by interpolation.
 
     rising: whether the factor is reached above that value, or below it.
     """
@@ -97,8 +97,8 @@ class FactorCurve:
 
     @property
     def reached(self) -> tuple[Crossing, ...]:
-        """Where the pins pass the required factor, by the straight line between the logarithms of
-        neighbouring factors.
+        """The values at which pins pass the required factor, by the straight line between the
+        logarithms of neighbouring factors.
         """
         out = []
         for pin in self.pins if self.required else ():

@@ -149,7 +149,7 @@ class PinResult:
 
     @property
     def why(self) -> str:
-        """Which model was used, and the reason."""
+        """The model that was used, and the reason."""
         return self.maximum.why
 
     @property

@@ -425,7 +425,7 @@ class ContactModel:
 
 
 def elastic(material: Material) -> tuple[float, float]:
-    """What flexibilities depend on of a material: no strength."""
+    """The properties of a material on which flexibilities depend: no strength."""
     return material.youngs_modulus, material.poisson_ratio
 
 

@@ -28,7 +28,7 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class PinAnswer:
-    """What a solution says of a pin.
+    """The factors of a pin by one solution.
 
     trial: its factors.
     worst: the maximum that decides the factor.

@@ -26,7 +26,7 @@ TRIED_DESIGNS, TRIED_MECHANISMS = 32, 8
 
 @dataclass(frozen=True)
 class TriedDesigns:
-    """What came of some designs.
+    """The designs that were tried, and why some of them are impossible.
 
     count: how many were tried. impossible: why designs cannot be built, with their number.
     """

@@ -14,8 +14,10 @@ from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
-DISPLAY_ORDER = ("pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand",
-                 "allowable", "clause")  # fmt: skip
+MARGIN_COLUMN_ORDER = (
+    "pin", "case", "method", "margin", "utilisation", "level", "at", "time", "demand", "allowable",
+    "clause",
+)  # fmt: skip
 MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case beside the von Mises stress against yield, which the safety factors above judge. "
@@ -116,7 +118,7 @@ def margins_table(results: Results) -> Table[MarginRow]:
 def _shown(
     margins: Iterable[PinMargin], results: Results, without: Collection[str]
 ) -> Table[MarginRow]:
-    columns = [c for c in in_order(COLUMNS, DISPLAY_ORDER) if c.key not in without]
+    columns = [c for c in in_order(COLUMNS, MARGIN_COLUMN_ORDER) if c.key not in without]
     return Table("margins", columns, _rows(margins, results))
 
 

@@ -35,7 +35,7 @@ from reports.tables.column import Column, Table, grid_of, in_order, unit_columns
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
 
-DISPLAY_ORDER = (  # for people; columns that are not named here come last
+FACTOR_COLUMN_ORDER = (  # for people; columns that are not named here come last
     *("pin", "case", "outcome", "safety_factor", "utilisation", "max_von_mises"),
     *("error_estimate", "governs", "joint_high", BENEATH_CONTACT, "time", "verdict", "model"),
 )
@@ -163,7 +163,8 @@ def shown_factors(results: Results, without: Collection[str] = ()) -> Table[Fact
     rows = [FactorRow(pin, results) for pin in worst_first(results)]
     heads = {"safety_factor": f"safety factor{_required(results)}"}
     shown = [
-        replace(c, heading=heads.get(c.key, c.heading)) for c in in_order(COLUMNS, DISPLAY_ORDER)
+        replace(c, heading=heads.get(c.key, c.heading))
+        for c in in_order(COLUMNS, FACTOR_COLUMN_ORDER)
     ]
     table = Table("safety_factors", [c for c in shown if c.key not in without], rows)
     return replace(table, columns=[column for column, _ in table.for_people()])

@@ -118,7 +118,7 @@ COLUMNS: list[Column[ZoneRow]] = [
     Column("strength_exponent", _intensity("exponent")),
     Column("notch_stress_intensity", _intensity("notch")),
 ]  # fmt: skip
-DISPLAY_ORDER = ("zone", "z", "radius", "between", "kind", "exponent", "excluded_radius",
+ZONE_COLUMN_ORDER = ("zone", "z", "radius", "between", "kind", "exponent", "excluded_radius",
                  "max_von_mises", "strength", "governs", "advice")  # fmt: skip
 
 
@@ -139,4 +139,4 @@ def shown_zones(pin: PinResult, zones: list[ShownZone], units: Units) -> Table[Z
     strength = read_only(heading, _intensity("along"))
     columns = [replace(strength, key="strength") if c.key == "strength" else c for c in COLUMNS]
     rows = [ZoneRow(pin, zone, units) for zone in sorted(zones, key=lambda zone: zone.number)]
-    return Table("singular_zones", in_order(columns, DISPLAY_ORDER), rows)
+    return Table("singular_zones", in_order(columns, ZONE_COLUMN_ORDER), rows)
