@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fea.core.places import SectionPlace
-from geometry import CutPin, Pin, PinLike
+from geometry import PinLike
 from geometry.shape.features import outer_radius
 from pinstress.analysis.remedies.secant import BENDING_EXPONENT, MAX_SLOPE, MIN_SLOPE
 
@@ -65,8 +65,8 @@ def section_exponent(pin: PinLike, section: SectionPlace | None) -> float:
     """Return the exponent with which a factor grows with the diameters, by the part of bending in
     the square of the stress of a section; that of bending where there is no section.
     """
-    profile = pin.profile if isinstance(pin, CutPin) else pin
-    if section is None or not isinstance(profile, Pin) or not section.max_von_mises:
+    profile = pin.profile
+    if section is None or profile is None or not section.max_von_mises:
         return BENDING_EXPONENT
     # at a step, of the thinner side
     sides = section.z - STEP_DISTANCE * profile.length, section.z + STEP_DISTANCE * profile.length
