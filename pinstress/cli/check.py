@@ -117,9 +117,10 @@ def _impossible(study: Study) -> list[str]:
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
     parameters = parameters_of(study, sampled)
-    values = drawn(study, parameters)
     if vary is not None and sampled:
         values = designs_of(vary, parameters, correlations_of(study, parameters))
+    else:
+        values = drawn(study, parameters)
     return tried(study, Evaluator(study, parameters), values).warnings
 
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from pinbase.errors import ArgumentError
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
-from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
+from pinstress.explore.sweep.evaluate import DesignRow, Evaluator, rows_without_maximum
 from pinstress.explore.sweep.number import Number, number_at, si_value
+from pinstress.explore.sweep.workers import PROCESS_DIED
 from pinstress.study.reading.file import Study
 from reports.data.curve import CurvePoint, FactorCurve
 
@@ -50,13 +51,12 @@ def curve(
         values = np.union1d(values, number.nominal)
     # Neighbours have most in common, so each process takes one part of the range.
     parts = np.array_split(values, min(jobs, len(values)))
-    work = [Job(f"{key}", partial(_solved, evaluator, part)) for part in parts]
+    work = [Job(key, partial(_solved, evaluator, part)) for part in parts]
     outcomes = in_parallel(work, jobs, progress)
     solved: list[CurvePoint] = []
     for part, rows in zip(parts, outcomes, strict=True):
         if isinstance(rows, ProcessDied):
-            failed = [DesignRow(*row, None, None, None, "failed", reason=rows.reason)
-                      for row in evaluator.table]  # fmt: skip
+            failed = rows_without_maximum(evaluator.table, rows.reason, PROCESS_DIED)
             rows = [failed for _ in part]
         for value, design in zip(part, rows, strict=True):
             solved += [_point(study, number, float(value), row) for row in design]

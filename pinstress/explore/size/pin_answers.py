@@ -160,7 +160,7 @@ def _answer(
         raise NoSizeError("no case loads it")
     strength = todo[0].material.yield_strength
     assert strength is not None  # a pin without strength is refused before
-    stresses = [_stresses(peak, tolerance) for peak in acting]
+    stresses = [design_stresses(peak, tolerance) for peak in acting]
     row, below = (max(each) for each in zip(*stresses, strict=True))
     largest = max(row, below)
     worst = next(p for p, s in zip(acting, stresses, strict=True) if max(s) == largest)
@@ -177,8 +177,8 @@ def _answer(
     return PinAnswer(trial, worst, counting)
 
 
-def _stresses(peak: Maximum, tolerance: float | None) -> tuple[float, float]:
-    """Return the stresses that count, Pa: of the row and beneath contact.
+def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[float, float]:
+    """Return the stresses that decide, Pa: of the row and beneath contact, with their errors.
 
     tolerance: largest error that counts; None for the error as it is.
     """
@@ -197,10 +197,3 @@ def row_stress(peak: Maximum) -> float:
     A singular maximum decides nothing; it is replaced by that outside the excluded zones.
     """
     return (peak.max_von_mises if peak.verdict == "singular" else peak.upper_end) or 0.0
-
-
-def design_stress(peak: Maximum) -> float:
-    """Return the stress that decides, Pa: the larger of that of the row and that beneath contact,
-    each with its error.
-    """
-    return max(row_stress(peak), beneath(peak))

@@ -83,6 +83,19 @@ class DesignRow:
     beneath_error: float | None = None
 
 
+def rows_without_maximum(
+    table: Iterable[tuple[str, str]], reason: str, code: str
+) -> list[DesignRow]:
+    """Return the rows of a design that nothing is known of.
+
+    table: their pins and cases.
+    """
+    return [
+        DesignRow(pin, case, None, None, None, "failed", reason=reason, code=code)
+        for pin, case in table
+    ]
+
+
 class Recent(Generic[K, V]):
     """A memory of the values of the latest keys, at most `most` of them."""
 

@@ -13,6 +13,7 @@ from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.model.balance import unheld
+from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.errors import InputError
@@ -70,7 +71,7 @@ def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
                 if key not in held:
                     unbalanced.setdefault(key, []).append(reason)
         except (InputError, ArithmeticError) as error:
-            impossible[_plain(str(error))] += 1
+            impossible[str(error).partition("\n")[0]] += 1
     for (pin, case), reasons in unbalanced.items():
         if isinstance(study.table.case[case], GivenCase) and study.table.pin[pin].balance is None:
             raise study.error(
@@ -99,14 +100,14 @@ def _unheld_rows(
     Raises: InputError for a design that cannot be built.
     """
     loads = evaluator.loads_of(study, [float(x) for x in values])
-    for case in loads.values():
+    right, out = dict[str, CaseLoads](), dict[tuple[str, str], str]()
+    for name, case in loads.items():
         if isinstance(case, InputError):
             raise case
-    right = {name: case for name, case in loads.items() if not isinstance(case, InputError)}
-    out: dict[tuple[str, str], str] = {}
+        right[name] = case
     for name in dict.fromkeys(pin for pin, _ in evaluator.table):
         for task in tasks(study, [pin_of(study, name)], right):
-            out |= {(name, case): reason for case, reason in unheld(study, task).items()}
+            out |= {(name, at): reason for at, reason in unheld(study, task).items()}
     return out
 
 
@@ -116,7 +117,3 @@ def _closing(study: Study, pin: str, case: str, evaluator: Evaluator) -> str:
               if path[:3] == ("case", case, "forces") and len(path) > 3}  # fmt: skip
     connections = study.connections(pin)
     return next((c for c in connections if c not in varied), connections[-1])
-
-
-def _plain(message: str) -> str:
-    return message.partition("\n")[0]

@@ -10,9 +10,11 @@ from functools import partial
 from pinbase.processes.pool import ProcessDied, Tell, preload, served
 from pinbase.processes.threads import hold_threads
 from pinstress.explore.sweep.batches import Batch, Batches, DesignProblem, SolvedBatch, solve_batch
-from pinstress.explore.sweep.evaluate import DesignRow
+from pinstress.explore.sweep.evaluate import rows_without_maximum
 
 WORKER_MODULES = "gmsh", "pymetis", "cvxopt.cholmod"  # that solving imports on demand
+
+PROCESS_DIED = "process-died"  # the code of the reason
 
 Keep = Callable[[SolvedBatch], None]
 Lost = Callable[[Batch], SolvedBatch]
@@ -112,14 +114,6 @@ def failed_rows(table: tuple[tuple[str, str], ...], batch: Batch) -> SolvedBatch
 
     table: pin and case of each row.
     """
-    row = partial(
-        DesignRow,
-        max_von_mises=None,
-        error_estimate=None,
-        safety_factor=None,
-        verdict="failed",
-        reason="the process that solved it ended by itself, out of memory or by a crash",
-        code="process-died",
-    )
-    rows = [[row(pin=pin, case=case) for pin, case in table] for _ in batch.designs]
-    return SolvedBatch(batch, rows, 0.0)
+    reason = "the process that solved it ended by itself, out of memory or by a crash"
+    rows = rows_without_maximum(table, reason, PROCESS_DIED)
+    return SolvedBatch(batch, [rows for _ in batch.designs], 0.0)
