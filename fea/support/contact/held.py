@@ -221,22 +221,23 @@ class HeldContact:
         the range over the uncertain properties of the joint.
         """
         model, material, answer = self.model, self.problem.material, reading.answer
-        case = next(c for c in self.problem.cases if c.case == reading.loads.case)
+        (case,) = (c for c in self.problem.cases if c.case == reading.loads.case)
         assert isinstance(answer, HarmonicField | CutField)
         assert self.contact.patterns is not None
         at_surface = self.contact.joined(reading.loads.links, reading.instant)
         known = self.compared[case.case].near(at_surface, case, self._compared_anew(requirement))
         missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
-        surface = self._evidence(reading, at_surface, known.surface.cells.surface + missed)
+        surface = self._evidence(reading, case, at_surface, known.surface.cells.surface + missed)
         error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
-        over, section, links = known.row.range(surface.value), None, None
+        section, links = None, None
         if self.cut is None:
             section = self._section(case, known.section.cells.section, requirement)
             links = links_at(self.problem, case, section)
         elif isinstance(answer, CutField):
             cuts = neglected(self.cut, material, at_surface, _pressure(at_surface), answer)
-            surface = with_neglected(surface, cuts, answer, over.variations)
-            error += cuts.error(surface.value, False, over.variations) / (surface.value or 1.0)
+            variations = known.row.range(surface.value).variations
+            surface = with_neglected(surface, cuts, answer, variations)
+            error += cuts.error(surface.value, False, variations) / (surface.value or 1.0)
         peak = row_of(surface, section, material, requirement.tolerance, links)
         solution = self._at_row(reading, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
@@ -249,16 +250,17 @@ class HeldContact:
         peak = with_contact(peak, place)
         return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
 
-    def _evidence(self, reading: StressReading, contact: JointContact, cells: float) -> Evidence:
+    def _evidence(
+        self, reading: StressReading, case: PinLoads, contact: JointContact, cells: float
+    ) -> Evidence:
         """The evidence of the surface, with the names of the whole pin instead of its rings, and
         the relative error of the cells.
         """
         names = whole_names(self.model.whole, self.model.ends)
         of, zones = reading.evidence, []
-        for zone in reading.evidence.zones:
+        for zone in of.zones:
             first, second = (names.get(name, name) for name in zone.between)
             zones.append(replace(zone, between=(first, second)))
-        (case,) = (c for c in self.problem.cases if c.case == of.case)
         return replace(
             of.with_parts(cells=cells * of.value),
             zones=tuple(zones),
