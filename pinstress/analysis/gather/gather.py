@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
@@ -180,6 +181,7 @@ def _completed(
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
         loads=_governing_loads(task, here),
+        exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
         published_max_von_mises=published_stress,
         published_safety_factor=published_factor,
