@@ -44,5 +44,6 @@ def estimated_scale(factor: float, beneath: float, exponent: float, required: fl
     factor: by surface and section, which grows with `exponent`. beneath: by the stress beneath
     contact, inf without any.
     """
-    of_row = (required / factor) ** (1.0 / exponent)
-    return max(of_row, (required / beneath) ** (1.0 / BEARING_EXPONENT))
+    of_row: float = (required / factor) ** (1.0 / exponent)
+    of_contact: float = (required / beneath) ** (1.0 / BEARING_EXPONENT)
+    return max(of_row, of_contact)

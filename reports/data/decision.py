@@ -25,6 +25,21 @@ def factor_ends(pin: PinResult) -> Ends:
     return factor * stress / (stress + error), factor * stress / least if least > 0.0 else inf
 
 
+def low_factor(pin: PinResult) -> float | None:
+    """Return the factor of a row by the largest of these stresses; None without one."""
+    if pin.safety_factor is None or not pin.max_von_mises:
+        return None
+    return min(factor_ends(pin)[0], beneath_factor(pin))
+
+
+def beneath_factor(pin: PinResult) -> float:
+    """Return the factor by the stress beneath contact with its error; inf without any."""
+    contact = pin.places and pin.places.contact
+    if not contact or not contact.upper_end or pin.yield_strength is None:
+        return inf
+    return pin.yield_strength / contact.upper_end
+
+
 def limit(results: Results) -> float:
     """Return the factor that is required; 1, at which a pin yields, where none is required."""
     return results.required_safety_factor or 1.0
