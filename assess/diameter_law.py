@@ -17,6 +17,7 @@ BENDING_EXPONENT, SHEAR_EXPONENT = 3.0, 2.0
 # Larger than that of a mean pressure, 1, since peaks at the lugs' edges even out as the pin becomes
 # stiffer: 1.4 to 1.8 between one and three times the diameters of studies/landing_gear.toml
 BEARING_EXPONENT = 1.5
+SAME_STRESS = 0.01  # relative
 STEP_DISTANCE = 1e-3  # of the length, from a section to both sides
 
 
@@ -38,6 +39,16 @@ def section_exponent(pin: PinLike, section: SectionPlace | None) -> float:
     return part * BENDING_EXPONENT + (1.0 - part) * SHEAR_EXPONENT
 
 
+def beneath_exponent(factor: float, beneath: float, exponent: float) -> float:
+    """Return the exponent of a factor by the stress beneath contact.
+
+    factor, exponent: of the row. Where both factors agree to SAME_STRESS they are of one stress,
+    such as in a fillet near a lug, which follows the section.
+    """
+    same = math.isclose(factor, beneath, rel_tol=SAME_STRESS)
+    return exponent if same else BEARING_EXPONENT
+
+
 def estimated_scale(factor: float, beneath: float, exponent: float, required: float) -> float:
     """Return the scale of all diameters at which a pin reaches a factor of safety, by these laws.
 
@@ -45,5 +56,6 @@ def estimated_scale(factor: float, beneath: float, exponent: float, required: fl
     contact, inf without any.
     """
     of_row: float = (required / factor) ** (1.0 / exponent)
-    of_contact: float = (required / beneath) ** (1.0 / BEARING_EXPONENT)
+    below = beneath_exponent(factor, beneath, exponent)
+    of_contact: float = (required / beneath) ** (1.0 / below)
     return max(of_row, of_contact)

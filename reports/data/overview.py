@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from assess.diameter_law import BEARING_EXPONENT, estimated_scale
+from assess.diameter_law import beneath_exponent, estimated_scale
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, SAFE, YIELDS
 from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
 from reports.data.headline import JudgedCheck, worst_checks
@@ -92,7 +92,8 @@ def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLi
     rows = [row for row in results.pins if row.pin == check.pin]
     row = check.row or min(rows, key=lambda row: (-_used(row, limit(results)), row.case))
     error = factor_ends(row) if row.safety_factor else None
-    return PinLine(row, check, error, factor_spread(row), _diameter(row, shape))
+    diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None
+    return PinLine(row, check, error, factor_spread(row), diameter)
 
 
 def _used(row: PinResult, required: float) -> float:
@@ -122,8 +123,9 @@ def factor_at(row: PinResult, scale: float) -> float:
     """Return the factor of a row with all its diameters scaled, by the laws of its section and of
     what lies beneath contact.
     """
-    of_row = factor_ends(row)[0] * scale**row.exponent
-    return float(min(of_row, beneath_factor(row) * scale**BEARING_EXPONENT))
+    factor, beneath = factor_ends(row)[0], beneath_factor(row)
+    below = beneath_exponent(factor, beneath, row.exponent)
+    return float(min(factor * scale**row.exponent, beneath * scale**below))
 
 
 def _scale(row: PinResult, whatever: bool) -> float:

@@ -78,6 +78,19 @@ class Unknown:
         return list(dict.fromkeys(state for _, value in self.rows for state in value.states))
 
 
+def decided_by(unknown: Sequence[Unknown]) -> dict[Owner, list[str]]:
+    """Return the pins whose outcome changes within the joint or the landing, most pins first.
+
+    Values that only together change an outcome count too.
+    """
+    rows = {(row.pin, row.case): row for each in unknown for row, _ in each.rows}.values()
+    owners: dict[Owner, list[str]] = {"landing": [], "joint": []}
+    for owner, pins in owners.items():
+        pins += dict.fromkeys(r.pin for r in rows if any(owner in d.over for d in r.depends_on))
+    ranked = sorted(owners, key=lambda owner: -len(owners[owner]))
+    return {owner: owners[owner] for owner in ranked if owners[owner]}
+
+
 def unknowns(rows: Iterable[PinResult]) -> list[Unknown]:
     """Return what is open: first what changes the outcomes of most rows, then by its effect."""
     by_name: dict[str, list[tuple[PinResult, OpenValue]]] = {}
@@ -171,6 +184,6 @@ def _flip(row: PinResult, owner: Owner, what: str) -> Dependence | None:
     """Return the dependence of a row's outcome on an open value, the maximum's first."""
     for d in sorted(row.depends_on, key=lambda d: d.what == BENEATH_CONTACT):
         named = d.value if d.what == BENEATH_CONTACT else d.what
-        if d.over == owner and named.startswith(what):
+        if d.over == owner and (named == what or named.startswith(f"{what} ")):
             return d
     return None

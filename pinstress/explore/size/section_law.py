@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from assess.diameter_law import BEARING_EXPONENT
+from assess.diameter_law import beneath_exponent
 from pinstress.analysis.remedies.secant import MAX_SLOPE, MIN_SLOPE
 
 # Ratio of scales from which a slope is that of the pin and not of the scatter of meshes: between
@@ -47,7 +47,9 @@ class PinTrial:
 
     def exponent_at(self, where: Where) -> float:
         """Return the exponent of a place by its law."""
-        return self.exponent if where == "row" else BEARING_EXPONENT
+        if where == "row":
+            return self.exponent
+        return beneath_exponent(self.row, self.beneath, self.exponent)
 
 
 def slope(trials: Sequence[PinTrial], where: Where) -> float:
