@@ -9,7 +9,7 @@ import numpy as np
 
 from assess.checks import margins_of
 from assess.judgement import against_yield
-from assess.margin import Margin, skipped, worst_places
+from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Margin, skipped, worst_places
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
 from fea.core.pin_loads import PinLoads
@@ -19,7 +19,6 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import PinResult
 
-FORMULA_CHECKS = "checks by formula"
 FORMULA_KINDS = "hand", "clause"
 FORCE_OF_CLAMP = (
     "the force that a clamp takes, which contact with the lug instead of the clamp gives"
@@ -113,7 +112,7 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
     if s.profile is not None:
         clamped = {s.profile.surface(name) for name in s.clamps}
         lacking |= {
-            f"lug of {lug.connection}: net section, shear-out, bearing": FORCE_OF_CLAMP
+            f"{CLAMPED_LUG_PREFIX}{lug.connection}: net section, shear-out, bearing": FORCE_OF_CLAMP
             for lug in s.sized
             if lug.connection in clamped
         }
