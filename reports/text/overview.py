@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from assess.judgement import BELOW_YIELD, DEPENDS, NOT_DECIDED, SAFE
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE
 from reports.data.changes import Remedy, command
 from reports.data.decision import limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
@@ -13,9 +13,10 @@ from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape,
 from reports.data.unknowns import NO_SPREAD, Unknown, decided_by
 from reports.format.numbers import engineering, short
 from reports.format.place_words import action, place_words
-from reports.format.ranges import factor_range
+from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 from reports.format.words import undecided_because
+from reports.tables.strength.changes import SINGULARITY_REMEDIES
 from reports.tables.strength.margins import not_made_briefly
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
@@ -56,14 +57,13 @@ def actions(results: Results, study: str = "") -> Content:
 
     study: its path, by default its name.
     """
+    lines = pin_lines(results)
+    parts = [*_exceeded(lines), *_singular(lines)]
     if not results.changes:
-        return []
-    lines = {line.pin: line for line in pin_lines(results)}
-    parts = []
-    if needed := [line for line in lines.values() if line.diameter and line.diameter.needed]:
+        return parts
+    if needed := [line for line in lines if line.diameter and line.diameter.needed]:
         parts.append(
-            f"Diameters by the law of the section ({names([x.pin for x in needed])}): estimates, "
-            "to be verified by the command below."
+            "The estimated diameters follow the law of the section; the command verifies them."
         )
     parts += _eyes(results, needed)
     parts += _other_ways(results)
@@ -90,8 +90,8 @@ def certainty(results: Results) -> Content:
     needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
     even = "even " if len(rows) > 1 else ""
     return [
-        f"To reach the factor, {even}the stress of {nearest.pin} would have to be "
-        f"{engineering(100.0 * needed / (1.0 + needed), 2)} % too large."
+        f"To meet the factor, {even}the stress of {nearest.pin} would have to be overestimated by "
+        f"{engineering(100.0 * needed, 2)} %."
     ]
 
 
@@ -111,9 +111,12 @@ def measure_first(unknown: Sequence[Unknown]) -> Content:
     if deciding := decided_by(unknown):
         owner, pins = next(iter(deciding.items()))
         return [f"Measure first: {MEASURED[owner]} ({names(pins)})."]
+    first = matters[0]
+    row, value = max(first.rows, key=lambda x: x[1].ratio)
+    low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
     return [
-        f"Nothing open changes an outcome; {matters[0].what} matters most (factor changes by up to "
-        f"{engineering(100.0 * (matters[0].ratio - 1.0), 2)} %)."
+        f"Nothing open changes an outcome alone; {first.what} matters most (factor of {row.pin} "
+        f"{low} to {high})."
     ]
 
 
@@ -146,7 +149,8 @@ def names(pins: Sequence[str]) -> str:
 
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:
     state = "may fail" if row.as_described in GOOD else "is safe"
-    return f"{row.pin} {state} {_at(d, units)}".strip()
+    at = _at(d, units)
+    return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
 
 
 def _undecided(lines: Sequence[PinLine]) -> str:
@@ -271,7 +275,10 @@ def _actions(lines: Sequence[PinLine]) -> str:
     for line in lines:
         if kind := action(line.row):
             by_action.setdefault(kind, []).append(line.pin)
-    told = [f"{kind} governs {names(pins)}" for kind, pins in by_action.items()]
+    told = [
+        f"{kind} {'governs ' * (not k)}{names(pins)}"
+        for k, (kind, pins) in enumerate(by_action.items())
+    ]
     text = ", ".join(told)
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
@@ -289,6 +296,28 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
         return f"Largest stress: {'; '.join(told)}."
     word = "permitted" if first.required else "the yield strength"
     return f"Largest stress: {'; '.join(told)}; {engineering(permitted, 3)} is {word}."
+
+
+def _exceeded(lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on each check by formula that a pin fails, with what it lacks."""
+    failing = [x for x in lines if x.check.row is None and x.outcome == FAILS and x.check.factor]
+    return [
+        f"{x.pin} needs {engineering(100.0 * (x.check.used - 1.0), 2)} % more strength, or less "
+        f"load ({x.check.check})."
+        for x in failing
+    ]
+
+
+def _singular(lines: Sequence[PinLine]) -> Content:
+    """Return what removes the singularities that govern pins that are not safe."""
+    rows = [x.row for x in lines if x.outcome not in GOOD]
+    kinds = [zone.kind for row in rows for zone in row.singular_at if zone.governs]
+    ways = [
+        remedy
+        for name, remedy in SINGULARITY_REMEDIES.items()
+        if any(kind.endswith(name) for kind in kinds)
+    ]
+    return [f"For a maximum instead of a range: {'; '.join(ways)}."] if ways else []
 
 
 def _eyes(results: Results, lines: Sequence[PinLine]) -> Content:
@@ -311,9 +340,7 @@ def _other_ways(results: Results) -> Content:
     given = row.yield_strength or 0.0
     parts = []
     if worst.yield_strength > STRONGER * given:
-        parts.append(
-            f"A stronger material cannot: {worst.pin} needs a yield strength of {strength}."
-        )
+        parts.append(f"No stronger material: {worst.pin} needs a yield strength of {strength}.")
     else:
         parts.append(f"Or a yield strength of {strength} for {worst.pin}.")
     if worst.impulse_time and worst.given_time:
