@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from assess.diameter_law import beneath_exponent, estimated_scale
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, SAFE, YIELDS
 from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
-from reports.data.headline import JudgedCheck, worst_checks
+from reports.data.envelope import MAX_DETAILED_CASES
+from reports.data.headline import JudgedCheck, judged_checks, worst_checks
 from reports.data.results import PinResult, PinShape, Results
 from reports.data.unknowns import Ends, factor_spread
 
@@ -69,9 +70,18 @@ class QuietCase:
 
 
 def pin_lines(results: Results) -> list[PinLine]:
-    """Return a line for each pin, the worst first."""
+    """Return a line for each pin, the worst first; of a single pin, for each of its cases.
+
+    Of a pin with more than MAX_DETAILED_CASES only the worst case has a line.
+    """
     shapes = {shape.pin: shape for shape in results.shapes}
-    checks = sorted(worst_checks(results).values(), key=lambda check: check.rank)
+    worst = worst_checks(results)
+    checks = list(worst.values())
+    if len(worst) == 1 and len(results.pins) <= MAX_DETAILED_CASES:
+        by_case = {check.case: check for check in reversed(judged_checks(results)) if check.case}
+        checks = [by_case[row.case] for row in results.pins]
+        checks += [check for check in judged_checks(results) if not check.case]
+    checks.sort(key=lambda check: check.rank)
     return [_line(results, check, shapes.get(check.pin)) for check in checks]
 
 
@@ -89,7 +99,7 @@ def quiet_cases(results: Results, lines: list[PinLine]) -> list[QuietCase]:
 
 
 def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLine:
-    rows = [row for row in results.pins if row.pin == check.pin]
+    rows = [row for row in results.pins if row.pin == check.pin and check.case in ("", row.case)]
     row = check.row or min(rows, key=lambda row: (-_used(row, limit(results)), row.case))
     error = factor_ends(row) if row.safety_factor else None
     diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None

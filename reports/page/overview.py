@@ -55,7 +55,7 @@ CLASSES = {"met": SAFE, "missed": FAILS, "not checked": NOT_DECIDED}
 
 
 @dataclass(frozen=True)
-class Span:
+class AxisPart:
     """A part of an axis, in per cent of its length."""
 
     left: float
@@ -85,6 +85,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "axis": axis and _ticks(axis),
         "lines": [_line(line, results, axis, anchors) for line in lines],
         "open": [x.what for x in unknown],
+        "diameters": any(line.diameter for line in lines),
         "eyes": any(line.diameter and line.diameter.eye for line in lines),
         "checks": any(check_words(line) != DASH for line in lines),
         "matrix": [_matrix_row(row, lines) for row in matrix],
@@ -101,7 +102,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
 
 
 def _about(results: Results, lines: Sequence[PinLine]) -> str:
-    """Return what was solved, in one line."""
+    """Return the number of pins, their material and the cases, in one line."""
     materials = list(dict.fromkeys(shape.material for shape in results.shapes))
     cases = list(dict.fromkeys(row.case for row in results.pins))
     parts = [f"{len(lines)} pin{'s' * (len(lines) != 1)}"]
@@ -123,7 +124,7 @@ def _accurate(results: Results) -> list[str]:
 
 
 def _nothing(lines: Sequence[PinLine]) -> str:
-    """Return what is said where no change is known that a pin needs."""
+    """Return the sentence of the card without any change."""
     if lines and lines[0].outcome in GOOD:
         return "Nothing: every pin meets its requirements."
     return "No change is known; the table of each pin has what was found."
@@ -143,11 +144,11 @@ def _ticks(axis: FactorAxis) -> dict[str, Any]:
     }
 
 
-def _span(ends: tuple[float, float] | None, axis: FactorAxis | None) -> Span | None:
+def _span(ends: tuple[float, float] | None, axis: FactorAxis | None) -> AxisPart | None:
     if ends is None or axis is None:
         return None
     low, high = (100.0 * axis.at(end) for end in ends)
-    return Span(low, high - low)
+    return AxisPart(low, high - low)
 
 
 def _line(

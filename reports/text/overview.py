@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE
 from reports.data.changes import Remedy, command
 from reports.data.decision import limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
@@ -20,6 +20,7 @@ from reports.tables.strength.changes import SINGULARITY_REMEDIES
 from reports.tables.strength.margins import not_made_briefly
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
+MAX_NAMED_CASES = 4
 MAX_PEAKS = 3  # pins whose largest stress is told in a sentence
 LARGE_FORCE = 0.5  # of the largest force: what passes through the same pins
 STRONGER = 3.0  # times the strength, which no other steel has
@@ -39,9 +40,9 @@ def decisions(results: Results) -> str:
 
 
 def why(results: Results, most: int = MAX_PEAKS) -> Content:
-    """Return sentences on the forces, which internal forces govern, and the largest stresses.
+    """Return sentences on the forces, the internal forces that govern, and the largest stresses.
 
-    most: pins whose stresses are told.
+    most: number of pins with their stress.
     """
     lines = [line for line in pin_lines(results) if line.row.max_von_mises]
     if not lines:
@@ -53,7 +54,7 @@ def why(results: Results, most: int = MAX_PEAKS) -> Content:
 
 
 def actions(results: Results, study: str = "") -> Content:
-    """Return what brings the pins to their factor, the command that sizes them last.
+    """Return changes that bring the pins to their factor, and last the command that sizes them.
 
     study: its path, by default its name.
     """
@@ -96,7 +97,7 @@ def certainty(results: Results) -> Content:
 
 
 def skipped_checks(results: Results) -> Content:
-    """Return a sentence on what was not checked, and for want of what; nothing if all was."""
+    """Return a sentence on the checks that lack a number; nothing if all were made."""
     without = [x.pin for x in pin_lines(results) if _without_range(x.row)]
     parts = [f"joint range of {names(without)}"] if without else []
     parts += [text] if (text := not_made_briefly(results)) else []
@@ -104,7 +105,7 @@ def skipped_checks(results: Results) -> Content:
 
 
 def measure_first(unknown: Sequence[Unknown]) -> Content:
-    """Return a sentence on what to measure first."""
+    """Return a sentence on the open value to measure first."""
     matters = [x for x in unknown if x.ratio > NO_SPREAD]
     if not matters:
         return []
@@ -211,12 +212,27 @@ def _without_range(row: PinResult) -> bool:
 
 
 def _also(results: Results, lines: Sequence[PinLine]) -> str:
-    """Return a sentence on the rows that are not safe besides the worst of each pin."""
+    """Return sentences on the rows that are not safe besides the worst of each pin, by case."""
     shown = {(x.row.pin, x.row.case) for x in lines}
     more = [r for r in results.pins if r.outcome not in GOOD and (r.pin, r.case) not in shown]
-    told = (f"{r.pin} {factor_range(r)} ({r.case})" for r in more[:MAX_NAMED_PINS])
-    rest = f" and {len(more) - MAX_NAMED_PINS} rows more" if len(more) > MAX_NAMED_PINS else ""
-    return f"Also not safe: {', '.join(told)}{rest}." if more else ""
+    by_case: dict[str, dict[str, list[str]]] = {}
+    for row in sorted(more, key=lambda r: OUTCOME_ORDER[r.outcome]):
+        by_case.setdefault(row.case, {}).setdefault(row.outcome, []).append(row.pin)
+    told = [
+        f"in {case} " + ", ".join(f"{names(p)} {_state(s, p)}" for s, p in of.items())
+        for case, of in by_case.items()
+    ]
+    if len(told) > MAX_NAMED_CASES:
+        return f"Pins are not safe in {len(told)} other cases either (safety_factors.csv)."
+    return f"Also {'; '.join(told)}." if told else ""
+
+
+def _state(outcome: str, pins: Sequence[str]) -> str:
+    """Return an outcome as the verb of some pins."""
+    plural = len(pins) > 1
+    if outcome == NOT_DECIDED:
+        return "are not decided" if plural else "is not decided"
+    return outcome.removesuffix("s") if plural else outcome
 
 
 def _quiet(results: Results, case: QuietCase, pins: int) -> str:
@@ -309,7 +325,7 @@ def _exceeded(lines: Sequence[PinLine]) -> Content:
 
 
 def _singular(lines: Sequence[PinLine]) -> Content:
-    """Return what removes the singularities that govern pins that are not safe."""
+    """Return the remedies of the singularities that govern pins that are not safe."""
     rows = [x.row for x in lines if x.outcome not in GOOD]
     kinds = [zone.kind for row in rows for zone in row.singular_at if zone.governs]
     ways = [

@@ -159,9 +159,9 @@ def not_made_words(results: Results) -> list[str]:
 
 
 def not_made_briefly(results: Results) -> str:
-    """Return the missing data as a clause without the checks; empty where all were made.
+    """Return the missing data as a clause without the checks; empty if all were made.
 
-    Strengths of a single material are told as what it lacks.
+    If a single material lacks strengths, it is named.
     """
     every = skipped(results)
     alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from assess.judgement import NOT_DECIDED
+from assess.judgement import DEPENDS
 from assess.strength.model_stress import YIELD_METHOD
 from reports.data.overview import PinLine
 from reports.data.results import Results, Units
@@ -105,10 +105,11 @@ def overview_table(results: Results, lines: Sequence[PinLine], required: float) 
 
 
 def outcome_words(line: PinLine) -> str:
-    """Return the outcome of a pin, with the reason of one that is not decided or yields."""
-    if line.check.row is None or line.outcome == NOT_DECIDED:
-        return line.outcome if line.check.row is None else result_words(line.row)
-    return f"{line.outcome} (yields)" if line.row.yields and line.row.required else line.outcome
+    """Return the outcome of a pin, with what qualifies its factor: "not decided: singular", "fails
+    (yields)".
+    """
+    by_row = line.check.row is not None and line.outcome != DEPENDS
+    return result_words(line.row) if by_row else line.outcome
 
 
 def spread_words(line: PinLine) -> str:
