@@ -17,7 +17,7 @@ from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.pins import LugTable
+from pinstress.study.schema.lugs import LugTable
 
 # Of the pin's radius: what steps of a clearance are parts of, as it may be none
 CLEARANCE_SCALE = 1e-3

@@ -12,7 +12,8 @@ from fea.support.lugs.lug import Bushing, Lug, LugRange
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.pins import LugRangeTable, LugTable, PinTable
+from pinstress.study.schema.lugs import LugRangeTable, LugTable
+from pinstress.study.schema.pins import PinTable
 
 EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
 # Of the outer diameter: distance from the bore's centre to where the link clamps the eye
