@@ -71,7 +71,13 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
 
 def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:
     pin = dimension.changed(value)
-    return pin, task.material, known_lugs(study, pin)
+    old = {lug.connection: lug for lug in task.lugs}
+    # A fit has another clearance in the next step of sizes; the derivative is within one.
+    lugs = tuple(
+        replace(lug, clearance=old[lug.connection].clearance, range=old[lug.connection].range)
+        for lug in known_lugs(study, pin)
+    )
+    return pin, task.material, lugs
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:

@@ -123,7 +123,7 @@ def deviations(tolerance_class: str, size: float) -> tuple[float, float]:
     letter, grade = match[1], int(match[2])
     millimetres = round(1e3 * size, 9)
     if not 0.0 < millimetres <= SIZE_LIMITS[-1]:
-        raise _not_included(tolerance_class, f"sizes are up to {SIZE_LIMITS[-1]} mm")
+        raise _not_included(tolerance_class, f"sizes are above 0 and up to {SIZE_LIMITS[-1]} mm")
     if grade not in STANDARD_TOLERANCES:
         least, most = min(STANDARD_TOLERANCES), max(STANDARD_TOLERANCES)
         raise _not_included(tolerance_class, f"the grades included are {least} to {most}")

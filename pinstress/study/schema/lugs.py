@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import (
     Length,
     NotNegativeLength,
@@ -31,7 +32,8 @@ class LugRangeTable(StrictTable):
     """Between what values something of a lug may lie: [lower, upper]."""
 
     clearance: tuple[Length, Length] | None = None
-    """Default: none, and twice the given (0.002 of the diameter where none is given)."""
+    """Default: that of the `fit`; else none, and twice the given (0.002 of the diameter where none
+    is given)."""
     stiffness: tuple[Times, Times] | None = None
     """Times that of the lug as described. Default: [0.5, 2]."""
     tilt: tuple[Tilt, Tilt] | None = None
@@ -47,8 +49,12 @@ class LugTable(StrictTable):
     """Outer diameter of the eye. Default: 2.5 times the diameter of the band."""
     material: str | None = None
     """Name of a `[material]`. Default: the pin's material."""
-    clearance: Length = 0.0
-    """Diameter of the bore minus that of the pin; negative for interference."""
+    clearance: Length | None = None
+    """Diameter of the bore minus that of the pin; negative for interference. Default: the middle of
+    the `fit`, else 0."""
+    fit: str | None = None
+    """Tolerance classes of bore and pin by ISO 286-1, as "H7/f7", at the diameter of the band. Not
+    with `clearance`."""
     edge_radius: NotNegativeLength = 0.0
     """Radius of the edges of the bore. 0 is sharp, where pressure has no bound: then
     results have no peak of pressure there."""
@@ -59,6 +65,12 @@ class LugTable(StrictTable):
     """A bushing bonded in the eye."""
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
+
+    @model_validator(mode="after")
+    def _one_clearance(self) -> "LugTable":
+        if self.fit is not None and self.clearance is not None:
+            raise ArgumentError("give fit or clearance, not both", "give-one")
+        return self
 
 
 def with_lug_defaults(raw: dict[str, Any]) -> dict[str, Any]:
@@ -102,9 +114,17 @@ def _connections(pin: dict[str, Any]) -> Iterator[str]:
 
 
 def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
-    """Return a lug with the keys of the defaults that it omits, those of its own tables as well."""
+    """Return a lug with the keys of the defaults that it omits, those of its own tables as well.
+
+    Its own fit or clearance replaces what the defaults say of clearance.
+    """
     if not isinstance(lug, dict):
         return lug
+    if "fit" in lug or "clearance" in lug:
+        defaults = {k: v for k, v in defaults.items() if k not in ("fit", "clearance")}
+    if "fit" in lug and isinstance(defaults.get("range"), dict):
+        known = {k: v for k, v in defaults["range"].items() if k != "clearance"}
+        defaults = {**defaults, "range": known}
     inner = {
         key: {**defaults[key], **value}
         for key, value in lug.items()

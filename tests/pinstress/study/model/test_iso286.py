@@ -149,7 +149,7 @@ def test_a_step_of_sizes_has_its_upper_end(size: float) -> None:
         (40, "K7/h6", "deviation K is not included"),
         (200, "H7/p6", "deviation p above 180 mm is not included"),
         (40, "H4/h7", "H4 is not included: the grades included are 5 to 16"),
-        (501, "H7/h6", "H7 is not included: sizes are up to 500 mm"),
+        (501, "H7/h6", "H7 is not included: sizes are above 0 and up to 500 mm"),
         (1, "H7/a7", "a7 is not included: sizes are above 1 mm"),
         (40, "H7", "'H7' is not a fit; give the classes of hole and shaft, as H7/f7"),
         (40, "f7/H7", "is not a fit"),

@@ -88,6 +88,17 @@ def test_the_keys_of_a_lug_come_first_also_those_of_its_own_tables() -> None:
     assert lugs(study(defaults, given)) == lugs(by_hand(written))
 
 
+@pytest.mark.parametrize("own", ["clearance = 0.1", 'fit = "H7/g6"'])
+@pytest.mark.parametrize("default", ["clearance = 0.02", 'fit = "H8/e8"'])
+def test_what_a_lug_says_of_its_clearance_replaces_what_the_defaults_say(
+    own: str, default: str
+) -> None:
+    defaults = f"[lug_defaults]\n{default}\nrange = {{ tilt = ['free', 'free'] }}\n"
+    written = dict.fromkeys(EVERY, default + "\nrange.tilt = ['free', 'free']")
+    written["M"] = own + "\nrange.tilt = ['free', 'free']"
+    assert lugs(study(defaults, f"lug.M = {{ {own} }}")) == lugs(by_hand(written))
+
+
 def test_a_pin_that_says_so_gets_no_lugs_and_cannot_have_any() -> None:
     assert lugs(study(pin="lugs = false"))["P"] == ()
     with pytest.raises(InputError, match=r"pin.P: lugs = false, but lugs are given"):
