@@ -22,7 +22,7 @@ from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.sequence import chosen_cases
-from pinstress.study.model.tasks import Task
+from pinstress.study.model.tasks import Task, assumed_distribution
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
@@ -150,6 +150,7 @@ def _results(
         assumptions=(
             *table.assumptions,
             *factor_assumption(study, (row for _, row in rows)),
+            *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
