@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal
@@ -28,6 +28,7 @@ from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
+LoadsOf = Callable[[Study, list[str]], dict[str, CaseLoads]]  # of cases, by their names
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -80,6 +81,7 @@ def prepare(
     memory: float | None = None,
     also: ExtraFields = None,
     limit_load: bool = False,
+    loads_of: LoadsOf = all_loads,
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
 
@@ -89,6 +91,7 @@ def prepare(
     also: fields along the whole motion, or of the whole of a revolved pin.
     limit_load: compute the limit load of every row that yields, however long it takes; otherwise
     the study decides, where "auto" gives each 20 s of processor time.
+    loads_of: gives the loads of cases.
 
     Raises: InputError for bad input.
     """
@@ -102,7 +105,7 @@ def prepare(
     requirement = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
-    loads = wrong.attempt(lambda: all_loads(study, chosen))
+    loads = wrong.attempt(lambda: loads_of(study, chosen))
     shapes = {name: wrong.attempt(partial(pin_of, study, name)) for name in names}
     wrong.tell()
     assert published is not None

@@ -21,7 +21,7 @@ from reports.tables.strength.margins import not_made_briefly
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
 MAX_NAMED_CASES = 4
-MAX_PEAKS = 3  # pins whose largest stress is told in a sentence
+MAX_PEAKS = 3  # largest stresses in a sentence
 LARGE_FORCE = 0.5  # of the largest force: what passes through the same pins
 STRONGER = 3.0  # times the strength, which no other steel has
 MEASURED = {

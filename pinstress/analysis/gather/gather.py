@@ -13,6 +13,7 @@ from fea.core.peak import Maximum
 from fea.support.records import JointResult
 from geometry import Cut, Flat, Hole, Passage, PinLike, Slot
 from geometry.shape.cut_edges import drawn
+from pinbase.records import in_units
 from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
@@ -79,6 +80,18 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
         spectrum_margins=tuple(fatigue_margins),
     )
     return _in_study_units(results, study)
+
+
+def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
+    """Return the rows of a plan, as `results_of` has them, by pin and case."""
+    study = plan.study
+    return {
+        (row.pin, row.case): in_units(
+            _completed(study, plan.loads[row.case], task, row, plan.published), study.system.factor
+        )
+        for task, outcome in zip(plan.tasks, outcomes, strict=True)
+        for row in outcome.rows
+    }
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
