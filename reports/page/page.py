@@ -14,7 +14,7 @@ from reports.format.template import environment
 from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, headline, verdict_words
 from reports.page.drawing_places import place_marks
 from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
-from reports.page.loads import load_part, timings
+from reports.page.loads import largest_force, load_part, timings
 from reports.page.motion import motion_parts
 from reports.page.paper import document
 from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
@@ -62,7 +62,7 @@ def render(results: Results, directory: Path) -> str:
     return _template().render(
         results=shown,
         units=shown.units,
-        answer={"headline": headline(results), "summary": summary(results)},
+        answer=_answer(results),
         factors=factor_part(shown),
         envelope=envelope_part(results),
         margins=margin_part(shown),
@@ -82,6 +82,13 @@ def render(results: Results, directory: Path) -> str:
         timings=timings(results),
         scripts=script_part(plots, document(results, printed)),
     )
+
+
+def _answer(results: Results) -> dict[str, str]:
+    """Return headline and summary; of loads alone, the largest force on a pin."""
+    if results.pins or not results.reactions:
+        return {"headline": headline(results), "summary": summary(results)}
+    return {"headline": largest_force(results), "summary": ""}
 
 
 def _template() -> Template:
