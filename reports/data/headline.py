@@ -45,7 +45,7 @@ class JudgedCheck:
 def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
     rows = {(row.pin, row.case): row for row in results.pins}
-    checks = [_of_row(row, limit(results)) for row in results.pins]
+    checks = [_of_row(row, limit(row)) for row in results.pins]
     checks += (
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins

@@ -201,7 +201,7 @@ def headline(results: Results) -> str:
 
 def _factor_words(row: PinResult, results: Results) -> tuple[str, str]:
     """Return the safety factor and the required one as text."""
-    required = results.required_safety_factor
+    required = row.required
     needed = "1 at yield" if required is None else f"{short(required)} required"
     return f"FoS {factor_range(row)}", needed
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from pinbase.records import plain
 from reports.data.changes import command
-from reports.data.decision import limit, utilisation
+from reports.data.decision import largest_factor, limit, utilisation
 from reports.data.results import PinResult, Results
 from reports.format.files.csv import Cell
 from reports.format.words import OUTCOME_MEANINGS
@@ -42,7 +42,7 @@ def factor_part(results: Results) -> dict[str, Any]:
             {
                 "outcome": row.pin.outcome,
                 "cells": [(c.shown(row), _sorted_by(c.cell(row))) for c in table.columns],
-                "bar": _bar(row.pin, limit(results)),
+                "bar": _bar(row.pin),
             }
             for row in table.rows
         ],
@@ -59,7 +59,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
         "grid": grid_of(changes_table(results), results.units),
         "introduction": REMEDIES_NOTE,
         "notes": change_notes(results),
-        "command": command(results.changes, results.study, results.required_safety_factor),
+        "command": command(results.changes, results.study, largest_factor(results.pins)),
     }
 
 
@@ -90,8 +90,8 @@ def _sorted_by(value: Cell) -> str:
     return "" if value is None else str(value)
 
 
-def _bar(pin: PinResult, required: float) -> Bar | None:
-    used = utilisation(pin, required)
+def _bar(pin: PinResult) -> Bar | None:
+    used = utilisation(pin, limit(pin))
     if used is None:
         return None
     low, high = (100.0 * min(end, FULL_BAR_UTILISATION) / FULL_BAR_UTILISATION for end in used)

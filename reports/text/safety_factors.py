@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from assess.judgement import BELOW_YIELD, FAILS, SAFE, YIELDS
 from reports.data.changes import command
-from reports.data.decision import limit, worst_first
+from reports.data.decision import common_factor, largest_factor, limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results
@@ -71,7 +71,7 @@ def _print_changes(results: Results, console: Console, study: str) -> None:
         console.print(Text(note))
     sensitivities = shown_sensitivities(_of_changes(results), MAX_BRIEF_ROWS)
     print_table(console, "Sensitivities", sensitivities, results.units)
-    if line := command(results.changes, study, results.required_safety_factor):
+    if line := command(results.changes, study, largest_factor(results.pins)):
         console.print(Text(line), soft_wrap=True)  # to be copied
 
 
@@ -83,7 +83,7 @@ def _of_changes(results: Results) -> Results:
 
 def _brief(results: Results) -> Table[FactorRow]:
     """Return the safety factors in few words, in an order of its own."""
-    needed = results.required_safety_factor
+    needed = common_factor(results.pins)
     brief: dict[str, dict[str, Any]] = {
         "pin": {"heading": "Pin"},
         "case": {"heading": "Case"},
@@ -94,7 +94,7 @@ def _brief(results: Results) -> Table[FactorRow]:
         },
         "utilisation": {
             "heading": "Utilisation",
-            "text": lambda row: utilisation_range(row.pin, limit(results), RANGE_DASH),
+            "text": lambda row: utilisation_range(row.pin, limit(row.pin), RANGE_DASH),
         },
         "max_von_mises": {"heading": "max von\nMises"},
         "error_estimate": {"dimension": "", "text": lambda row: _error(row.pin)},
