@@ -11,7 +11,7 @@ from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
 from reports.format.numbers import engineering, short
-from reports.format.ranges import factor_range
+from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 
 BEYOND_YIELD = "beyond yield"
@@ -228,12 +228,25 @@ def _of_margin(check: JudgedCheck) -> str:
     """Return the sentence on a check other than that of the model's stress against yield."""
     if check.outcome == FAILS:
         return f"Pin {check.pin} fails: {_margin_words(check)}."
+    if check.outcome == DEPENDS:
+        return (
+            f"Pin {check.pin} is safe as described, but within the study's ranges it may fail: "
+            f"{_margin_words(check)}."
+        )
     why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)
     return f"Whether pin {check.pin} is safe is not decided: {why}."
 
 
 def _margin_words(check: JudgedCheck) -> str:
     case = f" ({check.case})" if check.case else ""
+    name = "" if check.stated else "margin of safety "
+    return f"{check.check}, {name}{spare_words(check)}{case}"
+
+
+def spare_words(check: JudgedCheck) -> str:
+    """Return the margin of safety of a check, or the factor that a requirement states for it."""
+    if check.stated:
+        factor = factor_text(check.factor, check.required)
+        return f"factor {factor}, {short(check.required)} required"
     spare = inf if check.used == 0.0 else 1.0 / check.used - 1.0
-    sign = "+" if spare > 0.0 else ""
-    return f"{check.check}, margin of safety {sign}{engineering(spare, 3)}{case}"
+    return f"{'+' if spare > 0.0 else ''}{engineering(spare, 3)}"
