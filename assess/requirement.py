@@ -26,6 +26,7 @@ LEVELS_OF_CHECK: Mapping[RequiredCheck, tuple[RequiredLevel, ...]] = MappingProx
         "fatigue": ("limit",),
     }
 )
+TO_BE_RUN = " to be run"  # the end of what a requirement needs that the run leaves out
 REQUIRED_LEVELS: tuple[RequiredLevel, ...] = "limit", "proof", "ultimate"
 REQUIRED_CHECKS = tuple(LEVELS_OF_CHECK)  # in the order of tables
 
@@ -45,18 +46,3 @@ class StatedRequirement:
     check: RequiredCheck
     factor: float
     needs: str = ""
-
-
-def yield_factor(
-    stated: tuple[StatedRequirement, ...], pin: str, case: str, default: float | None
-) -> float | None:
-    """Return the largest factor against yield that is required of a pin in a case.
-
-    default: the factor of a study, which a requirement on yield at limit load replaces; proof loads
-    come on top.
-    """
-    factors = {
-        s.level: s.factor for s in stated if (s.pin, s.case, s.check) == (pin, case, "yield")
-    }
-    limit = factors.get("limit", default)
-    return max((f for f in (limit, factors.get("proof")) if f is not None), default=None)

@@ -51,6 +51,7 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """The inputs of an analysis before anything is solved; all have been read and checked.
 
+    pins: names of those that were chosen, also where no case loads them.
     checked: the task whose pin the beam check compares, if any.
     also: the fields that are wanted in addition to those of the model at the governing instant.
     sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
@@ -69,6 +70,7 @@ class Plan:
     sensitive: bool = False
     limit_load: bool = False
     explained: bool = True
+    pins: tuple[str, ...] = ()
 
 
 def prepare(
@@ -129,7 +131,10 @@ def prepare(
             )
         if task.lugs:
             _require_model(study, requirement.model, task.pin.name)
-    return Plan(study, requirement, loads, todo, published, checked, also, limit_load=limit_load)
+    return Plan(
+        study, requirement, loads, todo, published, checked, also, limit_load=limit_load,
+        pins=tuple(names),
+    )  # fmt: skip
 
 
 def _require_model(study: Study, model: Model, pin: str) -> None:

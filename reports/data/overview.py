@@ -100,7 +100,7 @@ def quiet_cases(results: Results, lines: list[PinLine]) -> list[QuietCase]:
 
 def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLine:
     rows = [row for row in results.pins if row.pin == check.pin and check.case in ("", row.case)]
-    row = check.row or min(rows, key=lambda row: (-_used(row, limit(results)), row.case))
+    row = check.row or min(rows, key=lambda row: (-_used(row, limit(row)), row.case))
     error = factor_ends(row) if row.safety_factor else None
     diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None
     return PinLine(row, check, error, factor_spread(row), diameter)

@@ -24,6 +24,7 @@ from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Level, Margin
 from assess.requirement import (
     REQUIRED_CHECKS,
     REQUIRED_LEVELS,
+    TO_BE_RUN,
     RequiredCheck,
     RequiredLevel,
     StatedRequirement,
@@ -82,6 +83,24 @@ class RequirementRow:
     outcome: Outcome
     needs: str = ""
     stated: bool = True
+
+    @property
+    def title(self) -> str:
+        """The check and its loads in words: "yield at limit load"."""
+        if self.check == "fatigue":
+            return FATIGUE_LIFE
+        check = "collapse" if self.check == "limit load" else self.check
+        return f"{check} at {self.level} load"
+
+    @property
+    def where(self) -> str:
+        """The pin with its case: "E (landing)"."""
+        return f"{self.pin} ({self.case})" if self.case else self.pin
+
+    @property
+    def left_out(self) -> bool:
+        """Whether only a choice of pins or cases keeps the run from checking it."""
+        return self.needs.endswith(TO_BE_RUN)
 
     @property
     def key(self) -> tuple[str, str, RequiredLevel, str]:
@@ -209,6 +228,8 @@ def _assumed(
         groups.setdefault((m.level, check), []).append(m)
     for (level, check), same in groups.items():
         factor = max(same, key=lambda m: m.used).factor
+        if check == "yield" and row is not None and factor <= (row.required or 0.0):
+            continue  # by what is stated, at limit or proof load
         plain = RequirementRow(pin, case, level, check, factor, None, "not checked", stated=False)
         if check == "fatigue":
             yield replace(_of_fatigue(plain, results, same), stated=True)  # by fatigue.life

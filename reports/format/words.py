@@ -11,7 +11,7 @@ from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
 from reports.format.numbers import engineering, short
-from reports.format.ranges import factor_range
+from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 
 BEYOND_YIELD = "beyond yield"
@@ -213,7 +213,7 @@ def _failing(checks: Sequence[JudgedCheck], results: Results) -> str:
     one = len(checks) == 1
     verb = "fails" if one else "fail"
     if by_stress and len(required) == 1:
-        asked = results.required_safety_factor is not None
+        asked = all(check.row and check.row.required for check in checks)
         missed = f"{'misses' if one else 'miss'} the required factor {short(required.pop())}"
         verb = missed if asked else ("yields" if one else "yield")
     case = f" ({cases.pop()})" if len(cases) == 1 and "" not in cases else ""
@@ -231,7 +231,7 @@ def _failing_pin(check: JudgedCheck, with_case: bool) -> str:
 
 def _factor_words(row: PinResult, results: Results) -> tuple[str, str]:
     """Return the safety factor and the required one as text."""
-    required = results.required_safety_factor
+    required = row.required
     needed = "1 at yield" if required is None else f"{short(required)} required"
     return f"FoS {factor_range(row)}", needed
 
@@ -258,12 +258,25 @@ def _of_margin(check: JudgedCheck) -> str:
     """Return the sentence on a check other than that of the model's stress against yield."""
     if check.outcome == FAILS:
         return f"Pin {check.pin} fails: {_margin_words(check)}."
+    if check.outcome == DEPENDS:
+        return (
+            f"Pin {check.pin} is safe as described, but within the study's ranges it may fail: "
+            f"{_margin_words(check)}."
+        )
     why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)
     return f"Whether pin {check.pin} is safe is not decided: {why}."
 
 
 def _margin_words(check: JudgedCheck) -> str:
     case = f" ({check.case})" if check.case else ""
+    name = "" if check.stated else "margin of safety "
+    return f"{check.check}, {name}{spare_words(check)}{case}"
+
+
+def spare_words(check: JudgedCheck) -> str:
+    """Return the margin of safety of a check, or the factor that a requirement states for it."""
+    if check.stated:
+        factor = factor_text(check.factor, check.required)
+        return f"factor {factor}, {short(check.required)} required"
     spare = inf if check.used == 0.0 else 1.0 / check.used - 1.0
-    sign = "+" if spare > 0.0 else ""
-    return f"{check.check}, margin of safety {sign}{engineering(spare, 3)}{case}"
+    return f"{'+' if spare > 0.0 else ''}{engineering(spare, 3)}"

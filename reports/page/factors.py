@@ -6,6 +6,7 @@ from typing import Any
 
 from pinbase.records import plain
 from reports.data.changes import command
+from reports.data.decision import largest_factor
 from reports.data.results import Results
 from reports.format.files.csv import Cell
 from reports.format.words import OUTCOME_MEANINGS
@@ -46,7 +47,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
         "grid": grid_of(changes_table(results), results.units),
         "introduction": REMEDIES_NOTE,
         "notes": change_notes(results),
-        "command": command(results.changes, results.study, results.required_safety_factor),
+        "command": command(results.changes, results.study, largest_factor(results.pins)),
     }
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
-from reports.data.decision import limit
+from reports.data.decision import common_factor, limit
 from reports.data.overview import GOOD, PinLine, factor_at, pin_lines
 from reports.data.requirement_matrix import MatrixRow, matrix_rows
 from reports.data.requirements import requirement_rows
@@ -69,7 +69,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     """
     lines = pin_lines(results)
     unknown = unknowns(line.row for line in lines)
-    axis = factor_axis(lines, limit(results))
+    axis = factor_axis(lines)
     matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
     steps = actions(results)
     linkage = draw_linkage(results, lines, anchors)
@@ -114,8 +114,8 @@ def _about(results: Results, lines: Sequence[PinLine]) -> str:
         parts.append(text)
     named = ", ".join(cases) if len(cases) <= MAX_UNKNOWNS else f"{len(cases)} cases"
     parts.append(f"case{'s' * (len(cases) != 1)} {named}")
-    if results.required_safety_factor is not None:
-        parts.append(f"required factor {short(results.required_safety_factor)}")
+    if (required := common_factor(results.pins)) is not None:
+        parts.append(f"required factor {short(required)}")
     return "; ".join(parts)
 
 
@@ -136,6 +136,8 @@ def _css(outcome: str) -> str:
 
 def _ticks(axis: FactorAxis) -> dict[str, Any]:
     ticks = [(short(tick), 100.0 * axis.at(tick)) for tick in axis.ticks]
+    if axis.required is None:
+        return {"required": None, "label": "required", "ticks": ticks}
     required = 100.0 * axis.at(axis.required)
     return {
         "required": required,
@@ -165,6 +167,7 @@ def _line(
         "factor": factor_range(line.row),
         "error": _span(line.error, axis),
         "error_words": error_words(line),
+        "required": 100.0 * axis.at(limit(line.row)) if axis else None,
         "spread": _span(line.spread, axis),
         "spread_words": spread_words(line),
         "place": place_words(line.row, shape),

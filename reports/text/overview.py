@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE
 from reports.data.changes import Remedy, command
-from reports.data.decision import limit
+from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
 from reports.data.overview import GOOD, PinLine, QuietCase, pin_lines, quiet_cases
 from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
@@ -68,7 +68,7 @@ def actions(results: Results, study: str = "") -> Content:
         )
     parts += _eyes(results, needed)
     parts += _other_ways(results)
-    line = command(results.changes, study or results.study, results.required_safety_factor)
+    line = command(results.changes, study or results.study, largest_factor(results.pins))
     return [*parts, *([line] if line else [])]
 
 
@@ -237,7 +237,7 @@ def _state(outcome: str, pins: Sequence[str]) -> str:
 
 def _quiet(results: Results, case: QuietCase, pins: int) -> str:
     low = case.lowest
-    state = "safe" if results.required_safety_factor else BELOW_YIELD
+    state = "safe" if low is not None and low.required else BELOW_YIELD
     every = "all are" if case.pins > 1 else "the pin is"
     if 1 < case.pins < pins:
         every = f"the {case.pins} pins solved are"
@@ -307,7 +307,7 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
         for x in lines
     ]
     first = lines[0].row
-    permitted = (first.yield_strength or 0.0) / limit(results)
+    permitted = (first.yield_strength or 0.0) / limit(first)
     if not permitted:
         return f"Largest stress: {'; '.join(told)}."
     word = "permitted" if first.required else "the yield strength"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
+from reports.data.decision import common_factor, largest_factor
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
@@ -31,9 +32,9 @@ def caveats(results: Results) -> list[str]:
 
 def _against_required(results: Results) -> str:
     """Return a sentence on the outcome of every pin by the worst of its checks."""
-    required = results.required_safety_factor
+    required = common_factor(results.pins)
     worst = list(worst_checks(results).values())
-    good = SAFE if required is not None else BELOW_YIELD
+    good = BELOW_YIELD if largest_factor(results.pins) is None else SAFE
     safe = pins_with(worst, SAFE, BELOW_YIELD)
     factor = "" if required is None else f" (required factor {short(required)})"
     text = (

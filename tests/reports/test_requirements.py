@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from assess.requirement import StatedRequirement, yield_factor
+from assess.requirement import StatedRequirement
 from pinstress import run, study_from
 from pinstress.analysis.results import RunResults
 from reports.data.requirements import RequirementRow, requirement_rows
@@ -175,18 +175,6 @@ def test_fatigue_without_a_spectrum_and_rows_that_are_left_out(strong: RunResult
     assert the(rows, "limit", "fatigue").needs == "fatigue"
     (left_out,) = (r for r in rows if r.pin == "Q")
     assert (left_out.outcome, left_out.needs) == ("not checked", "pin Q to be run")
-
-
-def test_the_factor_of_a_row() -> None:
-    on_limit = StatedRequirement("P", "pull", "limit", "yield", 1.2)
-    on_proof = StatedRequirement("P", "pull", "proof", "yield", 1.4)
-    assert yield_factor((), "P", "pull", 1.5) == 1.5
-    assert yield_factor((), "P", "pull", None) is None
-    assert yield_factor((on_limit,), "P", "pull", 1.5) == 1.2
-    assert yield_factor((on_limit,), "P", "push", 1.5) == 1.5
-    assert yield_factor((on_proof,), "P", "pull", 1.5) == 1.5
-    assert yield_factor((on_proof, on_limit), "P", "pull", 1.5) == 1.4
-    assert yield_factor((on_proof,), "P", "pull", None) == 1.4
 
 
 def test_strengths_of_the_study_are_all_used() -> None:

@@ -15,6 +15,7 @@ from assess.strength.bending_arms import BendingArms, bending_arms
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
+from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import PinResult
@@ -32,7 +33,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     A pin with cuts is checked as if it had none.
     """
     loads = next(x for x in task.loads if x.case == row.case)
-    required = study.table.analysis.required_safety_factor
+    required = required_factor(study, row.pin, row.case)
     s, why = _situation(study, task, loads, row.joint)
     s = replace(s, row=SolvedRow(row.maximum, row.limit_load, required))
     rigid = row.verdict == "rigid"

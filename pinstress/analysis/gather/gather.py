@@ -22,6 +22,7 @@ from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.pins import far_ends, outline, weight
+from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
 from pinstress.study.model.tasks import Task, assumed_distribution
 from pinstress.study.reading.file import Study
@@ -71,6 +72,9 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
         fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
+        stated=stated_requirements(
+            study, [(row.pin, row.case) for _, row in rows], plan.pins, list(plan.loads)
+        ),
         beam_check=next((x.beam_check for x in outcomes if x.beam_check is not None), None),
         surfaces=tuple(surface for outcome in outcomes for surface in outcome.surfaces),
         changes=_worst_changes(outcomes),
