@@ -20,7 +20,7 @@ from pinstress.study.model.mechanism.linkage import determined, linkage
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import shape_notes, weight
 from pinstress.study.model.sequence import require_times
-from pinstress.study.model.tasks import tasks
+from pinstress.study.model.tasks import assumed_distribution, tasks
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import read_published
@@ -69,6 +69,7 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
     lines += map(_requirement, table.require)
+    lines += filter(None, [assumed_distribution(study, todo)])
     warnings = other_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)

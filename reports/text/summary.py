@@ -12,6 +12,7 @@ from reports.data.results import Results
 from reports.format.numbers import short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
+ALL_CONVERGED = "All maxima have converged"
 MAX_LISTED_CASES = 4  # cases of a pin; of more, their number is given
 
 
@@ -19,10 +20,14 @@ def summary(results: Results) -> str:
     """Return sentences on pins that are safe, those that are not, and rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (
-        _against_required, _depending, _without_range, _at_edges, _yielding, _negative, _unknown,
-    )  # fmt: skip
-    return " ".join(part for part in (way(results) for way in ways) if part)
+    decided = [_against_required(results), _depending(results)]
+    return " ".join(part for part in (*decided, *caveats(results)) if part)
+
+
+def caveats(results: Results) -> list[str]:
+    """Return sentences on what the maxima leave out, and on rows without one."""
+    ways = (_yielding, _unknown)
+    return [part for part in (way(results) for way in ways) if part] if results.pins else []
 
 
 def _against_required(results: Results) -> str:
@@ -153,7 +158,7 @@ def _unknown(results: Results) -> str:
         text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
-    return text.strip() or f"All maxima have converged to {short(100.0 * results.tolerance)} %."
+    return text.strip() or f"{ALL_CONVERGED} to {short(100.0 * results.tolerance)} %."
 
 
 def _count(number: int, noun: str) -> str:

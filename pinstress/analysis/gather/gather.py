@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
@@ -22,7 +23,7 @@ from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
-from pinstress.study.model.tasks import Task
+from pinstress.study.model.tasks import Task, assumed_distribution
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
@@ -153,6 +154,7 @@ def _results(
         assumptions=(
             *table.assumptions,
             *factor_assumption(study, (row for _, row in rows)),
+            *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
@@ -184,6 +186,7 @@ def _completed(
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
         loads=_governing_loads(task, here),
+        exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
         published_max_von_mises=published_stress,
         published_safety_factor=published_factor,

@@ -44,7 +44,8 @@ from reports.data.results import PinResult
 
 MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes
 MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # that are remembered, loads of each case
-TABLES_WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
+# Of which loads do not depend
+TABLES_WITHOUT_LOADS = ("pin", "lug_defaults", "material", "analysis")
 IGNORED_TABLES = ("vary", "published", "beam_check", "motion_check", "report")
 
 K = TypeVar("K")
@@ -202,7 +203,7 @@ class Evaluator:
         if table not in TABLES_WITHOUT_LOADS:
             return True
         study, mechanism = self.study.table, self.study.table.mechanism
-        if mechanism is None or table == "analysis":
+        if mechanism is None or table in ("lug_defaults", "analysis"):
             return False
         free = [
             name

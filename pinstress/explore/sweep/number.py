@@ -15,6 +15,7 @@ from typing import Any
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.file import Study, raw_study
 from pinstress.study.reading.in_python import key_parts
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
 from pinstress.study.schema.types import Probe
 from pinstress.study.schema.units import (
@@ -89,8 +90,9 @@ def number_at(study: Study, key: str) -> Number:
 
 def _single(study: Study, key: str) -> Number:
     raw = raw_study(study)
-    path = _path(study, raw, key)
-    value = _at(raw, path)
+    complete = with_lug_defaults(raw)
+    path = _path(study, complete, key)
+    value = _at(complete, path)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = "a table" if isinstance(value, Mapping) else "a list"
         what = "true or false" if isinstance(value, bool) else what
@@ -114,11 +116,15 @@ def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
 
 
 def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
-    """Return a copy of a study's raw content with another value at a path; the rest is shared."""
+    """Return a copy of a study's raw content with another value at a path; the rest is shared.
+
+    Tables of lugs that are only in lug_defaults are added.
+    """
     content = copy.copy(raw)
     here: Any = content
     for part in path[:-1]:
-        here[part] = copy.copy(here[part])
+        missing = isinstance(here, dict) and part not in here
+        here[part] = {} if missing else copy.copy(here[part])
         here = here[part]
     here[path[-1]] = value
     return content

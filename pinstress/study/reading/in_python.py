@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -54,14 +54,37 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
-        *parents, last = key_parts(study, key)
+        *parents, last = parts = key_parts(study, key)
         table = document
+        match parts:
+            case ["pin", str(pin), "lug", str(connection), *_]:
+                write_lug(document, study, pin, connection, parents[4:])
         for part in parents:
             table = _inside(study, table, part, key)
         if isinstance(last, int):
             _inside(study, table, last, key)  # an item that is there
         table[last] = _plain(value, key)
     return parse_study(study.path, tomlkit.dumps(document), study.located)
+
+
+def write_lug(
+    document: Any, study: Study, pin: str, connection: str, inner: Iterable[str | int] = ()
+) -> None:
+    """Write the empty table of a lug that is in a study only by its lug_defaults.
+
+    document: the study as tomlkit has it.
+    inner: names of tables in that of the lug, to be written, too.
+    """
+    import tomlkit
+
+    known = study.table.pin.get(pin)
+    if known is None or connection not in known.lug:
+        return
+    table = document["pin"][pin]
+    for name in ("lug", connection, *inner):
+        if name not in table:
+            table[name] = tomlkit.inline_table()
+        table = table[name]
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:

@@ -19,6 +19,7 @@ from pinstress.study.schema.cases import (
 )
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase
+from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.mechanism import (
     MechanismTable,
     RotaryDrive,
@@ -34,6 +35,9 @@ from pinstress.study.schema.tables import StudyTable
 def cross_references(table: StudyTable) -> Iterator[Wrong]:
     """Yield the references to things that do not exist."""
     bears: dict[str, str] = {}
+    common = _materials(table.lug_defaults or LugTable())
+    for at, made_of in common.items():
+        yield from _known(f"lug_defaults.{at}", "material", made_of, table.material)
     for name, pin in table.pin.items():
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
         surfaces = dict.fromkeys(connection for _, connection in pin.connections)
@@ -42,11 +46,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
             yield from _known(key, "connection or segment", connection, surfaces)
-            for at, made_of in (
-                ("material", lug.material),
-                ("bushing.material", None if lug.bushing is None else lug.bushing.material),
-            ):
-                if made_of is not None:
+            for at, made_of in _materials(lug).items():
+                if made_of not in common.values():
                     yield from _known(f"{key}.{at}", "material", made_of, table.material)
         for key, connection in pin.connections:
             if connection in bears:
@@ -81,16 +82,21 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
                 yield from _known(f"{key}.{field}", field, getattr(check, field), pool)
 
 
+def _materials(lug: LugTable) -> dict[str, str]:
+    """Return the materials that a lug names, by their keys."""
+    bushing = {} if lug.bushing is None else {"bushing.material": lug.bushing.material}
+    return bushing if lug.material is None else {"material": lug.material, **bushing}
+
+
 def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
     """Yield errors for bearing strengths with which no pressure is compared.
 
     They belong to materials of no pin on which a link bears, and of no lug or bushing.
     """
-    bears: set[str | None] = set()
+    bears: set[str] = set()
     for pin in table.pin.values():
         lugs = pin.lug.values()
-        bears |= {lug.material for lug in lugs}
-        bears |= {lug.bushing.material for lug in lugs if lug.bushing is not None}
+        bears |= {made_of for lug in lugs for made_of in _materials(lug).values()}
         if pin.connections or lugs:
             bears.add(pin.material)
     for name, material in table.material.items():
