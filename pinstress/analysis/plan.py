@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal
@@ -29,6 +29,7 @@ from pinstress.study.schema.cases import GivenCase, LegCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
+LoadsOf = Callable[[Study, list[str]], dict[str, CaseLoads]]  # of cases, by their names
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -55,6 +56,7 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """The inputs of an analysis before anything is solved; all have been read and checked.
 
+    pins: names of those that were chosen, also where no case loads them.
     checked: the task whose pin the beam check compares, if any.
     also: the fields that are wanted in addition to those of the model at the governing instant.
     sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
@@ -73,6 +75,7 @@ class Plan:
     sensitive: bool = False
     limit_load: bool = False
     explained: bool = True
+    pins: tuple[str, ...] = ()
 
 
 def prepare(
@@ -85,6 +88,7 @@ def prepare(
     memory: float | None = None,
     also: ExtraFields = None,
     limit_load: bool = False,
+    loads_of: LoadsOf = all_loads,
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
 
@@ -94,6 +98,7 @@ def prepare(
     also: fields along the whole motion, or of the whole of a revolved pin.
     limit_load: compute the limit load of every row that yields, however long it takes; otherwise
     the study decides, where "auto" gives each 20 s of processor time.
+    loads_of: gives the loads of cases.
 
     Raises: InputError for bad input.
     """
@@ -107,7 +112,7 @@ def prepare(
     requirement = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
-    loads = wrong.attempt(lambda: all_loads(study, chosen))
+    loads = wrong.attempt(lambda: loads_of(study, chosen))
     shapes = {name: wrong.attempt(partial(pin_of, study, name)) for name in names}
     wrong.tell()
     assert published is not None
@@ -131,7 +136,10 @@ def prepare(
             )
         if task.lugs:
             _require_model(study, requirement.model, task.pin.name)
-    return Plan(study, requirement, loads, todo, published, checked, also, limit_load=limit_load)
+    return Plan(
+        study, requirement, loads, todo, published, checked, also, limit_load=limit_load,
+        pins=tuple(names),
+    )  # fmt: skip
 
 
 def _require_model(study: Study, model: Model, pin: str) -> None:

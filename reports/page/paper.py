@@ -6,7 +6,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 from reports.data.changes import command
-from reports.data.decision import worst_first
+from reports.data.decision import largest_factor, worst_first
 from reports.data.envelope import EnvelopeCell, detailed_rows
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
@@ -111,7 +111,7 @@ def _changes(results: Results) -> Content | None:
     if not results.changes:
         return None
     notes = [REMEDIES_NOTE, *change_notes(results)]
-    size = command(results.changes, results.study, results.required_safety_factor)
+    size = command(results.changes, results.study, largest_factor(results.pins))
     grid = changes_table(results).grid(results.units)
     return {"grid": asdict(grid), "notes": notes, "command": size or None}
 

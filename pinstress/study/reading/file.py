@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import os
 from collections.abc import Mapping, Sequence
@@ -205,6 +206,21 @@ def raw_study(study: Study) -> dict[str, Any]:
     """Return the content of the study's file, without provenance and notes."""
     raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
     return raw
+
+
+def with_value(raw: Mapping[str, Any], path: Sequence[str | int], value: Any) -> dict[str, Any]:
+    """Return a copy of a study's raw content with another value at a path; the rest is shared.
+
+    Tables of lugs that are only in lug_defaults are added.
+    """
+    content: dict[str, Any] = dict(raw)
+    here: Any = content
+    for part in path[:-1]:
+        missing = isinstance(here, dict) and part not in here
+        here[part] = {} if missing else copy.copy(here[part])
+        here = here[part]
+    here[path[-1]] = value
+    return content
 
 
 def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
