@@ -25,6 +25,7 @@ from pinstress.study.reading.choices import (
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.cases import GivenCase, LegCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
@@ -36,11 +37,15 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 
     Raises: InputError with the errors of all cases.
     """
-    mechanism = linkage(study) if study.table.mechanism else None
-    if mechanism is not None:
-        determined(study, mechanism)  # once, not in every case
     wrong = Errors(study.path)
-    attempts = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    mechanism = wrong.attempt(lambda: linkage(study)) if study.table.mechanism else None
+    if mechanism is not None:  # once, not in every case
+        wrong.attempt(partial(determined, study, mechanism))
+    given = [name for name in cases if isinstance(study.table.case[name], GivenCase | LegCase)]
+    possible = given if wrong.lines else cases
+    attempts = {
+        name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in possible
+    }
     wrong.tell()
     loads = {name: loads for name, loads in attempts.items() if loads is not None}
     require_times(study, {name: case.reactions.times for name, case in loads.items()})
