@@ -15,7 +15,7 @@ from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
-from pinstress.cli.lookup_commands import fits
+from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -375,6 +375,7 @@ for _command in (
     fits,
     import_,
     init,
+    materials,
     pdf_of,
     plots,
     reliability,

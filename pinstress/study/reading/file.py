@@ -17,6 +17,7 @@ from pinstress.study.reading.counted_twice import counted_twice
 from pinstress.study.reading.errors import InputError, Wrong, study_error
 from pinstress.study.reading.file_names import same_files
 from pinstress.study.reading.limits import control_characters, texts, too_many
+from pinstress.study.reading.materials import StoredMaterial, looked_up, with_materials
 from pinstress.study.reading.plausible import questions
 from pinstress.study.reading.references import cross_references
 from pinstress.study.reading.toml_text import read_toml
@@ -163,7 +164,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     lines = text if located else ""
     provenance: list[Sourced] = []
     long: list[Wrong] = []
-    raw = unwrapped(read_toml(path, text), "", provenance, long)
+    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, long)
     if long:
         raise study_error(path, lines, long)
     wrong = [
@@ -190,9 +191,17 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
 
 
 def raw_study(study: Study) -> dict[str, Any]:
-    """Return the content of the study's file, without provenance and notes."""
-    raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
-    return raw
+    """Return the content of the study's file, without provenance and notes, with the materials
+    that it only names.
+    """
+    raw = with_materials(study.path, read_toml(study.path, study.text))
+    plain: dict[str, Any] = unwrapped(raw, "", [], [])
+    return plain
+
+
+def named_materials(study: Study) -> tuple[StoredMaterial, ...]:
+    """Return the materials that a study names and does not define."""
+    return tuple(looked_up(study.path, read_toml(study.path, study.text)).values())
 
 
 def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:

@@ -10,6 +10,7 @@ from typing import Any
 
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study
+from pinstress.study.reading.materials import looked_up
 from pinstress.study.schema.shown import as_text
 
 KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
@@ -59,6 +60,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
         match parts:
             case ["pin", str(pin), "lug", str(connection), *_]:
                 write_lug(document, study, pin, connection, parents[4:])
+            case ["material", str(name), _, *_]:
+                _write_material(document, study, name)
         for part in parents:
             table = _inside(study, table, part, key)
         if isinstance(last, int):
@@ -85,6 +88,15 @@ def write_lug(
         if name not in table:
             table[name] = tomlkit.inline_table()
         table = table[name]
+
+
+def _write_material(document: Any, study: Study, name: str) -> None:
+    """Write the table of a material that a study only names, with its source."""
+    import tomlkit
+
+    stored = looked_up(study.path, document.unwrap()).get(name)
+    if stored is not None:
+        document.setdefault("material", tomlkit.table())[name] = stored.table
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:

@@ -8,6 +8,7 @@ from functools import partial
 from assess.fatigue.flight import flight
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.materials import library
 from pinstress.study.schema.cases import (
     ApplyTable,
     GivenCase,
@@ -108,6 +109,8 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
 
 def _known(where: str, what: str, name: str, names: Collection[str]) -> Iterator[Wrong]:
     if name not in names:
+        if what == "material":
+            names = [*names, *library()]
         code = f"unknown-{what.split()[-1]}"
         yield Wrong(f"{where}: no {what} {as_text(name)}; ", partial(near, name, names), code=code)
 
