@@ -95,7 +95,7 @@ def _status(error: BaseException) -> int | None:
 @click.group(
     cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
+    epilog="A first run: pinstress init trial && pinstress run trial/pin_in_lugs.toml",
 )
 @click.version_option(package_name="pinstress")
 def commands() -> None:
