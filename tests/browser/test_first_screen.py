@@ -75,7 +75,7 @@ def test_the_linkage_shows_each_pin_with_its_factor_and_the_load(page: Any) -> N
     assert len(linkage.find_elements("css selector", ".pin.fails")) == 5
     assert len(linkage.find_elements("css selector", ".load")) == 1
     link = linkage.find_element("css selector", "a[href]")
-    target = link.get_attribute("href").partition("#")[2]
+    target = (link.get_dom_attribute("href") or "").partition("#")[2]
     assert page.find_element("id", target)
 
 
