@@ -48,7 +48,7 @@ def init(directory: Path, opens: bool) -> int:
         click.echo(f"Next: pinstress run {target}  (writes {out / 'report.html'})", err=True)
         return 0
     from pinstress.cli.run import OutputOptions, run_and_write
-    from pinstress.study.reading.file import load_study
+    from pinstress.study.model.load import load_study
 
     return run_and_write(load_study(target), out, OutputOptions(opens=True))
 

@@ -13,6 +13,7 @@ from pinstress.study.schema.leg import SpatialLegTable
 from pinstress.study.schema.lugs import LugTable, with_lug_defaults
 from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.require import RequireTable
 from pinstress.study.schema.sequence import SequenceTable
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.size import SizeTable
@@ -54,7 +55,8 @@ class AnalysisTable(StrictTable):
     ("never")."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach: yield strength over stress under the loads of the
-    study, without the factors below. Default: no comparison."""
+    study, without the factors below. A [[require]] on yield at limit load replaces it for its pins
+    and cases. Default: no comparison."""
     limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
     """Factor on the loads of the study for checks at limit load, against yield."""
     ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
@@ -176,6 +178,8 @@ class StudyTable(StrictTable):
     """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()
     """Requirements on the analysis."""
+    require: list[RequireTable] = []
+    """Requirements on checks, besides the required safety factor."""
     fatigue: FatigueTable | None = None
     """How often cases occur, for damage and life. Default: fatigue is not assessed."""
     beam_check: BeamCheckTable | None = None

@@ -51,7 +51,7 @@ def two_pins(text: str) -> str:
         (["study.toml"], ("-988.86", "nan"), "must be finite, not nan"),
         (["study.toml"], ('["start"]', '["B"]'), "no load acts on it"),
         (["study.toml"], ("forces = { B = [0.0, -988.86] }", 'table = "t.csv"'), "t.csv"),
-        (["study.toml"], ('kind = "given"', 'kind = "given"\ndistribution = "sine"'), "cosine"),
+        (["study.toml"], ('distribution = "uniform"', 'distribution = "sine"'), "cosine"),
     ],
 )
 def test_bad_input_is_one_message_and_nothing_written(
