@@ -261,7 +261,7 @@ def _path(results: Results, lines: Sequence[PinLine]) -> str:
     rest = [force for force in forces.values() if force < LARGE_FORCE * most]
     verb = "carry" if len(through) > 1 else "carries"
     text = f"{names(through)} {verb} up to {engineering(most, 3)} {units.force}"
-    others = f", the others up to {engineering(max(rest), 3)}" if rest else ""
+    others = f", others up to {engineering(max(rest), 3)}" if rest else ""
     return f"{text}{others}."
 
 
