@@ -139,6 +139,16 @@ def test_a_number_of_a_material_that_is_only_named_has_a_key(tmp_path: Path) -> 
     assert changed.table.material["6061-T651"].density == pytest.approx(2700.0, rel=1e-3)
 
 
+def test_an_engine_takes_another_material_of_the_library(tmp_path: Path) -> None:
+    study, changes = load_study(written(tmp_path, "6061-T651")), {"pin.B.material": "316L"}
+    engine = Engine(study)
+    row, changed = engine.row(changes, "B", "landing"), engine.changed(changes)
+    assert row.safety_factor == pytest.approx(run(changed)["B", "landing"].safety_factor)
+    assert yield_of(changed) == pytest.approx(42.1 * KSI)
+    with pytest.raises(InputError, match="A36' of the library of pinstress has no youngs_modulus"):
+        engine.row({"pin.B.material": "A36"}, "B", "landing")
+
+
 def test_a_study_that_is_written_elsewhere_names_the_same_file(tmp_path: Path) -> None:
     (tmp_path / "ours.toml").write_text(steel())
     there = tmp_path / "there"
