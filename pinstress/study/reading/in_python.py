@@ -10,7 +10,7 @@ from typing import Any
 
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study, unwrapped, with_value
-from pinstress.study.reading.materials import looked_up
+from pinstress.study.reading.materials import looked_up, with_materials
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
@@ -98,7 +98,9 @@ def changed_raw(
         parts = key_parts(study, key)
         _place(study, with_lug_defaults(dict(raw)), parts, key)
         raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
-    return raw
+    complete = with_materials(study.path, dict(raw)) if changes else raw
+    named = complete.get("material") != raw.get("material")
+    return unwrapped(complete, "", [], []) if named else raw
 
 
 def _place(study: Study, table: Any, parts: list[str | int], key: str) -> Any:
