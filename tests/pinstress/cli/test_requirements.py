@@ -240,3 +240,27 @@ def test_check_lists_what_is_required(tmp_path: Path, capsys: pytest.CaptureFixt
     said = capsys.readouterr().out
     assert "requires rupture at ultimate load, factor 1.5: pin P in pull\n" in said
     assert "requires fatigue, factor 4: all pins\n" in said
+
+
+@pytest.mark.slow
+def test_a_required_limit_load_is_computed() -> None:
+    """A stub whose factors against yield and collapse are about 1.1 and 2: also where it does not
+    yield, of which no limit load is computed otherwise.
+    """
+    profile = [
+        {"length": 40, "diameter": 20},
+        {"length": 10, "diameter": 20, "connection": "L"},
+    ]
+    pins = {"P": {"material": "steel", "clamp": ["start"], "profile": profile}}
+    pull = {"kind": "given", "forces": {"L": [3000, 0]}}
+    given = {**study(STRENGTHS), "pin": pins, "case": {"pull": pull}}
+    for factor, outcome in ((1.5, "met"), (3.0, "missed")):
+        need = {"check": "limit load", "factor": factor}
+        results = run(study_from({**given, "require": [need]}))
+        (row,) = [r for r in requirement_rows(results) if r.check == "limit load" and r.stated]
+        assert row.outcome == outcome
+        limit = results.pins[0].limit_load
+        assert limit is not None
+        assert limit.method == "solid"
+        assert row.reached == limit.lower
+    assert run(study_from(given)).pins[0].limit_load is None
