@@ -128,9 +128,12 @@ def pdf_of(results: Path) -> int:
     "compare",
     short_help="Show what differs between two runs.",
     help=example("pinstress compare out/before out/after --out out/comparison")
-    + "\nPrint which inputs of two runs differ, and which maxima, safety factors, margins and "
-    "forces changed: beyond their errors, or within. A and B are folders that `pinstress run` "
-    "wrote; units may differ.",
+    + "\nPrint how the factors of pins changed and which requirements are newly met or lost, then "
+    "which inputs of two runs differ, and which maxima, margins and forces changed: beyond their "
+    "errors, or within. A and B are folders that `pinstress run` wrote, the older one first; units "
+    "may differ.\n\n"
+    "Exit status: 0 done; 1 done, but something could not be drawn; 2 bad input; 4 a requirement "
+    "that was met no longer is, or is gone.",
 )
 @click.argument("first", metavar="A", type=click.Path(path_type=Path))
 @click.argument("second", metavar="B", type=click.Path(path_type=Path))
