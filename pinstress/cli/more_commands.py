@@ -210,7 +210,7 @@ def completion(context: click.Context, shell: str) -> None:
 @click.option(
     "--fos",
     type=click.FloatRange(0.0, min_open=True),
-    help="Safety factor to reach; overrides the study's required_safety_factor.",
+    help="Safety factor to reach; overrides required_safety_factor and [[require]] of the study.",
 )
 @PINS_OPTION
 @click.option(
@@ -283,11 +283,18 @@ def size(
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
     if least_weight and resume:
         raise InputError("--resume is not for --least-weight", code="contradiction")
+    goal = require_wish(loaded, fos, metres)
     if least_weight:
-        aim = require_aim(loaded, wished, require_wish(loaded, fos, metres).required, metres)
+        if goal.more:
+            raise InputError(
+                "--least-weight takes one factor for all pins and cases, and those that "
+                "[[require]] states differ: give --fos",
+                code="contradiction",
+            )
+        aim = require_aim(loaded, wished, goal.required, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
     options = SizeOptions(out, pins, jobs, resume, quiet)
-    return size_and_write(loaded, require_wish(loaded, fos, metres), options)
+    return size_and_write(loaded, goal, options)
 
 
 @click.command(

@@ -38,6 +38,18 @@ def required_factors(study: Study, pin: str, cases: Iterable[str]) -> dict[str, 
     return {case: f for case, f in factors.items() if f is not None and f != default}
 
 
+def sizing_factor(study: Study, pin: str, case: str) -> float | None:
+    """Return the factor against yield with which a pin meets its requirements on stress in a case,
+    on yield and rupture; None without any.
+    """
+    material = study.table.material[study.table.pin[pin].material]
+    factors = [required_factor(study, pin, case)]
+    rupture = stated_factor(study, pin, case, "rupture", "ultimate")
+    if rupture and material.yield_strength and material.ultimate_strength:
+        factors.append(rupture * material.yield_strength / material.ultimate_strength)
+    return max((factor for factor in factors if factor is not None), default=None)
+
+
 def stated_factor(
     study: Study, pin: str, case: str, check: RequiredCheck, level: RequiredLevel
 ) -> float | None:
