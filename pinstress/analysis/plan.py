@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal
@@ -25,9 +25,11 @@ from pinstress.study.reading.choices import (
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.cases import GivenCase, LegCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
+LoadsOf = Callable[[Study, list[str]], dict[str, CaseLoads]]  # of cases, by their names
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -35,11 +37,15 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 
     Raises: InputError with the errors of all cases.
     """
-    mechanism = linkage(study) if study.table.mechanism else None
-    if mechanism is not None:
-        determined(study, mechanism)  # once, not in every case
     wrong = Errors(study.path)
-    attempts = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    mechanism = wrong.attempt(lambda: linkage(study)) if study.table.mechanism else None
+    if mechanism is not None:  # once, not in every case
+        wrong.attempt(partial(determined, study, mechanism))
+    given = [name for name in cases if isinstance(study.table.case[name], GivenCase | LegCase)]
+    possible = given if wrong.lines else cases
+    attempts = {
+        name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in possible
+    }
     wrong.tell()
     loads = {name: loads for name, loads in attempts.items() if loads is not None}
     require_times(study, {name: case.reactions.times for name, case in loads.items()})
@@ -82,6 +88,7 @@ def prepare(
     memory: float | None = None,
     also: ExtraFields = None,
     limit_load: bool = False,
+    loads_of: LoadsOf = all_loads,
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
 
@@ -91,6 +98,7 @@ def prepare(
     also: fields along the whole motion, or of the whole of a revolved pin.
     limit_load: compute the limit load of every row that yields, however long it takes; otherwise
     the study decides, where "auto" gives each 20 s of processor time.
+    loads_of: gives the loads of cases.
 
     Raises: InputError for bad input.
     """
@@ -104,7 +112,7 @@ def prepare(
     requirement = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
-    loads = wrong.attempt(lambda: all_loads(study, chosen))
+    loads = wrong.attempt(lambda: loads_of(study, chosen))
     shapes = {name: wrong.attempt(partial(pin_of, study, name)) for name in names}
     wrong.tell()
     assert published is not None

@@ -22,7 +22,7 @@ from pinstress.study.model.pins import shape_notes, weight
 from pinstress.study.model.sequence import require_times
 from pinstress.study.model.tasks import assumed_distribution, tasks
 from pinstress.study.reading.errors import Errors
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
 from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.study.schema.landing import DropCase, GroundCase
@@ -39,6 +39,8 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
     """
     table = study.table
     lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
+    for stored in named_materials(study):
+        lines.append(f"material {stored.name}: that of {stored.file} ({stored.source})")
     wrong = Errors(study.path)
     wrong.attempt(lambda: read_published(study))
     mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
@@ -68,8 +70,8 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
-    lines += map(_requirement, table.require)
     lines += filter(None, [assumed_distribution(study, todo)])
+    lines += map(_requirement, table.require)
     warnings = other_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from reports.data.decision import row_limit, utilisation, worst_first
+from reports.data.decision import limit, utilisation, worst_first
 from reports.data.mechanics import PeakReaction
 from reports.data.results import PinResult, Results
 
@@ -44,7 +44,7 @@ def envelope(results: Results) -> list[EnvelopeCell]:
         EnvelopeCell(
             row,
             row.outcome,
-            None if (used := utilisation(row, row_limit(row))) is None else used[1],
+            None if (used := utilisation(row, limit(row))) is None else used[1],
             governs[row.pin] == row.case,
             tuple(largest.get((row.pin, row.case), ())),
         )

@@ -11,7 +11,7 @@ from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, Y
 from assess.margin import PinMargin
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
-from reports.data.decision import factor_ends, row_limit, utilisation
+from reports.data.decision import factor_ends, limit, utilisation
 from reports.data.requirements import (
     MET,
     MISSED,
@@ -54,7 +54,7 @@ class JudgedCheck:
 def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
     rows = {(row.pin, row.case): row for row in results.pins}
-    checks = [_of_row(row, row_limit(row)) for row in results.pins]
+    checks = [_of_row(row, limit(row)) for row in results.pins]
     checks += (
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins
@@ -72,7 +72,7 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
 def _besides(results: Results) -> list[RequirementRow]:
     """Return the requirements that neither a row nor a margin judges with the same factor."""
     stated = {(s.pin, s.case, s.level, s.check) for s in results.stated}
-    factors = {(row.pin, row.case): row_limit(row) for row in results.pins}
+    factors = {(row.pin, row.case): limit(row) for row in results.pins}
 
     def besides(r: RequirementRow) -> bool:
         if r.check == "yield":

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from assess.diameter_law import beneath_exponent, estimated_scale
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, SAFE, YIELDS
-from reports.data.decision import beneath_factor, factor_ends, row_limit, utilisation
+from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
 from reports.data.envelope import MAX_DETAILED_CASES
 from reports.data.headline import JudgedCheck, judged_checks, worst_checks
 from reports.data.results import PinResult, PinShape, Results
@@ -100,7 +100,7 @@ def quiet_cases(results: Results, lines: list[PinLine]) -> list[QuietCase]:
 
 def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLine:
     rows = [row for row in results.pins if row.pin == check.pin and check.case in ("", row.case)]
-    row = check.row or min(rows, key=lambda row: (-_used(row, row_limit(row)), row.case))
+    row = check.row or min(rows, key=lambda row: (-_used(row, limit(row)), row.case))
     error = factor_ends(row) if row.safety_factor else None
     diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None
     return PinLine(row, check, error, factor_spread(row), diameter)

@@ -213,7 +213,7 @@ def _failing(checks: Sequence[JudgedCheck], results: Results) -> str:
     one = len(checks) == 1
     verb = "fails" if one else "fail"
     if by_stress and len(required) == 1:
-        asked = all(check.row is not None and check.row.required for check in checks)
+        asked = all(check.row and check.row.required for check in checks)
         missed = f"{'misses' if one else 'miss'} the required factor {short(required.pop())}"
         verb = missed if asked else ("yields" if one else "yield")
     case = f" ({cases.pop()})" if len(cases) == 1 and "" not in cases else ""

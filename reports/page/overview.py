@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
-from reports.data.decision import common_factor, limit, row_limit
+from reports.data.decision import common_factor, limit
 from reports.data.overview import GOOD, PinLine, factor_at, pin_lines
 from reports.data.requirement_matrix import MatrixRow, matrix_rows
 from reports.data.requirements import requirement_rows
@@ -69,7 +69,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     """
     lines = pin_lines(results)
     unknown = unknowns(line.row for line in lines)
-    axis = factor_axis(lines, limit(results))
+    axis = factor_axis(lines)
     matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
     steps = actions(results)
     linkage = draw_linkage(results, lines, anchors)
@@ -82,7 +82,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "drawing": "" if linkage else drawing,
         "case": lines[0].row.case if lines else "",
         "same_case": len({line.row.case for line in lines}) == 1,
-        "axis": axis and _ticks(axis, {row_limit(line.row) for line in lines}),
+        "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
         "open": [x.what for x in unknown],
         "diameters": any(line.diameter for line in lines),
@@ -134,27 +134,19 @@ def _css(outcome: str) -> str:
     return outcome.replace(" ", "-")
 
 
-def _ticks(axis: FactorAxis, factors: set[float]) -> dict[str, Any]:
-    """Return the ticks of an axis.
-
-    factors: that are required; where these differ, the line of each pin says its own.
-    """
+def _ticks(axis: FactorAxis) -> dict[str, Any]:
     ticks = [(short(tick), 100.0 * axis.at(tick)) for tick in axis.ticks]
+    if axis.required is None:
+        return {"required": None, "label": "required", "ticks": ticks}
     required = 100.0 * axis.at(axis.required)
     return {
         "required": required,
-        "label": "required" if len(factors) > 1 else _label(axis.required),
+        "label": f"{short(axis.required)} {'required' if axis.required != 1.0 else 'yield'}",
         "ticks": [(text, at) for text, at in ticks if abs(at - required) > 12.0],
     }
 
 
-def _label(required: float) -> str:
-    return f"{short(required)} {'required' if required != 1.0 else 'yield'}"
-
-
-def _span(ends: tuple[float, float] | None, axis: FactorAxis | None) -> AxisPart | None:
-    if ends is None or axis is None:
-        return None
+def _span(ends: tuple[float, float], axis: FactorAxis) -> AxisPart:
     low, high = (100.0 * axis.at(end) for end in ends)
     return AxisPart(low, high - low)
 
@@ -171,10 +163,10 @@ def _line(
         "css": _css(line.outcome),
         "outcome": outcome_words(line),
         "factor": factor_range(line.row),
-        "required": axis and 100.0 * axis.at(row_limit(line.row)),
-        "error": _span(line.error, axis),
+        "error": asdict(_span(line.error, axis)) if axis and line.error else None,
         "error_words": error_words(line),
-        "spread": _span(line.spread, axis),
+        "required": 100.0 * axis.at(limit(line.row)) if axis else None,
+        "spread": asdict(_span(line.spread, axis)) if axis and line.spread else None,
         "spread_words": spread_words(line),
         "place": place_words(line.row, shape),
         "diameter": diameter_words(line, results.units),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from assess.judgement import BELOW_YIELD, FAILS, SAFE, YIELDS
-from reports.data.decision import limit
+from reports.data.decision import common_factor
 from reports.data.governing import governing
 from reports.data.overview import PinLine, pin_lines
 from reports.data.results import Results
@@ -45,10 +45,10 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
         console.print(Text(headline(results), "bold"))
         if text := decisions(results):
             console.print(Text(text))
-        table = overview_table(results, lines, limit(results))
+        table = overview_table(results, lines)
         tints = [OUTCOME_COLOURS.get(line.outcome, "yellow") for line in lines]
         console.print(fitted_table(table, results.units, console.width, {"result": tints}))
-        if key := _key(results, lines):
+        if key := _key(lines):
             console.print(Text(key))
     else:
         console.print(Text("No pin was solved."))
@@ -74,15 +74,13 @@ def _parts(results: Results, unknown: list[Unknown], study: str) -> list[tuple[s
     return [(title, sentences) for title, sentences in parts if sentences]
 
 
-def _key(results: Results, lines: list[PinLine]) -> str:
+def _key(lines: list[PinLine]) -> str:
     """Return the meaning of the marks of the bars; empty without bars."""
     if not any(line.error for line in lines):
         return ""
-    required = {line.row.required for line in lines}
-    limit_name = "required"
-    if len(required) == 1:
-        (factor,) = required
-        limit_name = "yield" if factor is None else f"required {short(factor)}"
+    required = common_factor(line.row for line in lines)
+    limit_name = "required" if required is None else f"required {short(required)}"
+    limit_name = limit_name if any(line.row.required for line in lines) else "yield"
     parts = [f"{FACTOR_MARK} factor"]
     parts += [f"{SPREAD_MARK} open range"] * any(line.spread for line in lines)
     parts.append(f"{REQUIRED_MARK} {limit_name}")

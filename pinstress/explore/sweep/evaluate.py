@@ -29,7 +29,7 @@ from pinstress.analysis.plan import prepare, requirement_of
 from pinstress.analysis.solve import solutions
 from pinstress.analysis.stored import shape_of
 from pinstress.explore.sweep.laws import Floats
-from pinstress.explore.sweep.number import Number, with_value
+from pinstress.explore.sweep.number import Number
 from pinstress.explore.sweep.outcomes import bare_row, judged_row, outcome_words, stress_at
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.model.cases import CaseLoads, case_loads
@@ -39,7 +39,7 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.requirements import required_factor, required_factors
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.file import Study, raw_study, with_raw
+from pinstress.study.reading.file import Study, raw_study, with_raw, with_value
 from reports.data.results import PinResult
 
 MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes

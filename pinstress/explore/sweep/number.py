@@ -5,7 +5,6 @@ Any number of a study has a key, as messages spell it; the schema gives its dime
 
 from __future__ import annotations
 
-import copy
 import math
 import re
 from collections.abc import Mapping
@@ -13,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pinbase.errors import ArgumentError
-from pinstress.study.reading.file import Study, raw_study
+from pinstress.study.reading.file import Study, raw_study, with_value
 from pinstress.study.reading.in_python import key_parts
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
@@ -113,21 +112,6 @@ def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
             "not-a-number",
         )
     return float(value)
-
-
-def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
-    """Return a copy of a study's raw content with another value at a path; the rest is shared.
-
-    Tables of lugs that are only in lug_defaults are added.
-    """
-    content = copy.copy(raw)
-    here: Any = content
-    for part in path[:-1]:
-        missing = isinstance(here, dict) and part not in here
-        here[part] = {} if missing else copy.copy(here[part])
-        here = here[part]
-    here[path[-1]] = value
-    return content
 
 
 def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:

@@ -9,6 +9,7 @@ from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.materials import library
 from pinstress.study.schema.cases import (
     ApplyTable,
     GivenCase,
@@ -111,8 +112,11 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
 
 def _known(where: str, what: str, name: str, names: Collection[str]) -> Iterator[Wrong]:
     if name not in names:
+        if what == "material":
+            names = [*names, *library()]
         code = f"unknown-{what.split()[-1]}"
-        yield Wrong(f"{where}: no {what} {as_text(name)}; ", partial(near, name, names), code=code)
+        hint = partial(near, name, names)
+        yield Wrong(f"{where}: no {what} {as_text(name)}; ", hint, code=code, name=name)
 
 
 def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
@@ -260,7 +264,8 @@ def _of_pins(
     for connection, pin in bears.items():
         if connection not in have:
             text = f"pin.{pin}: connection {as_text(connection)} is not in the mechanism; "
-            yield Wrong(text, partial(near, connection, have), code="unknown-connection")
+            hint = partial(near, connection, have)
+            yield Wrong(text, hint, code="unknown-connection", name=connection)
 
 
 def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
@@ -297,6 +302,8 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
     bodies = dict.fromkeys(["ground", *mechanism.body])
     for name, joint in mechanism.joint.items():
         where = f"mechanism.joint.{name}"
+        for origin in joint.origins:
+            yield from _known(f"{where}.at", "joint", origin, mechanism.joint)
         if joint.fixed_in is not None:
             yield from _known(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
         for connection, body in joint.connections.items():

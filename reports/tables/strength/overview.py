@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from assess.judgement import DEPENDS
 from assess.strength.model_stress import YIELD_METHOD
-from reports.data.decision import row_limit
+from reports.data.decision import limit
 from reports.data.overview import PinLine
 from reports.data.results import Results, Units
 from reports.format.numbers import DASH, engineering, short
@@ -28,12 +28,13 @@ SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
 class FactorAxis:
     """A logarithmic axis of factors of safety.
 
-    low, high: its ends. required: the required factor, or 1, at which a pin yields.
+    low, high: its ends. required: the factor that all pins need, or 1, at which
+    they yield; None where it differs.
     """
 
     low: float
     high: float
-    required: float
+    required: float | None
 
     def at(self, factor: float) -> float:
         """Return the place of a factor, 0 to 1."""
@@ -50,16 +51,17 @@ class FactorAxis:
         return [10.0**power for power in powers]
 
 
-def factor_axis(lines: Sequence[PinLine], required: float) -> FactorAxis | None:
+def factor_axis(lines: Sequence[PinLine]) -> FactorAxis | None:
     """Return the axis on which all pins have their place; None without any factor."""
+    needed = {limit(line.row) for line in lines}
     ends = [end for line in lines for end in (*(line.error or ()), *(line.spread or ()))]
     finite = [end for end in ends if 0.0 < end < math.inf]
     if not finite:
         return None
-    finite += [required, *(row_limit(line.row) for line in lines)]
-    low, high = min(*finite, 1.0) / AXIS_MARGIN, max(finite) * AXIS_MARGIN
-    low = max(low, required / 10.0**MAX_DECADES)
-    return FactorAxis(low, min(high, low * 10.0**MAX_DECADES), required)
+    low, high = min(*finite, *needed, 1.0) / AXIS_MARGIN, max(*finite, *needed) * AXIS_MARGIN
+    low = max(low, min(needed) / 10.0**MAX_DECADES)
+    common = needed.pop() if len(needed) == 1 else None
+    return FactorAxis(low, min(high, low * 10.0**MAX_DECADES), common)
 
 
 def bar(line: PinLine, axis: FactorAxis, width: int = BAR_WIDTH) -> str:
@@ -72,17 +74,17 @@ def bar(line: PinLine, axis: FactorAxis, width: int = BAR_WIDTH) -> str:
 
     if line.spread:
         draw(line.spread, SPREAD_MARK)
-    required = min(int(width * axis.at(row_limit(line.row))), width - 1)
+    required = min(int(width * axis.at(limit(line.row))), width - 1)
     cells[required] = REQUIRED_MARK
     if line.error:
         draw(line.error, FACTOR_MARK)
     return "".join(cells)
 
 
-def overview_table(results: Results, lines: Sequence[PinLine], required: float) -> Table[PinLine]:
+def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]:
     """Return a row for each pin, for people."""
     shapes = {shape.pin: shape for shape in results.shapes}
-    axis = factor_axis(lines, required)
+    axis = factor_axis(lines)
     cases = {line.row.case for line in lines}
     columns: list[Column[PinLine]] = [
         Column("pin", lambda x: x.pin, heading="pin", numeric=False),
