@@ -21,7 +21,7 @@ from pinstress.study.model.mechanism.linkage import determined, linkage
 from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
-from pinstress.study.model.tasks import Task, assumed_distribution, tasks
+from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import read_published
@@ -89,6 +89,7 @@ def examine(study: Study) -> Examination:
     lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in valid_pins]
     wrong.tell()
     todo = tasks(study, valid_pins, loads) if valid_pins else []
+    require_models(study, todo, table.analysis.model)
     a = table.analysis
     goal = (
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
@@ -149,7 +150,7 @@ def _impossible(study: Study) -> list[str]:
     Raises: InputError for given forces that vary one by one, out of equilibrium.
     """
     from pinstress.explore.sweep.evaluate import Evaluator  # imports what solves
-    from pinstress.explore.sweep.possible import drawn, tried
+    from pinstress.explore.sweep.possible import drawn, impossible_ends, tried
 
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
@@ -158,7 +159,8 @@ def _impossible(study: Study) -> list[str]:
         values = designs_of(vary, parameters, correlations_of(study, parameters))
     else:
         values = drawn(study, parameters)
-    return tried(study, Evaluator(study, parameters), values).warnings
+    evaluator = Evaluator(study, parameters)
+    return impossible_ends(evaluator, parameters) + tried(study, evaluator, values).warnings
 
 
 def _pin(study: Study, pin: PinLike) -> str:

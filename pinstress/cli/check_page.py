@@ -12,6 +12,7 @@ from pinbase.records import in_units
 from pinstress.analysis.gather.gather import shape_of_task
 from pinstress.analysis.mechanics.gather_loads import linkage_motion
 from pinstress.cli.check import Examination, support_of
+from pinstress.study.model.balance import given_warnings
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.check import CheckedPin, CheckedStudy, LugOutline, PlannedRow
@@ -31,7 +32,12 @@ def write_check_page(study: Study, examination: Examination, path: Path) -> None
         study=study.path.name,
         units=Units(s.length, s.force, s.stress, s.time),
         summary=tuple(examination.lines[1:]),
-        problems=(*examination.unheld, *examination.warnings, *study.warnings),
+        problems=(
+            *examination.unheld,
+            *examination.warnings,
+            *given_warnings(study),
+            *study.warnings,
+        ),
         motions=tuple(
             linkage_motion(study, name, loads.dynamics, None)
             for name, loads in examination.loads.items()
