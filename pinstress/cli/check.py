@@ -23,7 +23,7 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import require_times
 from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
 from pinstress.study.reading.errors import Errors
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
 from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.study.schema.landing import DropCase, GroundCase
@@ -65,6 +65,8 @@ def examine(study: Study) -> Examination:
     """
     table = study.table
     lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
+    for stored in named_materials(study):
+        lines.append(f"material {stored.name}: that of {stored.file} ({stored.source})")
     wrong = Errors(study.path)
     wrong.attempt(lambda: read_published(study))
     mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None

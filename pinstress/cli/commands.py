@@ -15,7 +15,7 @@ from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
-from pinstress.cli.lookup_commands import fits
+from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -95,7 +95,7 @@ def _status(error: BaseException) -> int | None:
 @click.group(
     cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
+    epilog="A first run: pinstress init trial && pinstress run trial/pin_in_lugs.toml",
 )
 @click.version_option(package_name="pinstress")
 def commands() -> None:
@@ -401,6 +401,7 @@ for _command in (
     fits,
     import_,
     init,
+    materials,
     pdf_of,
     plots,
     reliability,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -51,6 +52,7 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
+FILE_COLUMNS = 120  # of output that is no terminal
 # What solving a pin imports on demand: libraries of nearly all pins, and models
 RUN_LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 RUN_MODELS = (
@@ -262,9 +264,11 @@ def _large_tables(directory: Path) -> None:
 
 
 def console() -> Console:
-    """Return standard output as a console as wide as the terminal."""
-    wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width
-    return Console(**wide)  # type: ignore[arg-type]
+    """Return standard output as a console as wide as the terminal, or as COLUMNS for a file."""
+    columns = os.environ.get("COLUMNS", "")
+    if sys.stdout.isatty():
+        return Console()
+    return Console(width=int(columns) if columns.isdecimal() and int(columns) else FILE_COLUMNS)
 
 
 @contextmanager

@@ -99,7 +99,7 @@ def open_page(page: Path) -> None:
 
 # Commands by what they are for.
 COMMAND_SECTIONS = {
-    "Studies": ("init", "check", "import", "schema", "fits"),
+    "Studies": ("init", "check", "import", "schema", "fits", "materials"),
     "Analysis": ("run", "loads", "chart"),
     "Designs": ("size", "curve", "sweep", "reliability", "cluster-keys"),
     "Earlier runs": ("view", "compare", "plots", "pdf"),

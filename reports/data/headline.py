@@ -73,15 +73,13 @@ def _besides(results: Results) -> list[RequirementRow]:
     """Return the requirements that neither a row nor a margin judges with the same factor."""
     stated = {(s.pin, s.case, s.level, s.check) for s in results.stated}
     factors = {(row.pin, row.case): limit(row) for row in results.pins}
-    return [
-        r
-        for r in requirement_rows(results)
-        if not r.left_out
-        and (
-            (r.key in stated if r.check != "yield" else r.required > factors[r.pin, r.case])
-            or (r.outcome == DEPENDS and r.check == "rupture")
-        )
-    ]
+
+    def besides(r: RequirementRow) -> bool:
+        if r.check == "yield":
+            return r.required > factors.get((r.pin, r.case), inf)
+        return r.key in stated or (r.check == "rupture" and r.outcome == DEPENDS)
+
+    return [r for r in requirement_rows(results) if besides(r) and not r.left_out]
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:

@@ -130,8 +130,8 @@ def requirement_rows(results: Results) -> tuple[RequirementRow, ...]:
         for row in _assumed(pin, case, of_pair, rows.get((pin, case)), results)
         if row.required > known.get(row.key, -inf)
     ]
-    pins = list(dict.fromkeys((*(row.pin for row in results.pins), *(s.pin for s in stated))))
-    cases = list(dict.fromkeys((*(row.case for row in results.pins), *(s.case for s in stated))))
+    every = (*results.pins, *stated, *assumed)
+    pins, cases = (list(dict.fromkeys(getattr(x, key) for x in every)) for key in ("pin", "case"))
     checks = list(dict.fromkeys((*REQUIRED_CHECKS, *(row.check for row in assumed))))
 
     def place(row: RequirementRow) -> tuple[int, bool, int, int, int]:

@@ -189,7 +189,7 @@ def headline(results: Results) -> str:
         return _all_safe(results, first, len(worst))
     if first.row is None:
         return _of_margin(first)
-    row, (factor, needed) = first.row, _factor_words(first.row, results)
+    row, (factor, needed) = first.row, _factor_words(first.row)
     if first.outcome == NOT_DECIDED:
         known = f"; {factor}, {needed}" if row.safety_factor is not None else ""
         why = undecided_because(row)
@@ -229,7 +229,7 @@ def _failing_pin(check: JudgedCheck, with_case: bool) -> str:
     return f"{check.pin} ({', '.join(more)})" if more else check.pin
 
 
-def _factor_words(row: PinResult, results: Results) -> tuple[str, str]:
+def _factor_words(row: PinResult) -> tuple[str, str]:
     """Return the safety factor and the required one as text."""
     required = row.required
     needed = "1 at yield" if required is None else f"{short(required)} required"
@@ -242,7 +242,7 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     least: the worst of all checks, which may be another than the model's stress against yield.
     """
     row = worst_first(results)[0]
-    factor, needed = _factor_words(row, results)
+    factor, needed = _factor_words(row)
     safe = row.outcome == SAFE
     other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
     if pins == 1:

@@ -19,7 +19,7 @@ from reports.format.ranges import factor_range
 PICTURE_WIDTH, MIN_HEIGHT, MAX_HEIGHT = 400.0, 200.0, 470.0
 MARGIN = 42.0
 LETTER_WIDTH, LABEL_HEIGHT, LABEL_GAP = 7.6, 16.0, 11.0
-PIN_RADIUS = 9.0
+PIN_RADIUS, LOAD_LENGTH = 9.0, 34.0
 MIN_LINK_WIDTH, MAX_LINK_WIDTH = 1.5, 12.0
 MARKS = {  # of an outcome: a cross, a tick, half a disc, a question mark
     FAILS: '<circle r="9"/><path class="k" d="M-4-4L4 4M4-4L-4 4"/>',
@@ -74,6 +74,7 @@ def draw_linkage(
         *_bodies(at, points),
         *_sliders(at, frame),
         *(_support(points[name]) for name in at.motion.ground if name in points),
+        *(_arrow(tip, tail) for tip, tail, _ in _loads(at, frame)),
         *_pins(lines, joints, points, anchors),
         *_labels(at, lines, joints, points, frame, results.units.force),
     ]
@@ -90,7 +91,9 @@ class _Frame:
 
     def __init__(self, at: GoverningInstant) -> None:
         ends = [slide[at.k] for slide in at.motion.slides.values()]
-        every = np.concatenate([at.motion.joint_position[at.k], *ends])
+        ends += [load.position[min(at.k, len(load.position) - 1)] for load in at.motion.applied]
+        points = [at.motion.joint_position[at.k], *(np.reshape(end, (-1, 2)) for end in ends)]
+        every = np.concatenate(points)
         low, high = every.min(axis=0), every.max(axis=0)
         span = np.maximum(high - low, 1e-9 * (1.0 + np.abs(high).max()))
         room = PICTURE_WIDTH - 2.0 * MARGIN, MAX_HEIGHT - 2.0 * MARGIN
@@ -160,6 +163,33 @@ def _sliders(at: GoverningInstant, frame: _Frame) -> Iterable[str]:
         yield f'<path class="slide" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"/>'
 
 
+def _loads(at: GoverningInstant, frame: _Frame) -> list[tuple[Floats, Floats, float]]:
+    """Return the tip and the tail of the arrow of each applied load, and its size."""
+    arrows = []
+    for load in at.motion.applied:
+        k = min(at.k, len(load.force) - 1)
+        size = float(load.sizes[k])
+        if size > 0.0:
+            along = load.force[k] / size * np.array([1.0, -1.0])
+            tip = frame.pixels(load.position[k]) - (PIN_RADIUS + 3.0) * along
+            arrows.append((tip, tip - LOAD_LENGTH * along, size))
+    return arrows
+
+
+def _arrow(tip: Floats, tail: Floats) -> str:
+    """Return the arrow of an applied load."""
+    along = (tip - tail) / np.linalg.norm(tip - tail)
+    across = np.array([-along[1], along[0]])
+    neck = tip - 9.0 * along
+    head = [tip, neck + 6.0 * across, neck - 6.0 * across]
+    corners = "L".join(f"{x:.1f} {y:.1f}" for x, y in head)
+    (x1, y1), (x2, y2) = tail, neck
+    return (
+        f'<path class="load" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"/>'
+        f'<path class="head" d="M{corners}Z"/>'
+    )
+
+
 def _support(at: Floats) -> str:
     """Return the triangle of a fixed joint."""
     x, y = at
@@ -200,6 +230,7 @@ def _labels(
             factor = factor_range(line.row) if line.row.safety_factor else ""
             told.append((points[joints[line.pin]], line.pin, factor))
     told += [(points[joint], "", f"{force} {unit}") for joint, force in _on_ground(at)]
+    told += [(tail, "", f"{engineering(size, 3)} {unit}") for _, tail, size in _loads(at, frame)]
     if not told:
         return
     where = np.array([point for point, *_ in told])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
@@ -82,7 +82,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "drawing": "" if linkage else drawing,
         "case": lines[0].row.case if lines else "",
         "same_case": len({line.row.case for line in lines}) == 1,
-        "axis": axis and _ticks(axis),
+        "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
         "open": [x.what for x in unknown],
         "diameters": any(line.diameter for line in lines),
@@ -146,9 +146,7 @@ def _ticks(axis: FactorAxis) -> dict[str, Any]:
     }
 
 
-def _span(ends: tuple[float, float] | None, axis: FactorAxis | None) -> AxisPart | None:
-    if ends is None or axis is None:
-        return None
+def _span(ends: tuple[float, float], axis: FactorAxis) -> AxisPart:
     low, high = (100.0 * axis.at(end) for end in ends)
     return AxisPart(low, high - low)
 
@@ -165,10 +163,10 @@ def _line(
         "css": _css(line.outcome),
         "outcome": outcome_words(line),
         "factor": factor_range(line.row),
-        "error": _span(line.error, axis),
+        "error": asdict(_span(line.error, axis)) if axis and line.error else None,
         "error_words": error_words(line),
         "required": 100.0 * axis.at(limit(line.row)) if axis else None,
-        "spread": _span(line.spread, axis),
+        "spread": asdict(_span(line.spread, axis)) if axis and line.spread else None,
         "spread_words": spread_words(line),
         "place": place_words(line.row, shape),
         "diameter": diameter_words(line, results.units),

@@ -63,13 +63,15 @@ def render(results: Results, directory: Path) -> str:
     of_worst = [s for s in results.shapes if worst and s.pin == worst.pin]
     small = Markup(_drawing(of_worst[0], shown, SMALL_DRAWING_WIDTH)) if of_worst else ""
 
+    overview = overview_part(results, anchors, small) if results.pins else None
+
     def plot(kind: str, *names: str) -> Plot | None:
         return plots.get(plot_name(kind, *names))
 
     return _template().render(
         results=shown,
         units=shown.units,
-        overview=overview_part(results, anchors, small) if results.pins else None,
+        overview=overview,
         largest=largest_force(results) if results.reactions else "No pin was solved.",
         factors=factor_part(shown),
         envelope=envelope_part(results),
@@ -88,7 +90,7 @@ def render(results: Results, directory: Path) -> str:
         motion=motion_parts(shown, plot, directory),
         loads=load_part(shown),
         timings=timings(results),
-        scripts=script_part(plots, document(results, printed)),
+        scripts=script_part(plots, document(results, printed, overview)),
     )
 
 

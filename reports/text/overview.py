@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
@@ -49,7 +49,8 @@ def why(results: Results, most: int = MAX_PEAKS) -> Content:
         return []
     bad = [line for line in lines if line.outcome not in GOOD] or lines[:1]
     shapes = {shape.pin: shape for shape in results.shapes}
-    parts = [_path(results, lines), _actions(bad), _peaks(results, bad[:most], shapes)]
+    failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
+    parts = [_path(results, lines), _actions(failing), _peaks(results, bad[:most], shapes)]
     return [part for part in parts if part]
 
 
@@ -260,7 +261,7 @@ def _path(results: Results, lines: Sequence[PinLine]) -> str:
     rest = [force for force in forces.values() if force < LARGE_FORCE * most]
     verb = "carry" if len(through) > 1 else "carries"
     text = f"{names(through)} {verb} up to {engineering(most, 3)} {units.force}"
-    others = f", the others up to {engineering(max(rest), 3)}" if rest else ""
+    others = f", others up to {engineering(max(rest), 3)}" if rest else ""
     return f"{text}{others}."
 
 
@@ -301,13 +302,16 @@ def _actions(lines: Sequence[PinLine]) -> str:
 
 def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShape]) -> str:
     units = results.units
+    verb = " reaches" if len(lines) == 1 else ""
     told = [
-        f"{x.pin} {engineering(x.row.max_von_mises, 3)} {units.stress} "
+        f"{x.pin}{verb} {engineering(x.row.max_von_mises, 3)} {units.stress} "
         f"({place_words(x.row, shapes.get(x.pin))})".replace(" ()", "")
         for x in lines
     ]
     first = lines[0].row
     permitted = (first.yield_strength or 0.0) / limit(first)
+    if len(told) == 1:
+        return f"{told[0]}."
     if not permitted:
         return f"Largest stress: {'; '.join(told)}."
     word = "permitted" if first.required else "the yield strength"

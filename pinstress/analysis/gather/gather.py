@@ -25,7 +25,7 @@ from pinstress.study.model.pins import far_ends, outline, weight
 from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
 from pinstress.study.model.tasks import Task, assumed_distribution
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.tables import ReportTable
@@ -46,6 +46,13 @@ def _in_lugs(study: Study) -> bool:
     joints = study.table.analysis.joints
     return joints in ("contact", "foundation") or (
         joints == "auto" and any(pin.lug for pin in study.table.pin.values())
+    )
+
+
+def materials_assumption(study: Study) -> tuple[str, ...]:
+    """Return a sentence for each material that the study only names."""
+    return tuple(
+        f"Material {x.name} is that of {x.file}: {x.source}." for x in named_materials(study)
     )
 
 
@@ -166,6 +173,7 @@ def _results(
         published_source=table.published.source if table.published else "",
         assumptions=(
             *table.assumptions,
+            *materials_assumption(study),
             *factor_assumption(study, (row for _, row in rows)),
             *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),

@@ -133,6 +133,8 @@ def moved(text: str, old: Path, new: Path) -> str:
 
 def _files(document: Any) -> Iterator[tuple[Any, str]]:
     """Return the tables that name a file, each with the key that does."""
+    if "materials" in document:
+        yield document, "materials"
     yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
     published = document.get("published", {})
     yield from ((published, key) for key in PUBLISHED_TABLE_KEYS if key in published)

@@ -18,6 +18,7 @@ from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import InputError, Wrong, study_error
 from pinstress.study.reading.file_names import same_files
 from pinstress.study.reading.limits import control_characters, texts
+from pinstress.study.reading.materials import StoredMaterial, looked_up, with_materials
 from pinstress.study.reading.plausible import questions
 from pinstress.study.reading.toml_text import read_toml
 from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
@@ -169,7 +170,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     lines = text if located else ""
     provenance: list[Sourced] = []
     long: list[Wrong] = []
-    raw = unwrapped(read_toml(path, text), "", provenance, long)
+    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, long)
     if long:
         raise study_error(path, lines, long)
     wrong = [
@@ -203,9 +204,17 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
 
 
 def raw_study(study: Study) -> dict[str, Any]:
-    """Return the content of the study's file, without provenance and notes."""
-    raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
-    return raw
+    """Return the content of the study's file, without provenance and notes, with the materials
+    that it only names.
+    """
+    raw = with_materials(study.path, read_toml(study.path, study.text))
+    plain: dict[str, Any] = unwrapped(raw, "", [], [])
+    return plain
+
+
+def named_materials(study: Study) -> tuple[StoredMaterial, ...]:
+    """Return the materials that a study names and does not define."""
+    return tuple(looked_up(study.path, read_toml(study.path, study.text)).values())
 
 
 def with_value(raw: Mapping[str, Any], path: Sequence[str | int], value: Any) -> dict[str, Any]:

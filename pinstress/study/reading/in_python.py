@@ -10,6 +10,7 @@ from typing import Any
 
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study, unwrapped, with_value
+from pinstress.study.reading.materials import looked_up
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
@@ -59,6 +60,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
         match parts:
             case ["pin", str(pin), "lug", str(connection), *inner]:
                 write_lug(document, study, pin, connection, inner[:-1])
+            case ["material", str(name), _, *_]:
+                _write_material(document, study, name)
         _place(study, document, parts, key)[parts[-1]] = _plain(value, key)
     return parse_study(study.path, tomlkit.dumps(document), study.located)
 
@@ -115,6 +118,15 @@ def _unwrapped(table: Any) -> Any:
     """Return the value of { value, provenance }."""
     wrapped = isinstance(table, Mapping) and "value" in table and "provenance" in table
     return table["value"] if wrapped else table
+
+
+def _write_material(document: Any, study: Study, name: str) -> None:
+    """Write the table of a material that a study only names, with its source."""
+    import tomlkit
+
+    stored = looked_up(study.path, document.unwrap()).get(name)
+    if stored is not None:
+        document.setdefault("material", tomlkit.table())[name] = stored.table
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:

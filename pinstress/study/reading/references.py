@@ -9,6 +9,7 @@ from assess.fatigue.flight import flight
 from assess.requirement import LEVELS_OF_CHECK
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.materials import library
 from pinstress.study.schema.cases import (
     ApplyTable,
     GivenCase,
@@ -111,6 +112,8 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
 
 def _known(where: str, what: str, name: str, names: Collection[str]) -> Iterator[Wrong]:
     if name not in names:
+        if what == "material":
+            names = [*names, *library()]
         code = f"unknown-{what.split()[-1]}"
         hint = partial(near, name, names)
         yield Wrong(f"{where}: no {what} {as_text(name)}; ", hint, code=code, name=name)

@@ -148,7 +148,11 @@ class StudyTable(StrictTable):
     units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
     """The unit system of numbers without a unit, and of the results."""
     material: dict[str, MaterialTable] = {}
-    """Materials by name."""
+    """Materials by name. Others that are named are those of `materials` or of the library (see
+    `pinstress materials`)."""
+    materials: str | None = None
+    """A TOML file with further `[material.NAME]`, in the study's folder; its quantities have
+    units."""
     lug_defaults: LugTable | None = None
     """What every lug has unless its own table says otherwise. With it, pins that are not clamped
     have a lug at every connection (see `pin.NAME.lugs`)."""

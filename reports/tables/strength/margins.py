@@ -169,7 +169,7 @@ def not_made_briefly(results: Results) -> str:
     owner = owners.pop() if len(owners) == 1 else ""
     if owner.startswith("material."):
         lacks = ", ".join(x.rpartition(".")[2] for x in alone)
-        return f"{owner.removeprefix('material.')} lacks {lacks}"
+        return f"{owner.removeprefix('material.').strip(chr(34))} lacks {lacks}"
     return f"missing {', '.join(alone)}" if alone else ""
 
 
