@@ -18,7 +18,7 @@ from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 from reports.format.words import undecided_because
-from reports.tables.strength.changes import SINGULARITY_REMEDIES
+from reports.tables.strength.changes import singularity_remedies
 from reports.tables.strength.margins import not_made_briefly
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
@@ -344,12 +344,7 @@ def _exceeded(lines: Sequence[PinLine]) -> Content:
 def _singular(lines: Sequence[PinLine]) -> Content:
     """Return the remedies of the singularities that govern pins that are not safe."""
     rows = [x.row for x in lines if x.outcome not in GOOD]
-    kinds = [zone.kind for row in rows for zone in row.singular_at if zone.governs]
-    ways = [
-        remedy
-        for name, remedy in SINGULARITY_REMEDIES.items()
-        if any(kind.endswith(name) for kind in kinds)
-    ]
+    ways = singularity_remedies(zone for row in rows for zone in row.singular_at if zone.governs)
     return [f"For a maximum instead of a range: {'; '.join(ways)}."] if ways else []
 
 
