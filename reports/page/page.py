@@ -5,17 +5,19 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from reports.data.decision import worst_first
 from reports.data.envelope import detailed_rows
 from reports.data.results import PinShape, Results
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
-from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, headline, verdict_words
+from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, verdict_words
 from reports.page.drawing_places import place_marks
 from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
 from reports.page.loads import largest_force, load_part, timings
 from reports.page.motion import motion_parts
+from reports.page.overview import overview_part
 from reports.page.paper import document
 from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
 from reports.page.pins import pin_parts
@@ -28,12 +30,12 @@ from reports.plots.spec import Plot
 from reports.plots.theme import style_sheet
 from reports.tables.stress.singular_zones import circles, pin_zones
 from reports.text.method import METHOD_NOTE
-from reports.text.summary import summary
 
 if TYPE_CHECKING:
     from jinja2 import Template
 
 PRINTED_DRAWING_WIDTH = 420.0  # width of a pin's drawing, of half a page
+SMALL_DRAWING_WIDTH = 350.0  # on the first screen
 MAX_PINS_AT_ONCE = 20  # pins; the parts of pages of more are made when they are opened
 
 
@@ -56,13 +58,21 @@ def render(results: Results, directory: Path) -> str:
     printed = {s.pin: _drawing(s, shown, PRINTED_DRAWING_WIDTH) for s in shown.shapes}
     pins, plots = pin_parts(shown, drawings), all_plots(shown)
 
+    anchors = {part.pin: part.anchor for part in pins}
+    worst = next(iter(worst_first(results)), None)
+    of_worst = [s for s in results.shapes if worst and s.pin == worst.pin]
+    small = Markup(_drawing(of_worst[0], shown, SMALL_DRAWING_WIDTH)) if of_worst else ""
+
+    overview = overview_part(results, anchors, small) if results.pins else None
+
     def plot(kind: str, *names: str) -> Plot | None:
         return plots.get(plot_name(kind, *names))
 
     return _template().render(
         results=shown,
         units=shown.units,
-        answer=_answer(results),
+        overview=overview,
+        largest=largest_force(results) if results.reactions else "No pin was solved.",
         factors=factor_part(shown),
         envelope=envelope_part(results),
         margins=margin_part(shown),
@@ -75,20 +85,13 @@ def render(results: Results, directory: Path) -> str:
         signs=Markup(signs()),
         signs_note=SIGNS_NOTE,
         deferred=len(pins) > MAX_PINS_AT_ONCE,
-        anchors={part.pin: part.anchor for part in pins},
+        anchors=anchors,
         plot=plot,
         motion=motion_parts(shown, plot, directory),
         loads=load_part(shown),
         timings=timings(results),
-        scripts=script_part(plots, document(results, printed)),
+        scripts=script_part(plots, document(results, printed, overview)),
     )
-
-
-def _answer(results: Results) -> dict[str, str]:
-    """Return headline and summary; of loads alone, the largest force on a pin."""
-    if results.pins or not results.reactions:
-        return {"headline": headline(results), "summary": summary(results)}
-    return {"headline": largest_force(results), "summary": ""}
 
 
 def _template() -> Template:

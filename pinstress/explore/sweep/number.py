@@ -5,7 +5,6 @@ Any number of a study has a key, as messages spell it; the schema gives its dime
 
 from __future__ import annotations
 
-import copy
 import math
 import re
 from collections.abc import Mapping
@@ -13,8 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pinbase.errors import ArgumentError
-from pinstress.study.reading.file import Study, raw_study
+from pinstress.study.reading.file import Study, raw_study, with_value
 from pinstress.study.reading.in_python import key_parts
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
 from pinstress.study.schema.types import Probe
 from pinstress.study.schema.units import (
@@ -89,8 +89,9 @@ def number_at(study: Study, key: str) -> Number:
 
 def _single(study: Study, key: str) -> Number:
     raw = raw_study(study)
-    path = _path(study, raw, key)
-    value = _at(raw, path)
+    complete = with_lug_defaults(raw)
+    path = _path(study, complete, key)
+    value = _at(complete, path)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = "a table" if isinstance(value, Mapping) else "a list"
         what = "true or false" if isinstance(value, bool) else what
@@ -111,17 +112,6 @@ def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
             "not-a-number",
         )
     return float(value)
-
-
-def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
-    """Return a copy of a study's raw content with another value at a path; the rest is shared."""
-    content = copy.copy(raw)
-    here: Any = content
-    for part in path[:-1]:
-        here[part] = copy.copy(here[part])
-        here = here[part]
-    here[path[-1]] = value
-    return content
 
 
 def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.file import Study, parse_study
+from pinstress.study.reading.file import Study, parse_study, unwrapped, with_value
+from pinstress.study.reading.materials import looked_up
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
 KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
@@ -54,14 +56,77 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
-        *parents, last = key_parts(study, key)
-        table = document
-        for part in parents:
-            table = _inside(study, table, part, key)
-        if isinstance(last, int):
-            _inside(study, table, last, key)  # an item that is there
-        table[last] = _plain(value, key)
+        parts = key_parts(study, key)
+        match parts:
+            case ["pin", str(pin), "lug", str(connection), *inner]:
+                write_lug(document, study, pin, connection, inner[:-1])
+            case ["material", str(name), _, *_]:
+                _write_material(document, study, name)
+        _place(study, document, parts, key)[parts[-1]] = _plain(value, key)
     return parse_study(study.path, tomlkit.dumps(document), study.located)
+
+
+def write_lug(
+    document: Any, study: Study, pin: str, connection: str, inner: Iterable[str | int] = ()
+) -> None:
+    """Write the empty table of a lug that is in a study only by its lug_defaults.
+
+    document: the study as tomlkit has it.
+    inner: names of tables in that of the lug, to be written, too.
+    """
+    import tomlkit
+
+    known = study.table.pin.get(pin)
+    if known is None or connection not in known.lug:
+        return
+    table = document["pin"][pin]
+    for name in ("lug", connection, *inner):
+        if name not in table:
+            table[name] = tomlkit.inline_table()
+        table = table[name]
+
+
+def changed_raw(
+    study: Study, raw: Mapping[str, Any], changes: Mapping[str, Any]
+) -> Mapping[str, Any]:
+    """Return the content of a study (pinstress.study.reading.file.raw_study) with the changes that
+    `changed_study` takes: a hundred times sooner, but without a text.
+
+    Raises: InputError for a key that does not exist in the study.
+    """
+    for key, value in changes.items():
+        parts = key_parts(study, key)
+        _place(study, with_lug_defaults(dict(raw)), parts, key)
+        raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
+    return raw
+
+
+def _place(study: Study, table: Any, parts: list[str | int], key: str) -> Any:
+    """Return the table or list that has the last part of a key.
+
+    Raises: InputError for a key that does not exist; a table may lack its last part.
+    """
+    for part in parts[:-1]:
+        table = _inside(study, table, part, key)
+    if isinstance(parts[-1], int):
+        table = _unwrapped(table)
+        _inside(study, table, parts[-1], key)  # an item that is there
+    return table
+
+
+def _unwrapped(table: Any) -> Any:
+    """Return the value of { value, provenance }."""
+    wrapped = isinstance(table, Mapping) and "value" in table and "provenance" in table
+    return table["value"] if wrapped else table
+
+
+def _write_material(document: Any, study: Study, name: str) -> None:
+    """Write the table of a material that a study only names, with its source."""
+    import tomlkit
+
+    stored = looked_up(study.path, document.unwrap()).get(name)
+    if stored is not None:
+        document.setdefault("material", tomlkit.table())[name] = stored.table
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:
@@ -87,8 +152,7 @@ def key_parts(study: Study, key: str) -> list[str | int]:
 
 
 def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
-    if isinstance(table, Mapping) and "value" in table and "provenance" in table:
-        table = table["value"]
+    table = _unwrapped(table)
     try:
         if isinstance(part, int) and part < 0:
             raise IndexError

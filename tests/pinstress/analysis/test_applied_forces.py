@@ -18,6 +18,7 @@ def test_they_do_the_work_that_the_balance_of_powers_has() -> None:
     (motion,) = loads_only(load_study(STUDIES / "excavator.toml"), ["dig"]).motion
     (load,) = motion.applied
     assert load.body == "bucket"
+    assert motion.time is not None
     velocity = np.gradient(load.position, motion.time, axis=0, edge_order=2)
     power = (load.force * velocity).sum(axis=1)
     largest = np.abs(motion.ledger.applied).max()
