@@ -102,7 +102,7 @@ class Engine:
         effects = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
         if effects.note:
             return effects.note
-        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in effects.rows}
+        by_key = {x.key: x.stress for x in effects.rows}
         missing = [key for key in keys if key not in by_key]
         if missing:
             return f"no derivative with respect to {', '.join(missing)}"
@@ -120,11 +120,6 @@ class Engine:
         plan = replace(plan, sensitive=sensitive, explained=explained)
         plan = _quick(plan) if accuracy == "quick" else plan
         return solve(plan, cache=SolvedPins(self._memo), memo=self._memo)
-
-
-def _of_pin(key: str) -> bool:
-    """Whether a parameter is one of the pin's own table: others are of loads and materials."""
-    return not key.startswith(("force ", "moment ", "material."))
 
 
 def _quick(plan: Plan) -> Plan:

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study
 from pinstress.study.schema.shown import as_text
 
 KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
 INDEX_PATTERN = re.compile(r"\[(\d+)\]")
+INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
+PLAIN_NAME_PATTERN = re.compile(r'[^.\["]+')
+# Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
+JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
+PIN_PATTERN = re.compile(r'pin\.(?:"[^"]*"|[^.\["]+)\.')
+PAIR_KEYS = "edge_radius", "bore_radius"  # of both ends, also where one number stands for both
 
 
 def study_from(
@@ -45,8 +52,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
     """Return the study with other values.
 
     changes: values by key as in messages: {"pin.E.profile[2].diameter": "1.5 in",
-    "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced values is
-    removed; comments are kept.
+    "analysis.tolerance": 0.01}; for one that stands for several, see `single_keys`. Missing keys
+    are added, and tables of lugs. The provenance of replaced values is removed; comments are kept.
 
     Raises: InputError as load_study, and for a key that does not exist in the study.
     """
@@ -54,14 +61,43 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
-        *parents, last = key_parts(study, key)
-        table = document
-        for part in parents:
-            table = _inside(study, table, part, key)
-        if isinstance(last, int):
-            _inside(study, table, last, key)  # an item that is there
-        table[last] = _plain(value, key)
+        try:
+            for single in single_keys(key):
+                _change(study, document, single, value)
+        except ArgumentError as error:
+            raise study.error(f"{key}: {error}", code=error.code) from None
     return parse_study(study.path, tomlkit.dumps(document), study.located)
+
+
+def single_keys(key: str) -> Iterator[str]:
+    """Yield the keys that a key stands for.
+
+    "pin.E.profile[1-3].diameter" stands for three, and "pin.E.meridian[2][1] & band.B.z[1]" for two
+    of pin E.
+
+    Raises: ArgumentError for a range that does not count upwards.
+    """
+    pin, (first_key, *others) = PIN_PATTERN.match(key), JOINT_PATTERN.split(key)
+    if pin is not None and others:
+        for part in (first_key, *(pin[0] + other for other in others)):
+            yield from single_keys(part)
+        return
+    match = INDEX_RANGE_PATTERN.search(key)
+    if match is None:
+        yield key
+        return
+    first, last = (int(end) for end in match.groups())
+    if not 0 < first < last:
+        raise ArgumentError(
+            f"[{first}-{last}] is no range; the smaller element first", "not-a-range"
+        )
+    for index in range(first, last + 1):
+        yield from single_keys(f"{key[: match.start()]}[{index}]{key[match.end() :]}")
+
+
+def key_part(name: str) -> str:
+    """Return a name as a key has it: in quotes where it has a dot or a bracket."""
+    return name if PLAIN_NAME_PATTERN.fullmatch(name) else f'"{name}"'
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:
@@ -84,6 +120,23 @@ def key_parts(study: Study, key: str) -> list[str | int]:
     if not parts:
         raise study.error("'' is not a key", code="not-a-key")
     return parts
+
+
+def _change(study: Study, document: Any, key: str, value: Any) -> None:
+    """Set the value at a key of a document of tomlkit."""
+    *parents, last = key_parts(study, key)
+    table = document
+    for depth, part in enumerate(parents):
+        # A lug needs no table: it is known by its connection, and has defaults.
+        if depth in (2, 3) and (parents[0], parents[2]) == ("pin", "lug"):
+            table.setdefault(part, {})
+        owner, table = table, _inside(study, table, part, key)
+        if part in PAIR_KEYS and isinstance(table, int | float | str):
+            owner[part] = [table, table]
+            table = owner[part]
+    if isinstance(last, int):
+        _inside(study, table, last, key)  # an item that is there
+    table[last] = _plain(value, key)
 
 
 def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
