@@ -101,6 +101,12 @@ def draw_pin(
     return "".join(parts) + "</svg>"
 
 
+def drawn_ends(shape: PinShape, width: float = DRAWING_WIDTH) -> tuple[float, float]:
+    """Return x of the ends of a pin in its drawing."""
+    pieces = _pieces(shape, width)
+    return pieces[0].x, pieces[-1].x + pieces[-1].width
+
+
 def _pieces(shape: PinShape, across: float) -> list[_Piece]:
     length = sum(s[0] for s in shape.segments)
     widths = [s[1] for s in shape.segments] + [diameter for diameter, _ in shape.far_ends]

@@ -6,6 +6,7 @@ import hashlib
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -46,7 +47,7 @@ class Sourced:
     value: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """A valid study.
 
@@ -62,6 +63,24 @@ class Study:
     provenance: tuple[Sourced, ...]
     questions: tuple[str, ...] = ()
     located: bool = True
+
+    def __repr__(self) -> str:
+        parts = f"pins: {len(self.table.pin)}, cases: {len(self.table.case)}, {self.table.units}"
+        return f"<Study {self.table.title!r} ({self.path}): {parts}>"
+
+    def _repr_html_(self) -> str:
+        """Return the pins with their connections, clamps and material as an HTML table."""
+        lines = [("pin", "connections", "clamps", "material")]
+        for name, pin in self.table.pin.items():
+            lines.append(
+                (name, ", ".join(self.connections(name)), ", ".join(pin.clamp), pin.material)
+            )
+        body = "".join(
+            f"<tr>{''.join(f'<td>{escape(x)}</td>' for x in line)}</tr>" for line in lines
+        )
+        cases = f"cases: {', '.join(self.table.case)}; units: {self.table.units}"
+        title = f"<p><b>{escape(self.table.title)}</b> ({escape(str(self.path))})</p>"
+        return f"{title}<p>{escape(cases)}</p><table>{body}</table>"
 
     @property
     def warnings(self) -> tuple[str, ...]:
