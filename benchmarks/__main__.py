@@ -2,7 +2,8 @@
 
 Those of accuracy alone come first, one on each core; those that measure times follow one by one.
 With --record a table also goes to docs/measured/NAME.md, with the day and the machine, for the page
-of the documentation that includes it. `--pins N` is how many pins `places` draws at random.
+of the documentation that includes it. `--pins N` is how many pins `places` draws at random,
+`--edits N` how many edits.
 """
 
 from __future__ import annotations
@@ -42,6 +43,7 @@ from benchmarks.record import record
 from benchmarks.runs import (
     cluster,
     designs_page,
+    edits,
     gear,
     least_weight,
     linkages,
@@ -96,6 +98,7 @@ TIMES = {
     "shapes": shapes.shapes,
     "models": models.models,
     "shoulders": shoulders.shoulders,
+    "edits": edits.edits,
     "sweep": sweep.sweep,
     "cluster": cluster.cluster,
     "calculix": calculix.calculix,
@@ -104,15 +107,17 @@ TIMES = {
     "peers-drop": peers_drop.peers_drop,
 }
 ALL = ACCURACY | TIMES
+COUNTED = ("--pins", "places", places.places), ("--edits", "edits", edits.edits)
 ABREAST = max(2, cores())  # with 1 they would not be processes
 
 
 def main(arguments: list[str]) -> int:
     """Print the tables of the named benchmarks, or of all."""
-    if "--pins" in arguments:
-        at = arguments.index("--pins")
-        ALL["places"] = partial(places.places, int(arguments[at + 1]))
-        arguments = arguments[:at] + arguments[at + 2 :]
+    for option, name, benchmark in COUNTED:
+        if option in arguments:
+            at = arguments.index(option)
+            ALL[name] = partial(benchmark, int(arguments[at + 1]))
+            arguments = arguments[:at] + arguments[at + 2 :]
     names = [a for a in arguments if a != "--record"]
     unknown = [n for n in names if n not in ALL]
     if unknown:

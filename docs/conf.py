@@ -9,7 +9,14 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent)]
 
 project = "pinstress"
 version = release = installed("pinstress")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "modules", "study_reference"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "captions",
+    "mathml",
+    "modules",
+    "study_reference",
+]
 myst_enable_extensions = ["amsmath", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["measured"]  # tables that pages include

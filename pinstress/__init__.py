@@ -35,8 +35,9 @@ if TYPE_CHECKING:
     from pinstress.analysis.results import RunResults, run, solve
     from pinstress.explore.curve import curve
     from pinstress.explore.sweep.sweep import sweep
+    from pinstress.study.model.load import load_study
     from pinstress.study.reading.errors import InputError
-    from pinstress.study.reading.file import Study, load_study
+    from pinstress.study.reading.file import Study
     from pinstress.study.reading.in_python import changed_study, study_from
     from pinstress.study.reading.shipped import shipped_studies
 
@@ -64,7 +65,7 @@ _MODULE_OF = {
     "Study": "pinstress.study.reading.file",
     "changed_study": "pinstress.study.reading.in_python",
     "curve": "pinstress.explore.curve",
-    "load_study": "pinstress.study.reading.file",
+    "load_study": "pinstress.study.model.load",
     "prepare": "pinstress.analysis.plan",
     "run": "pinstress.analysis.results",
     "shipped_studies": "pinstress.study.reading.shipped",

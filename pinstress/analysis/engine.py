@@ -10,15 +10,21 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from functools import cached_property
 from types import MappingProxyType
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from pinbase.memo import Memo
+from pinbase.processes.threads import one_thread
 from pinbase.records import pack, unpack
+from pinstress.analysis.gather.gather import rows_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import RunResults, solve
-from pinstress.study.reading.file import Study
-from pinstress.study.reading.in_python import changed_study
+from pinstress.analysis.reused_loads import reused_loads
+from pinstress.analysis.solve import solve_tasks
+from pinstress.study.reading.extras import require_fatigue
+from pinstress.study.reading.file import Study, raw_study, with_raw
+from pinstress.study.reading.in_python import changed_raw, changed_study
 from reports.data.results import PinResult
 
 T = TypeVar("T")
@@ -26,6 +32,7 @@ Accuracy = Literal["full", "quick"]
 Changes = Mapping[str, float | str]  # "pin.E.profile[2].diameter": 2.4, in the study's units
 
 AS_IS: Changes = MappingProxyType({})
+TABLES_WITHOUT_ROWS = "vary", "beam_check", "motion_check", "report"
 QUICK_TOLERANCE = 0.1  # of a quick answer, whose error says how far it is to be believed
 
 
@@ -69,6 +76,11 @@ class Engine:
         self._cases = None if cases is None else list(cases)
         self._memo = Memo() if memo is None else memo
 
+    @cached_property
+    def _raw(self) -> Mapping[str, Any]:
+        """The content of the study, but for tables that no row needs."""
+        return {k: v for k, v in raw_study(self.study).items() if k not in TABLES_WITHOUT_ROWS}
+
     def changed(self, changes: Changes = AS_IS) -> Study:
         """The study with other values by their keys, in its own units or as texts with a unit.
 
@@ -89,7 +101,23 @@ class Engine:
         """One row of the answer, for which no other pin is solved, and nothing that only explains
         it. Raises: InputError.
         """
-        return self._solved(changes, [pin], accuracy, explained=False)[pin, case]
+        return self.rows(changes, [pin], accuracy=accuracy)[pin, case]
+
+    def rows(
+        self, changes: Changes, pins: Iterable[str] | None = None, *, accuracy: Accuracy = "full"
+    ) -> dict[tuple[str, str], PinResult]:
+        """The rows of some pins (all by default) by pin and case, as `row` has each.
+
+        Raises: InputError.
+        """
+        raw = changed_raw(self.study, self._raw, changes)
+        study = with_raw(self.study, raw)
+        require_fatigue(study)
+        plan = self._plan(study, raw, self._pins if pins is None else pins)
+        plan = _with(replace(plan, explained=False), accuracy)
+        with one_thread():
+            outcomes = solve_tasks(plan, cache=SolvedPins(self._memo), memo=self._memo)
+        return rows_of(plan, outcomes)
 
     def slopes(
         self, changes: Changes, pin: str, case: str, keys: Collection[str]
@@ -114,15 +142,21 @@ class Engine:
         pins: Iterable[str] | None,
         accuracy: Accuracy,
         sensitive: bool = False,
-        explained: bool = True,
     ) -> RunResults:
-        plan = prepare(self.changed(changes), pins=pins, cases=self._cases)
-        plan = replace(plan, sensitive=sensitive, explained=explained)
-        plan = _quick(plan) if accuracy == "quick" else plan
+        plan = self._plan(self.changed(changes), changed_raw(self.study, self._raw, changes), pins)
+        plan = _with(replace(plan, sensitive=sensitive), accuracy)
         return solve(plan, cache=SolvedPins(self._memo), memo=self._memo)
 
+    def _plan(self, study: Study, raw: Mapping[str, Any], pins: Iterable[str] | None) -> Plan:
+        loads_of = reused_loads(raw, self._memo)
+        return prepare(study, pins=pins, cases=self._cases, loads_of=loads_of)
 
-def _quick(plan: Plan) -> Plan:
-    """A plan with a tolerance that few meshes meet, and rough cells of contact."""
+
+def _with(plan: Plan, accuracy: Accuracy) -> Plan:
+    """A plan of an accuracy: a quick one has a tolerance that few meshes meet, and rough cells of
+    contact.
+    """
+    if accuracy == "full":
+        return plan
     tolerance = max(plan.requirement.tolerance, QUICK_TOLERANCE)
     return replace(plan, requirement=replace(plan.requirement, tolerance=tolerance, cells="rough"))

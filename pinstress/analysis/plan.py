@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Literal
@@ -25,9 +25,11 @@ from pinstress.study.reading.choices import (
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.cases import GivenCase, LegCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
+LoadsOf = Callable[[Study, list[str]], dict[str, CaseLoads]]  # of cases, by their names
 
 
 def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
@@ -35,11 +37,15 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 
     Raises: InputError with the errors of all cases.
     """
-    mechanism = linkage(study) if study.table.mechanism else None
-    if mechanism is not None:
-        determined(study, mechanism)  # once, not in every case
     wrong = Errors(study.path)
-    attempts = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    mechanism = wrong.attempt(lambda: linkage(study)) if study.table.mechanism else None
+    if mechanism is not None:  # once, not in every case
+        wrong.attempt(partial(determined, study, mechanism))
+    given = [name for name in cases if isinstance(study.table.case[name], GivenCase | LegCase)]
+    possible = given if wrong.lines else cases
+    attempts = {
+        name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in possible
+    }
     wrong.tell()
     loads = {name: loads for name, loads in attempts.items() if loads is not None}
     require_times(study, {name: case.reactions.times for name, case in loads.items()})
@@ -50,6 +56,7 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """The inputs of an analysis before anything is solved; all have been read and checked.
 
+    pins: names of those that were chosen, also where no case loads them.
     checked: the task whose pin the beam check compares, if any.
     also: the fields that are wanted in addition to those of the model at the governing instant.
     sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
@@ -68,6 +75,7 @@ class Plan:
     sensitive: bool = False
     limit_load: bool = False
     explained: bool = True
+    pins: tuple[str, ...] = ()
 
 
 def prepare(
@@ -80,6 +88,7 @@ def prepare(
     memory: float | None = None,
     also: ExtraFields = None,
     limit_load: bool = False,
+    loads_of: LoadsOf = all_loads,
 ) -> Plan:
     """Compute the reactions and prepare the pins for `solve`.
 
@@ -89,6 +98,7 @@ def prepare(
     also: fields along the whole motion, or of the whole of a revolved pin.
     limit_load: compute the limit load of every row that yields, however long it takes; otherwise
     the study decides, where "auto" gives each 20 s of processor time.
+    loads_of: gives the loads of cases.
 
     Raises: InputError for bad input.
     """
@@ -102,7 +112,7 @@ def prepare(
     requirement = requirement_of(study, require_model(model), require_tolerance(tolerance), memory)
     wrong = Errors(study.path)
     published = wrong.attempt(lambda: read_published(study))
-    loads = wrong.attempt(lambda: all_loads(study, chosen))
+    loads = wrong.attempt(lambda: loads_of(study, chosen))
     shapes = {name: wrong.attempt(partial(pin_of, study, name)) for name in names}
     wrong.tell()
     assert published is not None
@@ -126,7 +136,10 @@ def prepare(
             )
         if task.lugs:
             _require_model(study, requirement.model, task.pin.name)
-    return Plan(study, requirement, loads, todo, published, checked, also, limit_load=limit_load)
+    return Plan(
+        study, requirement, loads, todo, published, checked, also, limit_load=limit_load,
+        pins=tuple(names),
+    )  # fmt: skip
 
 
 def _require_model(study: Study, model: Model, pin: str) -> None:

@@ -17,6 +17,7 @@ from geometry import CutPin, Pin, PinLike
 from loads import read_regular
 from pinstress.analysis.assessed.limits import rung_of
 from pinstress.analysis.plan import Plan
+from pinstress.study.model.requirements import required_factors
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
 from reports.data.results import Field, PinResult
@@ -88,6 +89,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         [(case.reactions.times, case.range) for case in cases],
         task.material,
         replace(plan.requirement, memory=None),
+        required_factors(study, task.pin.name, (loads.case for loads in task.loads)),
         plan.also,
         plan.sensitive,
         plan.explained,

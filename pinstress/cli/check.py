@@ -20,13 +20,14 @@ from pinstress.study.model.mechanism.linkage import determined, linkage
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import shape_notes, weight
 from pinstress.study.model.sequence import require_times
-from pinstress.study.model.tasks import tasks
+from pinstress.study.model.tasks import assumed_distribution, tasks
 from pinstress.study.reading.errors import Errors
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
 from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.pins import PinTable
+from pinstress.study.schema.require import RequireTable, level_of
 from pinstress.study.schema.vary import VaryTable
 
 
@@ -38,6 +39,8 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
     """
     table = study.table
     lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
+    for stored in named_materials(study):
+        lines.append(f"material {stored.name}: that of {stored.file} ({stored.source})")
     wrong = Errors(study.path)
     wrong.attempt(lambda: read_published(study))
     mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
@@ -67,12 +70,22 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
+    lines += filter(None, [assumed_distribution(study, todo)])
+    lines += map(_requirement, table.require)
     warnings = other_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
         warnings += _impossible(study) if todo else []
     loose = [line for task in todo for line in unheld(study, task).values()]
     return "\n".join(lines), loose, warnings
+
+
+def _requirement(table: RequireTable) -> str:
+    """Describe a requirement: "requires rupture at ultimate load, factor 1.5: pin E in landing"."""
+    level = "" if table.check == "fatigue" else f" at {level_of(table)} load"
+    pins = f"pin{'s' * (len(table.pins) > 1)} {', '.join(table.pins)}" if table.pins else "all pins"
+    cases = f" in {', '.join(table.cases)}" if table.cases else ""
+    return f"requires {table.check}{level}, factor {table.factor:g}: {pins}{cases}"
 
 
 def _sampled(vary: VaryTable) -> bool:

@@ -16,6 +16,7 @@ from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
 from pinstress.cli.export import export
+from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -95,7 +96,7 @@ def _status(error: BaseException) -> int | None:
 @click.group(
     cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
+    epilog="A first run: pinstress init trial && pinstress run trial/pin_in_lugs.toml",
 )
 @click.version_option(package_name="pinstress")
 def commands() -> None:
@@ -124,9 +125,9 @@ def _settle_environment() -> None:
     help=example("pinstress run studies/grenier2008.toml --pins B,E --out out/trial")
     + "\nCompute reactions, stresses and safety factors. Prints the safety factor table; writes "
     "tables, VTK files and report.html with its plots.\n\n"
-    "Exit status: 0 done; 1 done, but a requested accuracy was not reached or CalculiX disagrees; "
-    "2 bad input; 3 the solution failed; 4 with --fail-on-miss, where a pin misses its "
-    "requirements; 130 interrupted.",
+    "Exit status: 0 done; 1 done, but a requested accuracy was not reached, a stated requirement "
+    "was not checked, or CalculiX disagrees; 2 bad input; 3 the solution failed; 4 with "
+    "--fail-on-miss, where a pin misses its requirements; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>].")
@@ -179,8 +180,14 @@ def _settle_environment() -> None:
 @click.option(
     "--fail-on-miss",
     is_flag=True,
-    help="Exit with status 4 where a pin fails, or its result depends on a range, or a margin is "
-    "negative.",
+    help="Exit with status 4 where a pin fails, or its result depends on a range, a requirement is "
+    "missed, or a margin is negative.",
+)
+@click.option(
+    "--junit",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Also write the requirements as JUnit XML, a test case each, for continuous integration.",
 )
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
@@ -202,6 +209,7 @@ def run(
     limit_load: bool,
     sensitivities: bool,
     fail_on_miss: bool,
+    junit: Path | None,
     no_cache: bool,
     as_json: bool,
     quiet: bool,
@@ -216,8 +224,9 @@ def run(
     second, cached = second_opinion is not None, not no_cache
     drawn = plots and not no_pictures
     wanted = OutputOptions(
-        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss
-    )
+        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss,
+        junit,
+    )  # fmt: skip
     return run_and_write(
         loaded,
         directory,
@@ -373,8 +382,10 @@ for _command in (
     compare_runs,
     curve,
     export,
+    fits,
     import_,
     init,
+    materials,
     pdf_of,
     plots,
     reliability,

@@ -15,7 +15,6 @@ from pinstress.cli.run import console, progress_bar
 from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
-from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.judged_pin import why_missed
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
@@ -26,6 +25,7 @@ from pinstress.study.model.pins import weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.in_python import key_part
+from reports.data.decision import low_factor
 from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
 from reports.text.least_weight import ChangedDimension, LightRow, print_light

@@ -12,6 +12,7 @@ from typing import Self
 from assess.fatigue.records import PointFatigue, PointHistory
 from assess.margin import PinMargin
 from assess.opinion.records import BeamCheck
+from assess.requirement import StatedRequirement
 from assess.strength.bending_arms import BendingArms
 from fea.core.peak import Refinement, SingularZone
 from pinbase.dimensions import Floats, Force, Length
@@ -176,7 +177,8 @@ class NoSuchRow(KeyError):
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin).
 
-    pins: the rows. spectrum_margins: of checks over all cases of a pin, as fatigue.
+    pins: the rows. stated: the requirements of [[require]].
+    spectrum_margins: of checks over all cases of a pin, as fatigue.
     """
 
     title: str
@@ -198,6 +200,7 @@ class Results:
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Remedy, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
+    stated: tuple[StatedRequirement, ...] = ()
     spectrum_margins: tuple[PinMargin, ...] = ()
     histories: tuple[PointHistory, ...] = ()
     fatigue: Fatigue | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 from typing import Annotated, Literal
 
+from assess.diameter_law import BENDING_EXPONENT
 from assess.judgement import BELOW_YIELD, DEPENDS, SAFE, Judgement
 from assess.margin import Margin
 from assess.opinion.opinions import Opinion
@@ -59,7 +60,8 @@ class Dependence:
 
     what: "clearance", "impulse time", "beneath". value: in words where it is not a number
     ("guided").
-    over: the owner of the range, or "beneath" for the stress beneath contact as the study has it;
+    over: the owner of the range, or of both ranges that only together change the outcome, or
+    "beneath" for the stress beneath contact as the study has it;
     for that stress over a range, `value` is what changes ("clearance").
     factor: of safety at that value.
     given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
@@ -69,7 +71,7 @@ class Dependence:
 
     what: str
     value: str
-    over: Literal["joint", "landing", "beneath"]
+    over: Literal["joint", "landing", "joint and landing", "beneath"]
     factor: float
     given: Annotated[float, "own"] | None = None
     at: Annotated[float, "own"] | None = None
@@ -123,6 +125,8 @@ class PinResult:
     left_out: given forces that were not applied because their band is clamped.
     position: of the drive; position_unit: as in ReactionTable.
     loads: at the governing instant.
+    exponent: with which the factor grows with the diameters, by the law of the section
+    (assess.diameter_law).
     depends_on: values within the study's ranges that change whether the maximum is permitted.
     published_*: the publication's value, in the study's units.
     units: of its numbers.
@@ -142,6 +146,7 @@ class PinResult:
     position: DrivePosition | None = None
     position_unit: str = ""
     loads: tuple[GoverningLoad, ...] = ()
+    exponent: float = BENDING_EXPONENT
     depends_on: tuple[Dependence, ...] = ()
     published_max_von_mises: float | None = None
     published_safety_factor: float | None = None

@@ -80,6 +80,13 @@ folds.forEach((part) => part.addEventListener("toggle", () => {
   if (part.open) fill(part);
   named();
 }));
+// A pin takes the whole width while a part of it is open: what was clicked stays where it was.
+for (const part of document.querySelectorAll(".pins details.fold")) {
+  part.querySelector("summary").addEventListener("click", () => {
+    const { top } = part.getBoundingClientRect();
+    requestAnimationFrame(() => scrollBy(0, part.getBoundingClientRect().top - top));
+  });
+}
 addEventListener("hashchange", reveal);
 document.querySelector(".tools").hidden = false;
 named();

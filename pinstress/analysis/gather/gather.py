@@ -7,11 +7,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
 from geometry import Cut, Flat, Hole, Passage, PinLike, Slot
 from geometry.shape.cut_edges import drawn
+from pinbase.records import in_units
 from pinstress.analysis.assessed.situations import factor_assumption
 from pinstress.analysis.cache import REQUIRED_PACKAGES
 from pinstress.analysis.mechanics.gather_loads import drive_position, mechanics, position_unit
@@ -20,9 +22,10 @@ from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.pins import far_ends, outline, weight
+from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
-from pinstress.study.model.tasks import Task
-from pinstress.study.reading.file import Study
+from pinstress.study.model.tasks import Task, assumed_distribution
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.tables import ReportTable
@@ -43,6 +46,13 @@ def _in_lugs(study: Study) -> bool:
     joints = study.table.analysis.joints
     return joints in ("contact", "foundation") or (
         joints == "auto" and any(pin.lug for pin in study.table.pin.values())
+    )
+
+
+def materials_assumption(study: Study) -> tuple[str, ...]:
+    """Return a sentence for each material that the study only names."""
+    return tuple(
+        f"Material {x.name} is that of {x.file}: {x.source}." for x in named_materials(study)
     )
 
 
@@ -69,6 +79,9 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
         fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
+        stated=stated_requirements(
+            study, [(row.pin, row.case) for _, row in rows], plan.pins, list(plan.loads)
+        ),
         beam_check=next((x.beam_check for x in outcomes if x.beam_check is not None), None),
         surfaces=tuple(surface for outcome in outcomes for surface in outcome.surfaces),
         changes=_worst_changes(outcomes),
@@ -78,6 +91,18 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
         spectrum_margins=tuple(fatigue_margins),
     )
     return _in_study_units(results, study)
+
+
+def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
+    """Return the rows of a plan, as `results_of` has them, by pin and case."""
+    study = plan.study
+    return {
+        (row.pin, row.case): in_units(
+            _completed(study, plan.loads[row.case], task, row, plan.published), study.system.factor
+        )
+        for task, outcome in zip(plan.tasks, outcomes, strict=True)
+        for row in outcome.rows
+    }
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
@@ -148,7 +173,9 @@ def _results(
         published_source=table.published.source if table.published else "",
         assumptions=(
             *table.assumptions,
+            *materials_assumption(study),
             *factor_assumption(study, (row for _, row in rows)),
+            *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
@@ -180,6 +207,7 @@ def _completed(
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
         loads=_governing_loads(task, here),
+        exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
         published_max_von_mises=published_stress,
         published_safety_factor=published_factor,

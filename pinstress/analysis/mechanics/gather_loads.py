@@ -9,6 +9,7 @@ import numpy as np
 
 from loads import (
     GROUND,
+    Applied,
     Dynamics,
     Effort,
     Gear,
@@ -36,7 +37,7 @@ from pinstress.study.model.mechanism.linkage import ground_joint
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published
 from reports.data import results as plain
-from reports.data.mechanics import PitchCurve
+from reports.data.mechanics import AppliedForce, PitchCurve
 
 LEG_VECTORS = {  # of loads.LegDynamics, and what they are
     "wheel_omega": "omega",
@@ -271,7 +272,22 @@ def _motion(
         slider_forces=_slider_forces(dynamics),
         paths=_paths(study, dynamics),
         pitch=_pitch_curves(motion),
+        applied=_applied(dynamics),
     )
+
+
+def _applied(dynamics: Dynamics) -> tuple[AppliedForce, ...]:
+    """Return the forces that the case applies, without springs and loads that are couples alone."""
+    loads = [load for load in dynamics.applied if isinstance(load, Applied)]
+    forces = (
+        AppliedForce(
+            load.body,
+            dynamics.motion.point(load.body, load.at)[0],
+            pairs(load.along(dynamics.motion)[:, None])[:, 0],
+        )
+        for load in loads
+    )
+    return tuple(force for force in forces if force.force.any())
 
 
 def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:

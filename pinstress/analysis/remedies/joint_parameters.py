@@ -18,7 +18,7 @@ from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.in_python import key_part
-from pinstress.study.schema.pins import LugTable
+from pinstress.study.schema.lugs import LugTable
 
 # Of the pin's radius: what steps of a clearance are parts of, as it may be none
 CLEARANCE_SCALE = 1e-3
@@ -72,7 +72,13 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
 
 def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:
     pin = dimension.changed(value)
-    return pin, task.material, known_lugs(study, pin)
+    old = {lug.connection: lug for lug in task.lugs}
+    # A fit has another clearance in the next step of sizes; the derivative is within one.
+    lugs = tuple(
+        replace(lug, clearance=old[lug.connection].clearance, range=old[lug.connection].range)
+        for lug in known_lugs(study, pin)
+    )
+    return pin, task.material, lugs
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:

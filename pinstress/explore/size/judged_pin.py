@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
-from pinstress.explore.size.counted import beneath_factor, low_factor
+from reports.data.decision import beneath_factor, low_factor
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import PinResult, Results

@@ -19,8 +19,7 @@ from pinstress.explore.size.scaled_study import (
     value_of,
     with_what_follows,
 )
-from pinstress.explore.sweep.number import with_value
-from pinstress.study.reading.file import Study, with_raw
+from pinstress.study.reading.file import Study, with_raw, with_value
 from pinstress.study.schema.units import UnitSystem, to_si
 
 PATH_PROBE_STEP = 1e-3  # of a dimension, to see where it is
@@ -81,6 +80,8 @@ def _as_written(table: Any, path: Path) -> Path:
         here = value_of(here)
         if not isinstance(here, dict | list):
             return path[:k]
+        if isinstance(here, dict) and part not in here:
+            return path  # of a lug that is only in lug_defaults
         here = here[part]  # type: ignore[index]
     return path
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from assess.diameter_law import section_exponent
 from fea.core.peak import Maximum
 from pinbase.memo import Memo
 from pinstress.analysis.engine import QUICK_TOLERANCE
@@ -14,7 +15,7 @@ from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.solve import judged, solutions
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.scaled_study import resized_study
-from pinstress.explore.size.section_law import Accuracy, PinTrial, section_exponent
+from pinstress.explore.size.section_law import Accuracy, PinTrial
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study

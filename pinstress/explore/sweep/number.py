@@ -5,16 +5,17 @@ Any number of a study has a key, as messages spell it; the schema gives its dime
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from pinbase.errors import ArgumentError
-from pinstress.study.reading.file import Study, raw_study
+from pinstress.study.model.lugs import known_lugs
+from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.reading.file import Study, raw_study, with_value
 from pinstress.study.reading.in_python import PAIR_KEYS, key_parts, single_keys
-from pinstress.study.schema.pins import LugTable
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
 from pinstress.study.schema.types import Probe
 from pinstress.study.schema.units import (
@@ -82,14 +83,15 @@ def number_at(study: Study, key: str) -> Number:
 
 def _single(study: Study, key: str) -> Number:
     raw = raw_study(study)
+    complete = with_lug_defaults(raw)
     try:
-        path = _path(study, raw, key)
+        path = _path(study, complete, key)
     except ArgumentError:
-        default = _default(study, raw, key)
-        if default is None:
+        clearance = _clearance(study, raw, key)
+        if clearance is None:
             raise
-        return default
-    value = _at(raw, path)
+        return clearance
+    value = _at(complete, path)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = "a table" if isinstance(value, Mapping) else "a list"
         what = "true or false" if isinstance(value, bool) else what
@@ -112,35 +114,20 @@ def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
     return float(value)
 
 
-def with_value(raw: dict[str, Any], path: Path, value: Any) -> dict[str, Any]:
-    """Return a copy of a study's raw content with another value at a path; the rest is shared.
-
-    Tables that are missing on the path are added, and one number for both ends is made two.
+def _clearance(study: Study, raw: dict[str, Any], key: str) -> Number | None:
+    """Return the clearance of a lug that the study leaves to its fit or default; None of any other
+    key.
     """
-    content = copy.copy(raw)
-    here: Any = content
-    for part in path[:-1]:
-        inner = here[part] if _has(here, part) else {}
-        here[part] = copy.copy(inner) if isinstance(inner, Mapping | list) else [inner, inner]
-        here = here[part]
-    here[path[-1]] = value
-    return content
-
-
-def _default(study: Study, raw: dict[str, Any], key: str) -> Number | None:
-    """Return the number of a lug that the study leaves to its default; None of any other key."""
     match key_parts(study, key):
-        case ["pin", str() as pin, "lug", str() as lug, str() as name]:
-            table = study.table.pin.get(pin)
+        case ["pin", str() as pin, "lug", str() as lug, "clearance"] if pin in study.table.pin:
+            profile = pin_of(study, pin).profile
         case _:
             return None
-    if table is None or lug not in (*table.lug, *study.connections(pin)):
-        return None
-    value = getattr(table.lug.get(lug, LugTable()), name, None)
-    if not isinstance(value, float):
-        return None
-    number = _number(study, raw, key, ("pin", pin, "lug", lug, name), 0.0)
-    return replace(number, nominal=value)
+    for known in () if profile is None else known_lugs(study, profile):
+        if known.connection == lug:
+            path = "pin", pin, "lug", lug, "clearance"
+            return replace(_number(study, raw, key, path, 0.0), nominal=known.clearance)
+    return None
 
 
 def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:

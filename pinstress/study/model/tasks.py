@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -19,6 +19,7 @@ from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, lu
 from pinstress.study.model.moving_loads import MovingLoads
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.shown import listed
 
 
 @dataclass(frozen=True)
@@ -124,6 +125,28 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
         given_ones,
     )  # fmt: skip
+
+
+def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:
+    """Return a sentence on the load distribution of the cases that state none; empty where every
+    case states it, or lugs carry the loads.
+
+    todo: the tasks of an analysis.
+    """
+    applied = (loads for task in todo if not task.lugs for loads in task.loads)
+    prescribed = {loads.case for loads in applied if loads.forces[..., :2].any()}
+    assumed = [
+        name
+        for name, case in study.table.case.items()
+        if name in prescribed and "distribution" not in case.model_fields_set
+    ]
+    if not assumed:
+        return ""
+    many = len(assumed) > 1
+    return (
+        f"Case{'s' * many} {listed(assumed)} state{'s' * (not many)} no distribution: forces act "
+        'as bearing pressure on the loaded half of their bands ("cosine").'
+    )
 
 
 def _at(build: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.file import Study, parse_study
+from pinstress.study.reading.file import Study, parse_study, replaces_fit, unwrapped, with_value
+from pinstress.study.reading.materials import looked_up
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
 KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
 INDEX_PATTERN = re.compile(r"\[(\d+)\]")
 INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
-PLAIN_NAME_PATTERN = re.compile(r'[^.\["]+')
+PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
 # Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
 JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
 PIN_PATTERN = re.compile(r'pin\.(?:"[^"]*"|[^.\["]+)\.')
@@ -61,11 +63,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
-        try:
-            for single in single_keys(key):
-                _change(study, document, single, value)
-        except ArgumentError as error:
-            raise study.error(f"{key}: {error}", code=error.code) from None
+        for single in _singles(study, key):
+            _change(study, document, single, value)
     return parse_study(study.path, tomlkit.dumps(document), study.located)
 
 
@@ -96,8 +95,115 @@ def single_keys(key: str) -> Iterator[str]:
 
 
 def key_part(name: str) -> str:
-    """Return a name as a key has it: in quotes where it has a dot or a bracket."""
+    """Return a name as a key has it: in quotes where TOML needs them."""
     return name if PLAIN_NAME_PATTERN.fullmatch(name) else f'"{name}"'
+
+
+def _singles(study: Study, key: str) -> Iterator[str]:
+    """Yield the keys that a key stands for.
+
+    Raises: InputError.
+    """
+    try:
+        yield from single_keys(key)
+    except ArgumentError as error:
+        raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _change(study: Study, document: Any, key: str, value: Any) -> None:
+    """Set the value at a key of a document of tomlkit."""
+    parts = key_parts(study, key)
+    match parts:
+        case ["pin", str(pin), "lug", str(connection), *inner]:
+            write_lug(document, study, pin, connection, inner[:-1])
+        case ["material", str(name), _, *_]:
+            _write_material(document, study, name)
+    table = _place(study, document, parts, key, split=True)
+    if replaces_fit(parts):
+        table.pop("fit", None)
+    table[parts[-1]] = _plain(value, key)
+
+
+def write_lug(
+    document: Any, study: Study, pin: str, connection: str, inner: Iterable[str | int] = ()
+) -> None:
+    """Write the empty table of a lug that is in a study only by its lug_defaults or connection.
+
+    document: the study as tomlkit has it.
+    inner: names of tables in that of the lug, to be written, too.
+    """
+    import tomlkit
+
+    known = study.table.pin.get(pin)
+    if known is None or connection not in (*known.lug, *study.connections(pin)):
+        return
+    table = document["pin"][pin]
+    for name in ("lug", connection, *inner):
+        if name not in table:
+            table[name] = tomlkit.inline_table()
+        table = table[name]
+
+
+def changed_raw(
+    study: Study, raw: Mapping[str, Any], changes: Mapping[str, Any]
+) -> Mapping[str, Any]:
+    """Return the content of a study (pinstress.study.reading.file.raw_study) with the changes that
+    `changed_study` takes: a hundred times sooner, but without a text.
+
+    Raises: InputError for a key that does not exist in the study.
+    """
+    for key, value in changes.items():
+        for single in _singles(study, key):
+            parts = key_parts(study, single)
+            complete = with_lug_defaults(dict(raw))
+            _place(study, _with_lug(complete, study, parts), parts, single)
+            raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
+    return raw
+
+
+def _with_lug(raw: dict[str, Any], study: Study, parts: list[str | int]) -> dict[str, Any]:
+    """Return a study's content with the table of a lug that it has only by its connection."""
+    match parts:
+        case ["pin", str(pin), "lug", str(connection), *_] if pin in study.table.pin:
+            if connection in study.connections(pin):
+                lugs = raw["pin"][pin].get("lug", {})
+                return with_value(raw, ["pin", pin, "lug"], {connection: {}, **lugs})
+    return raw
+
+
+def _place(study: Study, table: Any, parts: list[str | int], key: str, split: bool = False) -> Any:
+    """Return the table or list that has the last part of a key.
+
+    split: whether one number for both ends is made two in the table.
+
+    Raises: InputError for a key that does not exist; a table may lack its last part.
+    """
+    for part in parts[:-1]:
+        owner, table = table, _inside(study, table, part, key)
+        if part in PAIR_KEYS and isinstance(table, int | float | str):
+            table = [table, table]
+            if split:
+                _unwrapped(owner)[part] = table
+                table = _unwrapped(owner)[part]
+    if isinstance(parts[-1], int):
+        table = _unwrapped(table)
+        _inside(study, table, parts[-1], key)  # an item that is there
+    return table
+
+
+def _unwrapped(table: Any) -> Any:
+    """Return the value of { value, provenance }."""
+    wrapped = isinstance(table, Mapping) and "value" in table and "provenance" in table
+    return table["value"] if wrapped else table
+
+
+def _write_material(document: Any, study: Study, name: str) -> None:
+    """Write the table of a material that a study only names, with its source."""
+    import tomlkit
+
+    stored = looked_up(study.path, document.unwrap()).get(name)
+    if stored is not None:
+        document.setdefault("material", tomlkit.table())[name] = stored.table
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:
@@ -122,26 +228,8 @@ def key_parts(study: Study, key: str) -> list[str | int]:
     return parts
 
 
-def _change(study: Study, document: Any, key: str, value: Any) -> None:
-    """Set the value at a key of a document of tomlkit."""
-    *parents, last = key_parts(study, key)
-    table = document
-    for depth, part in enumerate(parents):
-        # A lug needs no table: it is known by its connection, and has defaults.
-        if depth in (2, 3) and (parents[0], parents[2]) == ("pin", "lug"):
-            table.setdefault(part, {})
-        owner, table = table, _inside(study, table, part, key)
-        if part in PAIR_KEYS and isinstance(table, int | float | str):
-            owner[part] = [table, table]
-            table = owner[part]
-    if isinstance(last, int):
-        _inside(study, table, last, key)  # an item that is there
-    table[last] = _plain(value, key)
-
-
 def _inside(study: Study, table: Any, part: str | int, key: str) -> Any:
-    if isinstance(table, Mapping) and "value" in table and "provenance" in table:
-        table = table["value"]
+    table = _unwrapped(table)
     try:
         if isinstance(part, int) and part < 0:
             raise IndexError

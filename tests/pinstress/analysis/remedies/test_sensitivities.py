@@ -92,7 +92,8 @@ def test_they_are_in_table_page_and_file(
 
 def test_all_cases_where_asked() -> None:
     """Otherwise the worst one of each pin."""
-    more = '\n[case.light]\nkind = "given"\nforces = { B = [0.0, -100.0] }\n'
+    given = 'kind = "given"\ndistribution = "uniform"'  # as the other case
+    more = f"\n[case.light]\n{given}\nforces = {{ B = [0.0, -100.0] }}\n"
     study = pinstress.study_from(QUICK + more)
     plan = prepare(study)
     (only,) = results_of(plan, solve_tasks(plan)).sensitivities

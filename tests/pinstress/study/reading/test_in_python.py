@@ -11,6 +11,8 @@ import pytest
 
 import pinstress
 from pinstress import InputError, changed_study, load_study, shipped_studies, study_from
+from pinstress.study.reading.file import raw_study, with_raw
+from pinstress.study.reading.in_python import changed_raw
 from tests.support.each import each
 
 ONE_PIN = shipped_studies()["one_pin"]
@@ -119,3 +121,33 @@ def test_results_by_pin_and_case() -> None:
         results["P", "push"]
     plan = pinstress.prepare(study_from(BAR), tolerance=0.1)
     assert pinstress.solve(plan)["P", "pull"].max_von_mises == results.pins[0].max_von_mises
+
+
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        ("landing_gear", {"pin.E.profile[2].diameter": "2.1 in", "pin.E.lug.E1.clearance": 0.001}),
+        ("landing_gear", {"case.landing.apply[1].impulse.range.impulse_time[2]": 0.12}),
+        ("landing_gear", {"case.landing.apply[1].impulse.pulse": "half-sine"}),
+        ("clevis", {"case.pull.forces": {"LEFT": [-1, 0], "EYE": (2, 0), "RIGHT": [-1, 0]}}),
+        ("one_pin", {"pin.B.fillet": np.float64(0.1), "analysis.tolerance": 0.05}),
+    ],
+)
+def test_changed_content_is_that_of_the_changed_study(name: str, changes: dict[str, Any]) -> None:
+    study = load_study(shipped_studies()[name])
+    raw, new = raw_study(study), changed_study(study, changes)
+    assert changed_raw(study, raw, changes) == raw_study(new)
+    assert with_raw(study, changed_raw(study, raw, changes)).table == new.table != study.table
+    assert raw == raw_study(study)  # which others still have
+
+
+@pytest.mark.parametrize(
+    "key", ["pin.Z.fillet", "pin.B.profile[9].length", "pin.B.clamp[0]", "", "a["]
+)
+def test_both_ways_refuse_a_key_with_the_same_words(key: str) -> None:
+    study = load_study(shipped_studies()["one_pin"])
+    with pytest.raises(InputError) as one:
+        changed_study(study, {key: 1.0})
+    with pytest.raises(InputError) as other:
+        changed_raw(study, raw_study(study), {key: 1.0})
+    assert str(one.value) == str(other.value)

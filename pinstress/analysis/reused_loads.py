@@ -1,0 +1,67 @@
+"""Loads of cases, computed again only where something has changed on which they depend."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from pinbase.memo import Memo
+from pinstress.analysis.plan import LoadsOf, all_loads
+from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.sequence import require_times
+from pinstress.study.reading.file import Study
+from pinstress.study.schema.cases import GivenCase
+
+# Of a study with a mechanism: its loads are computed on points, the pins' joints, whose shapes and
+# materials count only where they give a joint its weight.
+TABLES_WITHOUT_LOADS = "pin", "material", "analysis", "vary", "published", "report", "size"
+
+
+def reused_loads(raw: Mapping[str, Any], memo: Memo) -> LoadsOf:
+    """Return what computes loads, or finds them in a memo by the content of all they depend on.
+
+    raw: the content of the study (pinstress.study.reading.file.raw_study).
+    Files that the study names are read once, when their case is first asked for.
+    """
+
+    def loads_of(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
+        content = _content(study, raw)
+        keys = {name: ("loads", name, content) for name in cases if _reusable(study, name)}
+        known: dict[str, CaseLoads] = {}
+        for name, key in keys.items():
+            if (loads := memo.read(key)) is not None:
+                known[name] = loads
+        new = [name for name in cases if name not in known]
+        computed = all_loads(study, new) if new else {}
+        for name in keys.keys() & computed.keys():
+            memo.write(keys[name], computed[name])
+        loads = {name: known[name] if name in known else computed[name] for name in cases}
+        require_times(study, {name: case.reactions.times for name, case in loads.items()})
+        return loads
+
+    return loads_of
+
+
+def _reusable(study: Study, case: str) -> bool:
+    """Return whether the loads of a case take a mechanism: given ones take no time, and are checked
+    against the pins.
+    """
+    return study.table.mechanism is not None and not isinstance(study.table.case[case], GivenCase)
+
+
+def _content(study: Study, raw: Mapping[str, Any]) -> bytes:
+    """Return a hash of all on which the loads of a mechanism depend."""
+    mechanism, table = study.table.mechanism, study.table
+    if mechanism is None:
+        return b""
+    tables = {key: value for key, value in raw.items() if key not in TABLES_WITHOUT_LOADS}
+    joints = [(name, study.connections(name)) for name in table.pin]
+    weighed = [  # by their shape
+        name
+        for name, joint in mechanism.joint.items()
+        if joint.weight is None and joint.fixed_in is None and name in table.pin
+    ]
+    weights = [(raw["pin"][x], table.material[table.pin[x].material].density) for x in weighed]
+    return hashlib.sha256(json.dumps([tables, joints, weights], default=str).encode()).digest()
