@@ -130,7 +130,7 @@ class Engine:
         effects = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
         if effects.note:
             return effects.note
-        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in effects.rows}
+        by_key = {x.key: x.stress for x in effects.rows}
         missing = [key for key in keys if key not in by_key]
         if missing:
             return f"no derivative with respect to {', '.join(missing)}"
@@ -150,11 +150,6 @@ class Engine:
     def _plan(self, study: Study, raw: Mapping[str, Any], pins: Iterable[str] | None) -> Plan:
         loads_of = reused_loads(raw, self._memo)
         return prepare(study, pins=pins, cases=self._cases, loads_of=loads_of)
-
-
-def _of_pin(key: str) -> bool:
-    """Whether a parameter is one of the pin's own table: others are of loads and materials."""
-    return not key.startswith(("force ", "moment ", "material."))
 
 
 def _with(plan: Plan, accuracy: Accuracy) -> Plan:
