@@ -29,7 +29,8 @@ class Requirement:
     meshes: maximum number of meshes, by default that of the model.
     memory: limit for a mesh in MB, by default most of the free memory.
     joints: the model of the lugs that hold a pin.
-    cells: of contact with lugs, these alone; None: until they are fine enough.
+    cells: of contact with lugs, these alone; None: until they are fine enough. "unit": rough ones,
+    with the unit pressures of each on the first mesh (fea.support.contact.unit_pressures).
 
     A support adds what it knows:
     elsewhere: by case, stress, Pa, of sections; a surface that surely has less needs no finer mesh.
@@ -44,7 +45,7 @@ class Requirement:
     meshes: int | None = None
     memory: float | None = None
     joints: Joints = "auto"
-    cells: Literal["rough", "usual"] | None = None
+    cells: Literal["unit", "rough", "usual"] | None = None
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)
 
