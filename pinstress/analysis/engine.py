@@ -191,7 +191,9 @@ class Engine:
         if not now or not {row.case for row in now} <= before.keys():
             return None
         rows = [
-            scaled_row(*before[x.case], x, task, plan.requirement, plan.loads[x.case].range)
+            scaled_row(
+                *before[x.case], x, task, plan.requirement.of_case(x.case), plan.loads[x.case].range
+            )
             for x in now
         ]
         if any(row is None for row in rows):
