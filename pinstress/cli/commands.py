@@ -15,6 +15,7 @@ from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
+from pinstress.cli.export import export
 from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
@@ -398,6 +399,7 @@ for _command in (
     cluster_keys,
     compare_runs,
     curve,
+    export,
     fits,
     import_,
     init,

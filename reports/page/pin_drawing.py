@@ -216,7 +216,8 @@ def _loads(along: StressAlong, pieces: list[_Piece], at: _Layout) -> list[str]:
 def _guides(pieces: list[_Piece], at: _Layout, foot: float) -> list[str]:
     """Return faint lines from the ends of the segments down to the chain of dimensions."""
     ends = dict.fromkeys([p.x for p in pieces] + [at.right])
-    return [line(x, at.axis + at.radius, x, foot - 17.0, 'opacity="0.18"') for x in ends]
+    lines = "".join(f"M{x:.2f},{at.axis + at.radius:.2f}V{foot - 17.0:.2f}" for x in ends)
+    return [f'<path d="{lines}" stroke="{INK_COLOUR}" stroke-width="0.8" opacity="0.18"/>']
 
 
 def _pieces(
@@ -312,9 +313,9 @@ def _label(piece: _Piece, at: _Layout, row: int) -> str:
 
 def _dimension(left: float, right: float, y: float, from_y: float) -> str:
     """Return a dimension line with ticks and extension lines."""
-    ends = (left, right)
-    ticks = [line(x - 3, y - TEXT_LINE_HEIGHT + 5, x + 3, y - TEXT_LINE_HEIGHT - 1) for x in ends]
-    leads = [line(x, from_y + 2, x, y - TEXT_LINE_HEIGHT + 5, 'opacity="0.4"') for x in ends]
-    return line(left, y - TEXT_LINE_HEIGHT + 2, right, y - TEXT_LINE_HEIGHT + 2) + "".join(
-        ticks + leads
-    )
+    foot = y - TEXT_LINE_HEIGHT
+    ticks = "".join(f"M{x - 3:.2f},{foot + 5:.2f}l6,-6" for x in (left, right))
+    leads = "".join(f"M{x:.2f},{from_y + 2:.2f}V{foot + 5:.2f}" for x in (left, right))
+    drawn = f"M{left:.2f},{foot + 2:.2f}H{right:.2f}{ticks}"
+    stroke = f'stroke="{INK_COLOUR}" stroke-width="0.8"'
+    return f'<path d="{drawn}" {stroke}/><path d="{leads}" {stroke} opacity="0.4"/>'
