@@ -33,6 +33,7 @@ html_math_renderer = "mathml"
 html_title = "pinstress"
 html_static_path = ["static"]
 html_css_files = ["tables.css"]
+html_js_files = ["reachable.js"]
 html_theme = "furo"
 html_theme_options = {
     "navigation_with_keys": True,

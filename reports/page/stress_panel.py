@@ -51,14 +51,15 @@ class StressPanel:
         return [*parts, *self._curve(z, stress, section), *self._allowed(), *self._mark()]
 
     def _axis(self, unit: str) -> list[str]:
+        values = ticks(self.highest)
+        marks = "".join(f"M{self.left - 3.0:.1f},{self.y(x):.1f}h3" for x in values)
         parts = [
-            line(self.left, self.top, self.left, self.foot),
-            line(self.left, self.foot, self.right, self.foot),
+            f'<path d="M{self.left:.1f},{self.top:.1f}V{self.foot:.1f}H{self.right:.1f}{marks}" '
+            f'fill="none" stroke="{INK_COLOUR}" stroke-width="0.8"/>'
         ]
-        for tick in ticks(self.highest):
-            y = self.y(tick)
-            parts.append(line(self.left - 3.0, y, self.left, y))
-            parts.append(text(self.left - 5.0, y + 4.0, engineering(tick, 2), anchor="end"))
+        for tick in values:
+            words = engineering(tick, 2)
+            parts.append(text(self.left - 5.0, self.y(tick) + 4.0, words, anchor="end"))
         keys = [("surface", bool(self.along.surface), f'stroke="{INK_COLOUR}"'),
                 ("section", len(self.along.section[0]) > 0,
                  f'stroke="{SECTION_COLOUR}" stroke-dasharray="4 2"'),
@@ -84,13 +85,13 @@ class StressPanel:
         return parts
 
     def _pressure(self) -> list[str]:
-        return [
-            f'<rect class="pressure" x="{self.x(z0):.2f}" y="{self.y(p):.2f}" '
-            f'width="{self.scale * (z1 - z0):.2f}" height="{self.foot - self.y(p):.2f}" '
-            f'fill="{PRESSURE_COLOUR}" fill-opacity="0.7"/>'
+        bars = "".join(
+            f"M{self.x(z0):.2f},{self.foot:.2f}V{self.y(p):.2f}H{self.x(z1):.2f}V{self.foot:.2f}Z"
             for z0, z1, p in self.along.pressure
             if p > 0.0
-        ]
+        )
+        style = f'class="pressure" fill="{PRESSURE_COLOUR}" fill-opacity="0.7"'
+        return [f'<path d="{bars}" {style}/>'] if bars else []
 
     def _allowed(self) -> list[str]:
         """Return the line at the stress that the required factor permits, where it is exceeded."""

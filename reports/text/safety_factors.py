@@ -86,7 +86,7 @@ def _key(lines: list[PinLine]) -> str:
     parts.append(f"{REQUIRED_MARK} {limit_name}")
     diameters = [line.diameter for line in lines if line.diameter and line.diameter.needed]
     parts += ["→ estimate"] * bool(diameters)
-    parts += ["† too large for its lug"] * any(d.eye for d in diameters)
+    parts += ["† too large for its lug"] * any(d.too_large(d.needed) for d in diameters)
     return "   ".join(parts)
 
 

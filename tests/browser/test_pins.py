@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.docs.test_captions import build_docs
 from tests.support.results.browser_page import errors, opened, slide, unfold, wait
 
 pytestmark = pytest.mark.browser
@@ -42,6 +43,10 @@ for (const svg of document.querySelectorAll("svg.pin")) {
   });
 }
 return faults;
+"""
+DRAWN = """
+const done = arguments[arguments.length - 1];
+requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)));
 """
 FAULTS = """
 const done = arguments[arguments.length - 1];
@@ -143,15 +148,36 @@ def test_paper_has_the_drawings_and_lines_but_nothing_closed(page: Any) -> None:
             )
 
 
+def faults(page: Any) -> list[str]:
+    """What axe finds once the page is laid out for its screen."""
+    page.execute_async_script(DRAWN)
+    page.execute_script(AXE.read_text(encoding="utf-8"))
+    page.set_script_timeout(300)
+    return list(page.execute_async_script(FAULTS))
+
+
 @pytest.mark.parametrize("shade", ["light", "dark"])
 @pytest.mark.parametrize("open_", [False, True])
 def test_axe_finds_nothing(page: Any, shade: str, open_: bool) -> None:
-    if open_:
-        unfold(page)
     with screen(page, 1400, shade=shade):
-        page.execute_script(AXE.read_text(encoding="utf-8"))
-        page.set_script_timeout(300)
-        assert page.execute_async_script(FAULTS) == []
+        if open_:
+            unfold(page)
+        assert faults(page) == []
+
+
+def test_axe_finds_nothing_on_a_phone(page: Any) -> None:
+    """Where tables scroll sideways."""
+    with screen(page, 390):
+        assert faults(page) == []
+
+
+def test_axe_finds_nothing_in_the_documentation(browser: Any, tmp_path: Path) -> None:
+    """On a page like ours: with contents, code that is too wide, and captions."""
+    build_docs(tmp_path, f"One\n===\n\n::\n\n   {'word ' * 60}\n\nPart\n----\n\ntext\n")
+    for name in ("index.html", "one.html"):
+        browser.get((tmp_path / "out" / name).as_uri())
+        with screen(browser, 1400):
+            assert faults(browser) == []
 
 
 def test_a_page_of_loads_shows_its_motion_first(browser: Any, shipped_loads: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -164,7 +164,7 @@ def _results(
         tolerance=tolerance,
         pins=tuple(_completed(study, loads[row.case], task, row, published) for task, row in rows),
         shapes=tuple(
-            _shape(tasks[name], [row.maximum for _, row in rows if row.pin == name])
+            shape_of_task(tasks[name], [row.maximum for _, row in rows if row.pin == name])
             for name in table.pin
             if name in tasks
         ),
@@ -229,7 +229,11 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
     )
 
 
-def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
+def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
+    """Return the pin of a task as it is drawn, SI.
+
+    peaks: its maxima, of which local solids are drawn.
+    """
     pin, density = task.pin, task.material.density
     held = {pin.surface(c) for c in task.clamps}
     segments = tuple(

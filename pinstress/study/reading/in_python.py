@@ -11,7 +11,7 @@ from typing import Any
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, parse_study, replaces_fit, unwrapped, with_value
-from pinstress.study.reading.materials import looked_up
+from pinstress.study.reading.materials import looked_up, with_materials
 from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
@@ -158,7 +158,9 @@ def changed_raw(
             complete = with_lug_defaults(dict(raw))
             _place(study, _with_lug(complete, study, parts), parts, single)
             raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
-    return raw
+    named = with_materials(study.path, dict(raw)) if changes else raw
+    unchanged = named.get("material") == raw.get("material")
+    return raw if unchanged else unwrapped(named, "", [], [])
 
 
 def _with_lug(raw: dict[str, Any], study: Study, parts: list[str | int]) -> dict[str, Any]:
