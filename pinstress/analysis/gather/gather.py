@@ -95,14 +95,13 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
 
 def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
     """Return the rows of a plan, as `results_of` has them, by pin and case."""
-    study = plan.study
-    return {
-        (row.pin, row.case): in_units(
-            _completed(study, plan.loads[row.case], task, row, plan.published), study.system.factor
-        )
+    study, factor, units = plan.study, plan.study.system.factor, _units(plan.study)
+    rows = (
+        _completed(study, plan.loads[row.case], task, row, plan.published)
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
         for row in outcome.rows
-    }
+    )
+    return {(row.pin, row.case): in_units(replace(row, units=units), factor) for row in rows}
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
@@ -127,8 +126,12 @@ def _in_order(
 
 
 def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
+    return results.in_units(_units(study), study.system.factor)
+
+
+def _units(study: Study) -> plain.Units:
     s = study.system
-    return results.in_units(plain.Units(s.length, s.force, s.stress, s.time), s.factor)
+    return plain.Units(s.length, s.force, s.stress, s.time)
 
 
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
