@@ -16,6 +16,7 @@ from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.row import Png, Row
 from pinstress.analysis.solve import solve_tasks
+from pinstress.analysis.stored import PinOutcome
 from pinstress.study.reading.choices import require_count
 from pinstress.study.reading.extras import EXTRAS, require_fatigue
 from pinstress.study.reading.file import Study
@@ -223,9 +224,15 @@ def solve(
     require_count("jobs", jobs)
     most = 1 if fields else processes(jobs)
     with one_thread():
-        results = results_of(
-            plan,
-            solve_tasks(plan, keep if fields else None, jobs=most, cache=cache, memo=memo),
-        )
+        keeping = keep if fields else None
+        outcomes = solve_tasks(plan, keeping, jobs=most, cache=cache, memo=memo)
+        return run_results(plan, outcomes, kept_fields)
+
+
+def run_results(
+    plan: Plan, outcomes: list[PinOutcome], fields: dict[tuple[str, str], Field] | None = None
+) -> RunResults:
+    """Return the results of a plan from the outcomes of its tasks, with kept fields."""
+    results = results_of(plan, outcomes)
     plain = {f.name: getattr(results, f.name) for f in dataclasses.fields(Results)}
-    return RunResults(**plain, fields=kept_fields, plan=plan)
+    return RunResults(**plain, fields=fields or {}, plan=plan)

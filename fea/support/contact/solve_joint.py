@@ -204,6 +204,14 @@ class ContactModel:
             self._cut, self.pin = cut, ringed(pin, self.ends)
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
 
+    def without_meshes(self) -> ContactModel:
+        """The model ready for contact, without what only derivatives and other shapes need."""
+        other = copy.copy(self)
+        other._memo = Memo()
+        for meshes in ("on_pin", "on_lugs", "first"):
+            del other.__dict__[meshes]
+        return other.varied(other.lugs)
+
     def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> ContactModel:
         """The model of another pin in other lugs on such cells, without computing flexibilities.
 

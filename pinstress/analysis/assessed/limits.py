@@ -40,7 +40,11 @@ def limit_rung(study: Study, pin: str) -> Rung | None:
 
 
 def rung_of(plan: Plan, pin: str) -> Rung | None:
-    """Return `limit_rung` for a run, which may request more than the study."""
+    """Return `limit_rung` for a run, which may request more than the study; of a coarse solution,
+    which only serves for ratios, no limit load is wanted.
+    """
+    if plan.requirement.cells == "unit":
+        return None
     return limit_rung(plan.study, pin) or ("auto" if plan.limit_load else None)
 
 
