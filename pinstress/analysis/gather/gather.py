@@ -95,16 +95,13 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
 
 def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
     """Return the rows of a plan, as `results_of` has them, by pin and case."""
-    study, units = plan.study, _units(plan.study)
-    completed = (
+    study, factor, units = plan.study, plan.study.system.factor, _units(plan.study)
+    rows = (
         _completed(study, plan.loads[row.case], task, row, plan.published)
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
         for row in outcome.rows
     )
-    return {
-        (row.pin, row.case): in_units(replace(row, units=units), study.system.factor)
-        for row in completed
-    }
+    return {(row.pin, row.case): in_units(replace(row, units=units), factor) for row in rows}
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
