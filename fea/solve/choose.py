@@ -120,8 +120,8 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     joints, foundation = requirement.joints, FoundationSupport()
     if joints == "foundation":
         yield Rung(foundation, _foundation_requested)
-    elif requirement.cells == "unit":
-        yield Rung(ContactSupport(ROUGH, unit=True), _contact)
+    elif requirement.cells == "unit" or requirement.cells == "alone":
+        yield Rung(ContactSupport(ROUGH, alone=requirement.cells), _contact)
         return
     elif joints == "auto" and foundation.may_be_enough(problem, requirement):
         yield Rung(foundation, _foundation)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar
@@ -24,7 +24,13 @@ from pinstress.analysis.gather.gather import rows_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
-from pinstress.analysis.scaled import coarse, elastic_task, scalable, scaled_row
+from pinstress.analysis.scaled import (
+    coarse,
+    elastic_task,
+    same_shape,
+    scalable,
+    scaled_row,
+)
 from pinstress.analysis.solve import solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
 from pinstress.study.model.tasks import Task
@@ -65,6 +71,14 @@ class SolvedPins:
         self._memo.write(key, pack(value))
 
 
+@dataclass(frozen=True)
+class AsIs:
+    """A pin of the study as it is: its tasks, and by case its rows, in full and coarse."""
+
+    tasks: list[Task]
+    rows: dict[str, tuple[PinResult, PinResult]]
+
+
 class Engine:
     """A study, asked with changes. It lives in one process.
 
@@ -87,7 +101,7 @@ class Engine:
         # What is large must not displace answers, which are small.
         self._memo = Memo(ENGINE_MEMO_SIZE) if memo is None else memo
         self._answers = Memo() if memo is None else memo
-        self._as_is: dict[str, dict[str, tuple[PinResult, PinResult]]] = {}
+        self._as_is: dict[str, AsIs] = {}
 
     @cached_property
     def _raw(self) -> Mapping[str, Any]:
@@ -187,7 +201,8 @@ class Engine:
         name = task.pin.name
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
-        before, now = self._as_is[name], self._coarse(plan, task)
+        tasks, before = self._as_is[name].tasks, self._as_is[name].rows
+        now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():
             return None
         rows = [
@@ -200,23 +215,24 @@ class Engine:
             return None
         return PinOutcome(tuple(assessed(plan.study, task, row) for row in rows if row))
 
-    def _both(self, pin: str) -> dict[str, tuple[PinResult, PinResult]]:
-        """The rows of a pin of the study as it is by case, in full and coarse; none where it
-        cannot be built.
-        """
+    def _both(self, pin: str) -> AsIs:
+        """A pin of the study as it is; without rows where it cannot be built."""
         try:
             plan = replace(self._plan(self.study, self._raw, [pin]), explained=False)
         except InputError:
-            return {}
+            return AsIs([], {})
         out = {}
         for task, outcome in zip(plan.tasks, self._solve(plan, plan.tasks), strict=True):
-            for full, row in zip(outcome.rows, self._coarse(plan, task), strict=False):
+            for full, row in zip(outcome.rows, self._coarse(plan, task, True), strict=False):
                 out[row.case] = full, row
-        return out
+        return AsIs(plan.tasks, out)
 
-    def _coarse(self, plan: Plan, task: Task) -> tuple[PinResult, ...]:
-        """The rows of a task whose ratios are taken; none where they cannot be solved."""
-        plan = replace(plan, requirement=coarse(plan.requirement), explained=False)
+    def _coarse(self, plan: Plan, task: Task, lasting: bool) -> tuple[PinResult, ...]:
+        """The rows of a task whose ratios are taken; none where they cannot be solved.
+
+        lasting: as in pinstress.analysis.scaled.coarse.
+        """
+        plan = replace(plan, requirement=coarse(plan.requirement, lasting), explained=False)
         task = elastic_task(task)
 
         def make() -> tuple[PinResult, ...]:

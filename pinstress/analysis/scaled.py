@@ -10,6 +10,7 @@ off by different parts; a share of what the first one is off by covers that.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from fea.core.peak import ErrorParts, Maximum
 from fea.core.places import BandPressure, ContactPlace, Place, Places
 from fea.core.requirement import Requirement
 from fea.support.contact.contact_place import reached
-from fea.support.lugs.lug import Lug
+from fea.support.lugs.lug import Lug, LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
@@ -41,9 +42,24 @@ def scalable(task: Task) -> bool:
     return bool(task.lugs) and isinstance(task.pin, Pin)
 
 
-def coarse(requirement: Requirement) -> Requirement:
-    """Return the requirement on the solutions whose ratio is taken."""
-    return replace(requirement, cells="unit", meshes=1, goal="value", required=None)
+def coarse(requirement: Requirement, lasting: bool) -> Requirement:
+    """Return the requirement on the solutions whose ratio is taken.
+
+    lasting: whether the shape is to be solved again under other loads.
+    """
+    cells: Literal["unit", "alone"] = "unit" if lasting else "alone"
+    return replace(requirement, cells=cells, meshes=1, goal="value", required=None)
+
+
+def same_shape(one: Task, other: Task) -> bool:
+    """Return whether two tasks differ by loads, clearances and tilts only."""
+    return _shape(one) == _shape(other)
+
+
+def _shape(task: Task) -> object:
+    task = elastic_task(task)
+    eyes = [replace(x, clearance=0.0, tilt=0.0, range=LugRange()) for x in task.lugs]
+    return task.pin, task.material, eyes
 
 
 def elastic_task(task: Task) -> Task:

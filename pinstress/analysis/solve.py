@@ -248,8 +248,8 @@ def _rows(
     """Return the rows of a task with their joints, ranges and limit loads."""
     from pinstress.analysis.gather.gather_landing import landing_range
 
-    coarse = plan.requirement.cells == "unit"  # whose ratio serves for the whole range
-    landing = [None if coarse else landing_range(plan.loads, task, s) for s in solved]
+    ratio = plan.requirement.for_ratio  # which serves for the whole range
+    landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
     joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     parts = zip(solved, joints, limits, landing, strict=True)

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -52,6 +53,7 @@ RESOLUTIONS: tuple[Resolution, ...] = (
     Resolution(16, 64, 20),
 )
 ROUGH = Resolution(4, 24, 8)  # may decide a required factor
+Alone = Literal["unit", "alone"]
 MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 
 
@@ -59,14 +61,14 @@ class ContactSupport:
     """A support by lugs in contact, on cells of one resolution (fea.support.support.Support).
 
     finer: the next resolution, None for the last.
-    unit: by unit pressures of the rings (fea.support.contact.unit_pressures), without an error of
-    the cells or variations of the joint.
+    alone: without an error of the cells or variations of the joint; "unit": by unit pressures of
+    the rings, which a memo has (fea.support.contact.unit_pressures).
     """
 
     def __init__(
-        self, cells: Resolution, finer: Resolution | None = None, unit: bool = False
+        self, cells: Resolution, finer: Resolution | None = None, alone: Alone | None = None
     ) -> None:
-        self.cells, self.finer, self.unit = cells, finer, unit
+        self.cells, self.finer, self.alone = cells, finer, alone
 
     def hold(
         self,
@@ -88,9 +90,11 @@ class ContactSupport:
         progress(f"pin {problem.pin.name}, flexibility of {self.cells.rings} rings of each lug")
         profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
         of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
-        if self.unit:
-            model = unit_model(*of, self.cells, problem.memo or Memo())
-            contact = PressedCases(model, left, between, {}, cut, unit_patterns(model))
+        if self.alone:
+            unit, memo = self.alone == "unit", problem.memo or Memo()
+            model = unit_model(*of, self.cells, memo, together=not unit)
+            patterns = unit_patterns(model) if unit else None
+            contact = PressedCases(model, left, between, {}, cut, patterns)
         else:
             model = ContactModel(*of, self.cells, problem.memo)
             progress(f"pin {problem.pin.name}, contact")
@@ -98,12 +102,12 @@ class ContactSupport:
         if not contact.instants.keys() <= near.keys():
             near = contact.near(requirement)
         contact.follow(near)
-        compared = contact.compared(near, requirement, alone=self.unit)
+        compared = contact.compared(near, requirement, alone=self.alone is not None)
         # More cells than memory allows are none; and on the last ones all cases are answered.
         finest = self.finer is None or _count(model, self.finer) > MAX_CELLS
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
         held = HeldContact(
-            problem, contact, starts, near, compared, finest, refused, unit=self.unit
+            problem, contact, starts, near, compared, finest, refused, alone=self.alone is not None
         )
         if self.finer is None or self.cells is not ROUGH:  # rough ones are a trial only
             failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
@@ -162,7 +166,7 @@ class HeldContact:
     starts: by case, the pressures at the instants of which their patterns are made.
     candidates: by case, the instants that may govern.
     compared: by case, contact on these cells against that on larger ones.
-    unit: as of the support.
+    alone: whether nothing is compared with other cells or meshes.
     """
 
     problem: PinProblem
@@ -174,7 +178,7 @@ class HeldContact:
     failures: dict[str, Maximum]
     notes: Mapping[str, Reason] = field(default_factory=dict)
     clamps: tuple[str, ...] = ()
-    unit: bool = False
+    alone: bool = False
 
     @property
     def model(self) -> ContactModel:
@@ -243,7 +247,7 @@ class HeldContact:
         missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
         surface = self._evidence(reading, case, at_surface, known.surface.cells.surface + missed)
         error = known.surface.cells.beneath
-        if not self.unit:  # these have no other mesh
+        if not self.alone:
             error += self._by_mesh(answer, known.surface)
         section, links = None, None
         if self.cut is None:
@@ -261,7 +265,7 @@ class HeldContact:
         row = peak.max_von_mises or 0.0
         place = contact_place(
             contact, material, answer, reading.loads, required, error, row,
-            deep=not self.unit,
+            deep=not self.alone,
         )  # fmt: skip
         over = known.row.range(row, place.beneath)
         joint = contact_result(contact, over, solution.loads, known.row.left_out)
@@ -296,7 +300,7 @@ class HeldContact:
         self, requirement: Requirement
     ) -> Callable[[JointContact], ResolutionComparison]:
         of = self.contact
-        if self.unit:
+        if self.alone:
             return uncompared
         return lambda contact: compare(of.model, [contact], requirement, of.patterns)[0]
 

@@ -134,7 +134,7 @@ class JointContact:
 class ContactModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances.
 
-    first: its first mesh for stress.
+    first: its first mesh for stress, None where nothing is solved on it again.
     on_pin, on_lugs: the meshes of the flexibilities, one for equal lugs.
     memo: of flexibilities and meshes, shared with other models.
 
@@ -149,7 +149,8 @@ class ContactModel:
         cells: Resolution = Resolution(),
         memo: Memo | None = None,
     ) -> None:
-        self.cells, self.first, self._memo = cells, FirstMesh(memo), memo or Memo()
+        self.first: FirstMesh | None = FirstMesh(memo)
+        self.cells, self._memo = cells, memo or Memo()
         self._shape(pin, material, lugs)
         self.on_pin, self.of_pin = self._pin_flexibility()
         self.of_lugs = np.zeros_like(self.of_pin)

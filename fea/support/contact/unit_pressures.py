@@ -43,21 +43,27 @@ class UnitMesh(FirstMesh):
 
 
 def unit_model(
-    pin: Pin, material: Material, lugs: tuple[Lug, ...], cells: Resolution, memo: Memo
+    pin: Pin,
+    material: Material,
+    lugs: tuple[Lug, ...],
+    cells: Resolution,
+    memo: Memo,
+    together: bool = False,
 ) -> ContactModel:
     """The model of a pin in its lugs, whose flexibilities and unit fields a memo has by the pin's
     shape and by what is elastic.
 
+    together: for pressures that are solved together, once.
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
     fitting = fitted(on_structure(pin, lugs), material, lugs)
     steel, eyes = _elastic(material), tuple(map(_elastic_eye, lugs))
 
     def make() -> ContactModel:
-        return ContactModel(pin, steel, eyes, cells).without_meshes()
+        return ContactModel(pin, steel, eyes, cells, memo).without_meshes()
 
     model = memo.get(("unit contact", pin, steel, eyes, cells), make).varied(fitting)
-    model.first = UnitMesh(memo)
+    model.first = None if together else UnitMesh(memo)
     return model
 
 

@@ -43,7 +43,7 @@ def rung_of(plan: Plan, pin: str) -> Rung | None:
     """Return `limit_rung` for a run, which may request more than the study; of a coarse solution,
     which only serves for ratios, no limit load is wanted.
     """
-    if plan.requirement.cells == "unit":
+    if plan.requirement.for_ratio:
         return None
     return limit_rung(plan.study, pin) or ("auto" if plan.limit_load else None)
 

@@ -87,6 +87,7 @@ def test_without_a_change_it_is_the_full_row(engine: Engine) -> None:
     assert over.max_von_mises == pytest.approx(of.max_von_mises, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_loads_in_proportion_are_exact(engine: Engine) -> None:
     """Contact without gaps is linear: the error, relative, is that of the full row."""
     full, scaled = engine.row({}, "P", "pull"), quick(engine, {"case.pull.forces": FORCES})
@@ -100,6 +101,7 @@ def test_loads_in_proportion_are_exact(engine: Engine) -> None:
     assert ours == pytest.approx(theirs, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "changes",
     [
@@ -139,6 +141,7 @@ def test_a_strength_solves_nothing(engine: Engine, coarse: list[str]) -> None:
     assert weak.places.section.plastic_utilisation == pytest.approx(used, rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_same_whatever_was_asked_before(engine: Engine) -> None:
     changes = {"pin.P.lug.right.clearance": 0.02}
     quick(engine, {MIDDLE: 21.0})
@@ -146,6 +149,7 @@ def test_the_same_whatever_was_asked_before(engine: Engine) -> None:
     assert plain(quick(engine, changes)) == plain(quick(fresh, changes))
 
 
+@pytest.mark.slow
 def test_a_pin_that_contact_cannot_hold_fails_as_in_a_run(engine: Engine) -> None:
     """Lugs that are free to tilt leave it the couple of links that are not in line."""
     forces = {"left": [0, 7000], "middle": [0, -12000], "right": [0, 5000]}
