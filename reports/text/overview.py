@@ -62,7 +62,7 @@ def actions(results: Results, study: str = "") -> Content:
     study: its path, by default its name.
     """
     lines = pin_lines(results)
-    parts = [*_exceeded(lines), *_singular(lines)]
+    parts = repairs(lines)
     if not results.changes:
         return parts
     if needed := [line for line in lines if line.diameter and line.diameter.needed]:
@@ -329,6 +329,11 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
         return f"Largest stress: {'; '.join(told)}."
     word = "permitted" if first.required else "the yield strength"
     return f"Largest stress: {'; '.join(told)}; {engineering(permitted, 3)} is {word}."
+
+
+def repairs(lines: Sequence[PinLine]) -> Content:
+    """Return sentences on failing checks by formula, and on singularities that can be removed."""
+    return [*_exceeded(lines), *_singular(lines)]
 
 
 def _exceeded(lines: Sequence[PinLine]) -> Content:

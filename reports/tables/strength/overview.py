@@ -16,9 +16,12 @@ from reports.format.place_words import place_words
 from reports.format.ranges import END_DIGITS, factor_range
 from reports.format.words import result_words
 from reports.tables.column import Column, Table
+from reports.tables.strength import safety_factors
+from reports.tables.strength.safety_factors import FACTOR_COLUMN_ORDER, FactorRow
 
 MAX_DECADES = 4.0  # of the axis; what lies beyond is at its end
 AXIS_MARGIN = 1.3  # ratio, beyond the smallest and the largest factor
+MAX_RANK = 10  # of columns that a narrow terminal drops first
 SPREAD_DIGITS = 2
 BAR_WIDTH = 20  # characters
 SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
@@ -105,7 +108,23 @@ def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]
                numeric=False, rank=8, drop_if_empty=True),
         Column("time", lambda x: x.row.time, "time", "t", rank=9, drop_if_empty=True),
     ]  # fmt: skip
-    return Table("overview", columns, list(lines))
+    return Table("overview", [*columns, *_added(results)], list(lines))
+
+
+def _added(results: Results) -> list[Column[PinLine]]:
+    """Return the columns of the safety factors that are not among the usual ones, of each row."""
+
+    def of_line(column: Column[FactorRow]) -> Column[PinLine]:
+        text, unit = column.text, column.dimension
+        return Column(
+            column.key, lambda x: column.cell(FactorRow(x.row, results)),
+            (lambda x: unit(FactorRow(x.row, results))) if callable(unit) else unit,
+            column.heading, text and (lambda x: text(FactorRow(x.row, results))), column.numeric,
+            max(column.rank, MAX_RANK), column.drop_if_empty,
+        )  # fmt: skip
+
+    shown = (c for c in safety_factors.COLUMNS if c.heading and c.key not in FACTOR_COLUMN_ORDER)
+    return [of_line(column) for column in shown]
 
 
 def outcome_words(line: PinLine) -> str:
