@@ -93,7 +93,7 @@ profile = [ { length = 100, diameter = 22 }, { length = 20, diameter = 22, conne
 @pytest.mark.parametrize(
     ("text", "kind", "remedy"),
     [
-        (FREE, "the edge of a load", 'first spread the load by distribution = "cosine"'),
+        (FREE, "the edge of a load", 'spread the load by distribution = "cosine"'),
         (CLAMPED, "the edge of a clamp", "replace the clamp by its hub"),
     ],
     ids=["edge of a load", "edge of a clamp"],
