@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from fea.core.peak import SingularZone
 from reports.data.changes import Remedy
-from reports.data.results import PinResult, Results
+from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.tables.column import Column, Table, read_only, texts
 
@@ -68,12 +69,13 @@ def _by_contact(results: Results, change: Remedy) -> bool:
 def _remedies(results: Results) -> list[str]:
     """Return the remedy of each singularity that governs one of the rows."""
     rows = {(c.pin, c.case) for c in results.changes if c.singular}
-    return zone_remedies(p for p in results.pins if (p.pin, p.case) in rows)
+    zones = [z for p in results.pins if (p.pin, p.case) in rows for z in p.singular_at if z.governs]
+    return singularity_remedies(zones)
 
 
-def zone_remedies(pins: Iterable[PinResult]) -> list[str]:
-    """Return the remedies of the singularities that govern rows, each once."""
-    zones = [zone for pin in pins for zone in pin.singular_at if zone.governs]
+def singularity_remedies(zones: Iterable[SingularZone]) -> list[str]:
+    """Return the remedy of each kind of singularity; at the edges of loads, by what acts there."""
+    zones = list(zones)
     remedies = [
         text
         for kind, text in SINGULARITY_REMEDIES.items()
