@@ -29,7 +29,9 @@ class Requirement:
     meshes: maximum number of meshes, by default that of the model.
     memory: limit for a mesh in MB, by default most of the free memory.
     joints: the model of the lugs that hold a pin.
-    cells: of contact with lugs, these alone; None: until they are fine enough.
+    cells: of contact with lugs, these alone; None: until they are fine enough. "unit": rough ones,
+    with the unit pressures of each on the first mesh (fea.support.contact.unit_pressures); "alone":
+    rough ones on the first mesh, with nothing to compare them with.
     factors: the required factors of cases where these are not `required`.
 
     A support adds what it knows:
@@ -45,10 +47,15 @@ class Requirement:
     meshes: int | None = None
     memory: float | None = None
     joints: Joints = "auto"
-    cells: Literal["rough", "usual"] | None = None
+    cells: Literal["unit", "alone", "rough", "usual"] | None = None
     factors: Mapping[str, float] = field(default_factory=dict)
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def for_ratio(self) -> bool:
+        """Whether the solution only serves for its ratio to another (pinstress.analysis.scaled)."""
+        return self.cells in ("unit", "alone")
 
     def of_case(self, case: str) -> Requirement:
         """The requirement with the factor of a case."""

@@ -120,6 +120,9 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     joints, foundation = requirement.joints, FoundationSupport()
     if joints == "foundation":
         yield Rung(foundation, _foundation_requested)
+    elif requirement.cells == "unit" or requirement.cells == "alone":
+        yield Rung(ContactSupport(ROUGH, alone=requirement.cells), _contact)
+        return
     elif joints == "auto" and foundation.may_be_enough(problem, requirement):
         yield Rung(foundation, _foundation)
     resolutions = RESOLUTIONS

@@ -1,27 +1,40 @@
 """A study that can be asked again, with changes; what a change does not touch is not solved again.
 
-Every answer is that of `pinstress.run` on the changed study, to the last bit, whatever was asked
-before: what is remembered has the content of everything it depends on as its key, and nothing is
-updated in place.
+Every full answer is that of `pinstress.run` on the changed study, to the last bit. A quick one of a
+pin in contact is scaled from the study as it is (pinstress.analysis.scaled). Both are the same
+whatever was asked before: what is remembered has the content of everything it depends on as its
+key, and nothing is updated in place.
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar
 
+from fea.core.requirement import Requirement
 from pinbase.memo import Memo
 from pinbase.processes.threads import one_thread
 from pinbase.records import pack, unpack
+from pinstress.analysis.assessed.situations import assessed
 from pinstress.analysis.gather.gather import rows_of
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.analysis.results import RunResults, solve
+from pinstress.analysis.results import RunResults, run_results, solve
 from pinstress.analysis.reused_loads import reused_loads
-from pinstress.analysis.solve import solve_tasks
+from pinstress.analysis.scaled import (
+    coarse,
+    elastic_task,
+    same_shape,
+    scalable,
+    scaled_row,
+)
+from pinstress.analysis.solve import solve_tasks, unjudged
+from pinstress.analysis.stored import PinOutcome, cache_key
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import require_fatigue
 from pinstress.study.reading.file import Study, raw_study, with_raw
 from pinstress.study.reading.in_python import changed_raw, changed_study
@@ -33,6 +46,8 @@ Changes = Mapping[str, float | str]  # "pin.E.profile[2].diameter": 2.4, in the 
 
 AS_IS: Changes = MappingProxyType({})
 TABLES_WITHOUT_ROWS = "vary", "beam_check", "motion_check", "report"
+# Bytes: what nine pins in contact need for quick answers (50 MB each), and as much again.
+ENGINE_MEMO_SIZE = 10**9
 QUICK_TOLERANCE = 0.1  # of a quick answer, whose error says how far it is to be believed
 
 
@@ -56,11 +71,20 @@ class SolvedPins:
         self._memo.write(key, pack(value))
 
 
+@dataclass(frozen=True)
+class AsIs:
+    """A pin of the study as it is: its tasks, and by case its rows, in full and coarse."""
+
+    tasks: list[Task]
+    rows: dict[str, tuple[PinResult, PinResult]]
+
+
 class Engine:
     """A study, asked with changes. It lives in one process.
 
     pins, cases: names; all by default. memo: of solved pins, and of the flexibilities, meshes and
-    unit fields of pins that have changed since; shared with other engines, perhaps.
+    unit fields of pins that have changed since, shared with other engines; by default two of its
+    own, of ENGINE_MEMO_SIZE and for answers.
     """
 
     def __init__(
@@ -74,7 +98,10 @@ class Engine:
         self.study = study
         self._pins = None if pins is None else list(pins)
         self._cases = None if cases is None else list(cases)
-        self._memo = Memo() if memo is None else memo
+        # What is large must not displace answers, which are small.
+        self._memo = Memo(ENGINE_MEMO_SIZE) if memo is None else memo
+        self._answers = Memo() if memo is None else memo
+        self._as_is: dict[str, AsIs] = {}
 
     @cached_property
     def _raw(self) -> Mapping[str, Any]:
@@ -114,10 +141,9 @@ class Engine:
         study = with_raw(self.study, raw)
         require_fatigue(study)
         plan = self._plan(study, raw, self._pins if pins is None else pins)
-        plan = _with(replace(plan, explained=False), accuracy)
+        plan = replace(plan, explained=False)
         with one_thread():
-            outcomes = solve_tasks(plan, cache=SolvedPins(self._memo), memo=self._memo)
-        return rows_of(plan, outcomes)
+            return rows_of(plan, self._outcomes(plan, accuracy))
 
     def slopes(
         self, changes: Changes, pin: str, case: str, keys: Collection[str]
@@ -130,7 +156,7 @@ class Engine:
         effects = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
         if effects.note:
             return effects.note
-        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in effects.rows}
+        by_key = {x.key: x.stress for x in effects.rows}
         missing = [key for key in keys if key not in by_key]
         if missing:
             return f"no derivative with respect to {', '.join(missing)}"
@@ -144,24 +170,82 @@ class Engine:
         sensitive: bool = False,
     ) -> RunResults:
         plan = self._plan(self.changed(changes), changed_raw(self.study, self._raw, changes), pins)
-        plan = _with(replace(plan, sensitive=sensitive), accuracy)
-        return solve(plan, cache=SolvedPins(self._memo), memo=self._memo)
+        plan = replace(plan, sensitive=sensitive)
+        if accuracy == "full":
+            return solve(plan, cache=SolvedPins(self._answers), memo=self._memo)
+        require_fatigue(plan.study)
+        with one_thread():
+            return run_results(plan, self._outcomes(plan, accuracy))
 
     def _plan(self, study: Study, raw: Mapping[str, Any], pins: Iterable[str] | None) -> Plan:
-        loads_of = reused_loads(raw, self._memo)
+        loads_of = reused_loads(raw, self._answers)
         return prepare(study, pins=pins, cases=self._cases, loads_of=loads_of)
 
+    def _outcomes(self, plan: Plan, accuracy: Accuracy) -> list[PinOutcome]:
+        if accuracy == "full":
+            return self._solve(plan, plan.tasks)
+        rough = replace(plan, requirement=_quick(plan.requirement))
+        return [
+            (self._scaled(plan, task) if scalable(task) else None) or self._solve(rough, [task])[0]
+            for task in plan.tasks
+        ]
 
-def _of_pin(key: str) -> bool:
-    """Whether a parameter is one of the pin's own table: others are of loads and materials."""
-    return not key.startswith(("force ", "moment ", "material."))
+    def _solve(self, plan: Plan, tasks: list[Task]) -> list[PinOutcome]:
+        plan = replace(plan, tasks=tasks)
+        return solve_tasks(plan, cache=SolvedPins(self._answers), memo=self._memo)
+
+    def _scaled(self, plan: Plan, task: Task) -> PinOutcome | None:
+        """The outcome of a task, scaled from that of the study as it is; None where that cannot
+        be.
+        """
+        name = task.pin.name
+        if name not in self._as_is:
+            self._as_is[name] = self._both(name)
+        tasks, before = self._as_is[name].tasks, self._as_is[name].rows
+        now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
+        if not now or not {row.case for row in now} <= before.keys():
+            return None
+        rows = [
+            scaled_row(
+                *before[x.case], x, task, plan.requirement.of_case(x.case), plan.loads[x.case].range
+            )
+            for x in now
+        ]
+        if any(row is None for row in rows):
+            return None
+        return PinOutcome(tuple(assessed(plan.study, task, row) for row in rows if row))
+
+    def _both(self, pin: str) -> AsIs:
+        """A pin of the study as it is; without rows where it cannot be built."""
+        try:
+            plan = replace(self._plan(self.study, self._raw, [pin]), explained=False)
+        except InputError:
+            return AsIs([], {})
+        out = {}
+        for task, outcome in zip(plan.tasks, self._solve(plan, plan.tasks), strict=True):
+            for full, row in zip(outcome.rows, self._coarse(plan, task, True), strict=False):
+                out[row.case] = full, row
+        return AsIs(plan.tasks, out)
+
+    def _coarse(self, plan: Plan, task: Task, lasting: bool) -> tuple[PinResult, ...]:
+        """The rows of a task whose ratios are taken; none where they cannot be solved.
+
+        lasting: as in pinstress.analysis.scaled.coarse.
+        """
+        plan = replace(plan, requirement=coarse(plan.requirement, lasting), explained=False)
+        task = elastic_task(task)
+
+        def make() -> tuple[PinResult, ...]:
+            try:
+                return unjudged(plan, task, self._memo)
+            except ArithmeticError:  # MeshError, SolveError and what numpy raises
+                return ()
+
+        content = hashlib.sha256(pack(cache_key(plan, task))).digest()
+        return self._answers.get(("coarse", content), make)
 
 
-def _with(plan: Plan, accuracy: Accuracy) -> Plan:
-    """A plan of an accuracy: a quick one has a tolerance that few meshes meet, and rough cells of
-    contact.
-    """
-    if accuracy == "full":
-        return plan
-    tolerance = max(plan.requirement.tolerance, QUICK_TOLERANCE)
-    return replace(plan, requirement=replace(plan.requirement, tolerance=tolerance, cells="rough"))
+def _quick(requirement: Requirement) -> Requirement:
+    """A requirement that few meshes meet, on rough cells of contact."""
+    tolerance = max(requirement.tolerance, QUICK_TOLERANCE)
+    return replace(requirement, tolerance=tolerance, cells="rough")

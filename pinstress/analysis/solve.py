@@ -248,7 +248,8 @@ def _rows(
     """Return the rows of a task with their joints, ranges and limit loads."""
     from pinstress.analysis.gather.gather_landing import landing_range
 
-    landing = [landing_range(plan.loads, task, s) for s in solved]
+    ratio = plan.requirement.for_ratio  # which serves for the whole range
+    landing = [None if ratio else landing_range(plan.loads, task, s) for s in solved]
     joints = tuple(s.joint for s in solved) if task.lugs else _around(plan, task, solved)
     limits = limit_loads(plan, task, solved, tell)
     parts = zip(solved, joints, limits, landing, strict=True)
@@ -256,6 +257,18 @@ def _rows(
         PinResult(_with_notes(task, s.peak), joint=joint, limit_load=limit, landing=over)
         for s, joint, limit, over in parts
     )
+
+
+def unjudged(plan: Plan, task: Task, memo: Memo) -> tuple[PinResult, ...]:
+    """Return the rows of a task before they are assessed.
+
+    Raises: ArgumentError, MeshError, SolveError.
+    """
+    return _rows(plan, task, solutions(plan.study, task, plan.requirement, _silent, memo), _silent)
+
+
+def _silent(_: str) -> None:
+    """Report no progress."""
 
 
 def judged(plan: Plan, task: Task, tell: Tell, memo: Memo | None = None) -> PinOutcome:

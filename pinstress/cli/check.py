@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sized
+from dataclasses import dataclass
 from functools import partial
 
 from geometry import PinLike
@@ -17,10 +18,10 @@ from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
 from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.model.pins import shape_notes, weight
 from pinstress.study.model.sequence import require_times
-from pinstress.study.model.tasks import assumed_distribution, tasks
+from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
 from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
@@ -28,12 +29,37 @@ from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable, level_of
+from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
 
 
+@dataclass(frozen=True)
+class Examination:
+    """What is known of a valid study before anything is solved.
+
+    lines: of the summary.
+    unheld: why unconstrained pins would not be solved.
+    warnings: of loads left over at other pins, and of designs that cannot be built.
+    """
+
+    lines: list[str]
+    loads: dict[str, CaseLoads]
+    tasks: list[Task]
+    unheld: list[str]
+    warnings: list[str]
+
+
 def describe(study: Study) -> tuple[str, list[str], list[str]]:
-    """Return a summary of a valid study, the reasons why unconstrained pins would not be solved,
-    and warnings of loads left over at other pins.
+    """Return the summary of a study, and the reasons and warnings of its examination.
+
+    Raises: InputError as `examine`.
+    """
+    x = examine(study)
+    return "\n".join(x.lines), x.unheld, x.warnings
+
+
+def examine(study: Study) -> Examination:
+    """Read all files of a valid study and compute its loads.
 
     Raises: InputError for errors that involve several tables.
     """
@@ -65,6 +91,7 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
     lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in valid_pins]
     wrong.tell()
     todo = tasks(study, valid_pins, loads) if valid_pins else []
+    require_models(study, todo, table.analysis.model)
     a = table.analysis
     goal = (
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
@@ -77,7 +104,7 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
         lines += _varied(study)
         warnings += _impossible(study) if todo else []
     loose = [line for task in todo for line in unheld(study, task).values()]
-    return "\n".join(lines), loose, warnings
+    return Examination(lines, loads, todo, loose, warnings)
 
 
 def _requirement(table: RequireTable) -> str:
@@ -125,7 +152,7 @@ def _impossible(study: Study) -> list[str]:
     Raises: InputError for given forces that vary one by one, out of equilibrium.
     """
     from pinstress.explore.sweep.evaluate import Evaluator  # imports what solves
-    from pinstress.explore.sweep.possible import drawn, tried
+    from pinstress.explore.sweep.possible import drawn, impossible_ends, tried
 
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
@@ -134,25 +161,38 @@ def _impossible(study: Study) -> list[str]:
         values = designs_of(vary, parameters, correlations_of(study, parameters))
     else:
         values = drawn(study, parameters)
-    return tried(study, Evaluator(study, parameters), values).warnings
+    evaluator = Evaluator(study, parameters)
+    return impossible_ends(evaluator, parameters) + tried(study, evaluator, values).warnings
 
 
 def _pin(study: Study, pin: PinLike) -> str:
+    """Describe a pin in a line: size, links in the order of z, supports."""
     name, p, system = pin.name, study.table.pin[pin.name], study.system
     ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
-    supports = dict.fromkeys(_support(study, pin, way) for way in ways)
+    supports = dict.fromkeys(support_of(study, pin, way) for way in ways)
     density = study.table.material[p.material].density
     heavy = ""
     if density:
         heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
+    links = sorted(pin.connections, key=lambda connection: pin.band(connection).z0)
     return (
-        f"pin {name}: {p.material}, {_form(p)}{heavy}; "
-        f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(supports)}"
+        f"pin {name}: {p.material}, {_size(pin, system)}, {_form(p)}{heavy}; "
+        f"loaded at {', '.join(links) or 'nothing'}; {' or '.join(supports)}"
         + (f"; {notes}" if (notes := shape_notes(pin)) else "")
     )
 
 
-def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
+def _size(pin: PinLike, system: UnitSystem) -> str:
+    """Return the length and the least and largest diameter of a pin."""
+    parts, length = outline(pin), system.factor("length")
+    diameters = [d for _, d, *_ in parts] + [d for d, _ in far_ends(pin)]
+    ends = dict.fromkeys(f"{d / length:.4g}" for d in (min(diameters), max(diameters)))
+    long = sum(part[0] for part in parts) / length
+    return f"{long:.4g} {system.length} long, ⌀ {' to '.join(ends)}"
+
+
+def support_of(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
+    """Describe what holds a pin with these clamps."""
     if lugs(study, pin, clamps):
         beam = study.table.analysis.joints == "foundation"
         return f"{'on foundations in' if beam else 'in contact with'} its lugs"

@@ -20,6 +20,7 @@ from reports.format.words import but_words, spare_words, undecided_because
 EXIT_NUMERICS_FAILED, EXIT_REQUIREMENT_MISSED = 3, 4  # exit statuses
 Row = TypeVar("Row")
 Reason = TypeVar("Reason", bound=Hashable)
+TOLERANCE_REMEDY = '; give a larger tolerance, or goal = "decide"'
 VERDICT_WORDS = {
     "singular": "singular",
     "unconverged": "not converged",
@@ -168,7 +169,8 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
         if verdict == "singular":
             lines.append(f"{head}{reason}{_between(which)}: {_listed(which)}.")
         else:
-            lines.append(f"{head}: {_listed(which)}: {reason}.")
+            loose = TOLERANCE_REMEDY if "above the tolerance" in reason else ""
+            lines.append(f"{head}: {_listed(which)}: {reason}{loose}.")
     return lines
 
 

@@ -15,6 +15,7 @@ from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
+from pinstress.cli.export import export
 from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
@@ -28,7 +29,7 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import CASES_OPTION, Commands, choices, example, read_study
+from pinstress.cli.shared import CASES_OPTION, Commands, choices, example, open_page, read_study
 from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, clipped
 
@@ -359,27 +360,46 @@ def chart(
 @commands.command(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
-    + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
+    + "\nRead and validate a study and all its files without solving; print what would be run. "
+    "With --open a page draws the linkage with its loads and every pin in its lugs.\n\n"
     "Exit status: 0 done; 1 done, but a pin is unconstrained, or its loads are not in equilibrium; "
     "2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
-def check(study: Path) -> int:
-    from pinstress.cli.check import describe
+@click.option("--open", "opens", is_flag=True, help="Draw a page and open it in the browser.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="File of the page, which is then drawn; default with --open out/<study>_check.html.",
+)
+@click.option("--no-browser", is_flag=True, help="With --open, do not open the page.")
+def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
+    from pinstress.cli.check import examine
 
-    text, unheld, warnings = describe(read_study(study))
-    click.echo(text)
-    for line in warnings:
+    loaded = read_study(study)
+    x = examine(loaded)
+    click.echo("\n".join(x.lines))
+    for line in x.warnings:
         click.echo(f"Warning: {line}", err=True)
-    for line in unheld:
+    for line in x.unheld:
         click.echo(f"Not decided: {line}.", err=True)
-    return EXIT_NOT_REACHED if unheld else EXIT_REACHED
+    if opens or out is not None:
+        from pinstress.cli.check_page import write_check_page
+
+        page = out or Path("out") / f"{loaded.name}_check.html"
+        page.parent.mkdir(parents=True, exist_ok=True)
+        write_check_page(loaded, x, page)
+        click.echo(f"Page: {page}", err=True)
+        if opens and not no_browser:
+            open_page(page)
+    return EXIT_NOT_REACHED if x.unheld else EXIT_REACHED
 
 
 for _command in (
     cluster_keys,
     compare_runs,
     curve,
+    export,
     fits,
     import_,
     init,

@@ -24,6 +24,7 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import key_part
 from reports.data.decision import low_factor
 from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
@@ -188,11 +189,11 @@ def _dimensions(study: Study, new: Study, lightest: Lightest) -> list[ChangedDim
     """List the dimensions that changed."""
     from pinstress.analysis.remedies.dimensions import dimensions_of
 
-    unit = study.system.factor("length")
+    unit, table = study.system.factor("length"), f"pin.{key_part(lightest.pin)}"
     old = {d.key: d.value for d in dimensions_of(study, pin_of(study, lightest.pin))}
     after = {d.key: d.value for d in dimensions_of(new, pin_of(new, lightest.pin))}
     return [
-        ChangedDimension(key, old[key] / unit, after[key] / unit)
+        ChangedDimension(f"{table}.{key}", old[key] / unit, after[key] / unit)
         for key in after
         if key in old and abs(after[key] - old[key]) > 1e-9 * old[key]
     ]

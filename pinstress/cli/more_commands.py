@@ -137,9 +137,12 @@ def pdf_of(results: Path) -> int:
     "compare",
     short_help="Show what differs between two runs.",
     help=example("pinstress compare out/before out/after --out out/comparison")
-    + "\nPrint which inputs of two runs differ, and which maxima, safety factors, margins and "
-    "forces changed: beyond their errors, or within. A and B are folders that `pinstress run` "
-    "wrote; units may differ.",
+    + "\nPrint how the factors of pins changed and which requirements are newly met or lost, then "
+    "which inputs of two runs differ, and which maxima, margins and forces changed: beyond their "
+    "errors, or within. A and B are folders that `pinstress run` wrote, the older one first; units "
+    "may differ.\n\n"
+    "Exit status: 0 done; 1 done, but something could not be drawn; 2 bad input; 4 a requirement "
+    "that was met no longer is, or is gone.",
 )
 @click.argument("first", metavar="A", type=click.Path(path_type=Path))
 @click.argument("second", metavar="B", type=click.Path(path_type=Path))
@@ -216,7 +219,7 @@ def completion(context: click.Context, shell: str) -> None:
 @click.option(
     "--fos",
     type=click.FloatRange(0.0, min_open=True),
-    help="Safety factor to reach; overrides the study's required_safety_factor.",
+    help="Safety factor to reach; overrides required_safety_factor and [[require]] of the study.",
 )
 @PINS_OPTION
 @click.option(
@@ -289,11 +292,18 @@ def size(
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
     if least_weight and resume:
         raise InputError("--resume is not for --least-weight", code="contradiction")
+    goal = require_wish(loaded, fos, metres)
     if least_weight:
-        aim = require_aim(loaded, wished, require_wish(loaded, fos, metres).required, metres)
+        if goal.more:
+            raise InputError(
+                "--least-weight takes one factor for all pins and cases, and those that "
+                "[[require]] states differ: give --fos",
+                code="contradiction",
+            )
+        aim = require_aim(loaded, wished, goal.required, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
     options = SizeOptions(out, pins, jobs, resume, quiet)
-    return size_and_write(loaded, require_wish(loaded, fos, metres), options)
+    return size_and_write(loaded, goal, options)
 
 
 @click.command(

@@ -100,7 +100,7 @@ def open_page(page: Path) -> None:
 # Commands by what they are for.
 COMMAND_SECTIONS = {
     "Studies": ("init", "check", "import", "schema", "fits", "materials"),
-    "Analysis": ("run", "loads", "chart"),
+    "Analysis": ("run", "loads", "chart", "export"),
     "Designs": ("size", "curve", "sweep", "reliability", "cluster-keys"),
     "Earlier runs": ("view", "compare", "plots", "pdf"),
 }

@@ -14,6 +14,7 @@ from reports.data.results import PinResult, PinShape, Results
 from reports.data.unknowns import Ends, factor_spread
 
 GOOD = (SAFE, BELOW_YIELD)
+MAX_LUG_SHARE = 0.75  # of the outer diameter of a lug, which leaves an eighth on each side
 NEAR_ENOUGH = 1.001  # scale of diameters up to which a pin stays as it is
 
 
@@ -21,15 +22,19 @@ NEAR_ENOUGH = 1.001  # scale of diameters up to which a pin stays as it is
 class Diameter:
     """The diameter with which a pin reaches its factor, as estimated by the law of its section.
 
-    given: the largest of its bands, or of the pin without any. needed: None where it is given.
-    whatever: whether it holds over all that is open.
-    eye: the outer diameter of its smallest lug if the pin would not leave a quarter of it.
+    given: the largest of its bands, or of the pin without any.
+    needed: for the pin as described; whatever: over all that is open. None where given suffices.
+    eye: the outer diameter of its smallest lug, None without lugs.
     """
 
     given: float
     needed: float | None
-    whatever: bool = False
+    whatever: float | None
     eye: float | None = None
+
+    def too_large(self, diameter: float | None) -> bool:
+        """Return whether a diameter leaves less than a quarter of the lug."""
+        return None not in (diameter, self.eye) and diameter > MAX_LUG_SHARE * self.eye  # type: ignore[operator]
 
 
 @dataclass(frozen=True)
@@ -117,16 +122,16 @@ def _diameter(row: PinResult, shape: PinShape | None) -> Diameter | None:
         return None
     bands = [s[1] for s in shape.segments if s[4] == "band"]
     given = max(bands or [s[1] for s in shape.segments])
+    eyes = [band.outer_diameter for band in row.joint.bands] if row.joint else []
+    eye = min(eyes, default=None)
     if row.outcome in GOOD:
-        return Diameter(given, None, whatever=True)
+        return Diameter(given, None, None, eye)
     if row.outcome not in (FAILS, YIELDS, DEPENDS):
         return None
-    scale = _scale(row, whatever=row.outcome == DEPENDS)
-    needed = given * scale if scale > NEAR_ENOUGH else None
-    eyes = [band.outer_diameter for band in row.joint.bands] if row.joint else []
-    eye = min(eyes, default=math.inf)
-    small = needed is not None and needed > 0.75 * eye
-    return Diameter(given, needed, row.outcome == DEPENDS, eye if small else None)
+    scales = (_scale(row, whatever) for whatever in (False, True))
+    needed, over_all = (given * scale if scale > NEAR_ENOUGH else None for scale in scales)
+    # Safe as described, beneath contact apart: as it is.
+    return Diameter(given, None if row.outcome == DEPENDS else needed, over_all, eye)
 
 
 def factor_at(row: PinResult, scale: float) -> float:

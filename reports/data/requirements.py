@@ -206,16 +206,21 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
     No pin collapses before it yields anywhere (the static theorem of limit analysis), so a factor
     against yield is one against collapse, too.
     """
-    if row.safety_factor is not None:
-        elastic = _of_stress(plain, row, row.yield_strength or 0.0)
-        if elastic.outcome == "met":
-            return replace(elastic, reached=factor_ends(row)[0])
-    if margins and not _needs(margins):
-        return _of_margins(plain, margins)
     if row.safety_factor is None:
-        needs = _needs(m for m in row.worst if m.method == YIELD_METHOD)
-        return replace(plain, needs=needs or "a yield strength")
-    return replace(plain, needs=_needs(margins) or "a limit load (--limit-load)")
+        on_yield = [m for m in row.worst if m.method == YIELD_METHOD]
+        return replace(_judged(replace(plain, check="yield"), on_yield, row), check=plain.check)
+    elastic = _of_stress(plain, row, row.yield_strength or 0.0)
+    elastic = replace(elastic, reached=factor_ends(row)[0])
+    limit = row.limit_load
+    if elastic.outcome == "met":
+        return elastic
+    if limit is not None and limit.lower is not None and limit.upper is not None:
+        outcome: Outcome = "met" if limit.lower >= plain.required else "not decided"
+        outcome = "missed" if limit.upper < plain.required else outcome
+        return replace(plain, reached=limit.lower, outcome=outcome)
+    if elastic.outcome == "depends":
+        return elastic
+    return replace(plain, needs=_needs(margins) or 'analysis.limit_load other than "never"')
 
 
 def _assumed(

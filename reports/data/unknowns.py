@@ -23,6 +23,7 @@ class OpenValue:
 
     what: "impulse time", "clearance". owner: of its range.
     ends: the smallest and the largest value, of `dimension`, or none; states: others, in words.
+    given: the value of the study, a number or a state, None where it has none.
     low, high: ends of the factor, at the row's own value too.
     flips: what changes the row's outcome; None if nothing does.
     """
@@ -32,6 +33,7 @@ class OpenValue:
     dimension: str
     ends: Ends | None
     states: tuple[str, ...]
+    given: float | str | None
     low: float
     high: float
     flips: Dependence | None
@@ -137,22 +139,22 @@ def _of_landing(row: PinResult, r: LandingRange) -> Iterator[OpenValue]:
     )
     pulse = np.array([name == r.nominal_pulse for name in r.pulses])
     axes = (
-        ("impulse time", "time", r.impulse_time, velocity & pulse),
-        ("velocity change", "velocity", r.velocity_change, time & pulse),
+        ("impulse time", "time", r.impulse_time, r.nominal[0], velocity & pulse),
+        ("velocity change", "velocity", r.velocity_change, r.nominal[1], time & pulse),
     )
-    for what, dimension, values, alone in axes:
+    for what, dimension, values, given, alone in axes:
         here = values[alone]
         if len(here) > 1:
             low, high = _factors(row, r.max_von_mises[alone].tolist())
             ends = float(here.min()), float(here.max())
-            yield OpenValue(
-                what, "landing", dimension, ends, (), low, high, _flip(row, "landing", what)
-            )
+            flip = _flip(row, "landing", what)
+            yield OpenValue(what, "landing", dimension, ends, (), given, low, high, flip)
     states = tuple(dict.fromkeys(r.pulses))
     if len(states) > 1:
         low, high = _factors(row, r.max_von_mises[time & velocity].tolist())
         flip = _flip(row, "landing", "pulse")
-        yield OpenValue("pulse", "landing", "1", None, states, low, high, flip)
+        given_pulse = r.nominal_pulse or None
+        yield OpenValue("pulse", "landing", "1", None, states, given_pulse, low, high, flip)
 
 
 def _of_joint(row: PinResult) -> Iterator[OpenValue]:
@@ -168,7 +170,7 @@ def _of_joint(row: PinResult) -> Iterator[OpenValue]:
         low, high = _factors(row, [s for v in here for s in v.interval or (v.max_von_mises,)])
         yield OpenValue(
             what, "joint", "length", (min(ends), max(ends)) if ends else None,
-            tuple(v.value for v in here if v.length is None), low, high,
+            tuple(v.value for v in here if v.length is None), given if ends else None, low, high,
             _flip(row, "joint", what),
         )  # fmt: skip
 

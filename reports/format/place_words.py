@@ -28,8 +28,7 @@ def action(row: PinResult) -> str:
 
 
 def place_words(row: PinResult, shape: PinShape | None, units: Units | None = None) -> str:
-    """Return where the maximum of a row lies: "shear between F1 and F2", "surface at the step
-    beside E2".
+    """Return where the maximum of a row lies: "shear between F1 and F2", "surface, step beside E2".
 
     units: for z; without them it is left out.
     """
@@ -41,11 +40,12 @@ def place_words(row: PinResult, shape: PinShape | None, units: Units | None = No
     kind = action(row) if governs == "section" else "surface"
     at = "" if units is None else f", z = {engineering(z, MAX_Z_DIGITS)} {units.length}"
     where = "" if shape is None else along_words(shape, z)
-    return f"{kind} {where}".strip() + at
+    comma = "," if where.startswith(("step", "a step")) else ""
+    return f"{kind}{comma} {where}".strip() + at
 
 
 def along_words(shape: PinShape, z: float) -> str:
-    """Return where z lies along a pin: "at the step beside E2", "under E2", "between E1 and E2",
+    """Return where z lies along a pin: "step beside E2", "under E2", "between E1 and E2",
     "beside root".
     """
     ends, start = [], 0.0
@@ -62,7 +62,7 @@ def along_words(shape: PinShape, z: float) -> str:
         if one[1] != other[1] and abs(z - high) <= NEAR_STEP * thin:
             beside = [label for low, top, label in named if high in (low, top)]
             nearest = beside or [min(named, key=lambda n: min(abs(n[0] - z), abs(n[1] - z)))[2]]
-            return f"at the step beside {nearest[0]}" if named else "at a step"
+            return f"step beside {nearest[0]}" if named else "a step"
     for low, high, label in named:
         if low < z < high:
             return f"under {label}"

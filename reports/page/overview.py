@@ -9,7 +9,7 @@ from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
 from reports.data.decision import common_factor, limit
-from reports.data.overview import GOOD, PinLine, factor_at, pin_lines
+from reports.data.overview import GOOD, MAX_LUG_SHARE, PinLine, factor_at, pin_lines
 from reports.data.requirement_matrix import MatrixRow, matrix_rows
 from reports.data.requirements import requirement_rows
 from reports.data.results import Results
@@ -27,6 +27,7 @@ from reports.tables.strength.overview import (
     factor_axis,
     outcome_words,
     spread_words,
+    whatever_words,
 )
 from reports.text.overview import (
     accuracy,
@@ -34,6 +35,7 @@ from reports.text.overview import (
     certainty,
     decisions,
     flips_words,
+    given_words,
     measure_first,
     range_words,
     skipped_checks,
@@ -85,8 +87,11 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "axis": _ticks(axis) if axis else None,
         "lines": [_line(line, results, axis, anchors) for line in lines],
         "open": [x.what for x in unknown],
+        "length": results.units.length,
         "diameters": any(line.diameter for line in lines),
-        "eyes": any(line.diameter and line.diameter.eye for line in lines),
+        "eyes": any(
+            line.diameter and line.diameter.too_large(line.diameter.whatever) for line in lines
+        ),
         "checks": any(check_words(line) != DASH for line in lines),
         "matrix": [_matrix_row(row, lines) for row in matrix],
         "why": why(results, MAX_PEAKS),
@@ -169,7 +174,8 @@ def _line(
         "spread": asdict(_span(line.spread, axis)) if axis and line.spread else None,
         "spread_words": spread_words(line),
         "place": place_words(line.row, shape),
-        "diameter": diameter_words(line, results.units),
+        "diameter": diameter_words(line),
+        "whatever": whatever_words(line),
         "check": "" if check_words(line) == DASH else check_words(line),
     }
 
@@ -199,6 +205,7 @@ def _few(names: Sequence[str]) -> str:
 def _unknown(unknown: Unknown, results: Results) -> dict[str, str]:
     return {
         "what": unknown.what,
+        "given": given_words(unknown),
         "range": range_words(unknown, results.units),
         "flips": flips_words(unknown, results.units),
     }
@@ -229,10 +236,15 @@ def _curve(line: PinLine, results: Results) -> dict[str, Any] | None:
         "required": CURVE_HEIGHT * (1.0 - axis.at(required)),
         "needed": _across(d.needed / d.given, most),
         "label": f"Pin {line.pin}: factor against diameter, estimated",
+        "start": CURVE_HEIGHT * (1.0 - axis.at(factors[0])),
+        "lug": _across(MAX_LUG_SHARE * (d.eye or 0.0) / d.given, most)
+        if d.too_large(d.needed)
+        else None,
         "ends": (
             f"{engineering(d.given, 3)} {unit}",
             f"{engineering(d.needed, 3)} {unit}",
             short(required),
+            engineering(factors[0], 3),
         ),
     }
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from reports.data.check import LugOutline
 from reports.data.results import PinShape, Units
 from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
@@ -24,6 +26,8 @@ PATTERNS = (
     'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
     f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}</defs>'
 )
+LUG_COLOUR = "#e3c9a4"
+LUG_HEIGHT_SHARE = 0.6  # of a lug's height, by which drawings with lugs may be higher than others
 FILL_COLOURS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
 
@@ -87,16 +91,18 @@ class _Layout:
         return self.lines * TEXT_LINE_HEIGHT
 
     @staticmethod
-    def of(pieces: list[_Piece], along: StressAlong | None) -> _Layout:
+    def of(pieces: list[_Piece], along: StressAlong | None, around: float = 0.0) -> _Layout:
+        """Return the layout of a pin; around: diameter of the largest lug about it."""
         tops = rows([p.middle for p in pieces], [max(map(wide, p.words)) for p in pieces])
         lines = 3 if any(p.force for p in pieces) else 2
         radius = max(p.radius for p in pieces)
         ups = [load.up for load in along.loads] if along else []
         above = ARROW_ROOM if min(ups, default=0.0) < 0.0 else 0.0
         below = ARROW_ROOM if max(ups, default=0.0) > 0.0 else 0.0
-        axis = 8.0 + lines * TEXT_LINE_HEIGHT * (max(tops) + 1) + 12.0 + above + radius
         drawn = sum(p.width for p in pieces)
         scale = drawn / sum(p.extent for p in pieces)
+        radius = max(radius, 0.5 * scale * around)
+        axis = 8.0 + lines * TEXT_LINE_HEIGHT * (max(tops) + 1) + 12.0 + above + radius
         return _Layout(
             pieces[0].x, scale, drawn / scale, radius, tops, lines, axis, axis + radius + below
         )
@@ -109,17 +115,20 @@ def draw_pin(
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
     along: StressAlong | None = None,
+    lugs: Sequence[LugOutline] = (),
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
     zones: one per circle. places: of the stress of rows.
     width: of the drawing, in pixels; letters have the size 11.
     along: stress along the pin and loads, of the governing case.
+    lugs: that are drawn about it, in section.
     """
-    pieces = _pieces(shape, units, width, along)
+    around = max((lug.outer_diameter for lug in lugs), default=0.0)
+    pieces = _pieces(shape, units, width, along, around)
     if not pieces:
         return ""
-    at = _Layout.of(pieces, along)
+    at = _Layout.of(pieces, along, around)
     marks = ZoneMarks(zones or [], places or [], (at.left, at.scale, at.radius), width)
     top = at.foot + marks.height
     panel = None
@@ -135,6 +144,7 @@ def draw_pin(
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
         f"<title>{escape(_title(shape, along))}</title>{PATTERNS}",
+        *(part for lug in lugs for part in _lug(lug, pieces, at)),
         *_body(shape, pieces, at, marks),
         *([] if along is None else _loads(along, pieces, at)),
         *([] if along is None else triad(8.0, overall + 2.0, along.angle)),
@@ -179,6 +189,19 @@ def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) 
     ]
 
 
+def _lug(lug: LugOutline, pieces: list[_Piece], at: _Layout) -> Iterator[str]:
+    """Yield the section of a lug above and below the pin."""
+    left, right = (at.left + at.scale * z for z in lug.z)
+    inner = max((p.radius for p in pieces if p.x < right and left < p.x + p.width), default=0.0)
+    wall = 0.5 * at.scale * lug.outer_diameter - inner
+    for y in (at.axis - inner - wall, at.axis + inner):
+        yield (
+            f'<rect class="lug" x="{left:.2f}" y="{y:.2f}" width="{right - left:.2f}" '
+            f'height="{max(wall, 0.0):.2f}" fill="{LUG_COLOUR}" stroke="{INK_COLOUR}" '
+            'stroke-width="0.8"/>'
+        )
+
+
 def _loads(along: StressAlong, pieces: list[_Piece], at: _Layout) -> list[str]:
     """Return the arrow of every force."""
     largest = max((load.size for load in along.loads), default=0.0)
@@ -198,11 +221,11 @@ def _guides(pieces: list[_Piece], at: _Layout, foot: float) -> list[str]:
 
 
 def _pieces(
-    shape: PinShape, units: Units, across: float, along: StressAlong | None
+    shape: PinShape, units: Units, across: float, along: StressAlong | None, around: float = 0.0
 ) -> list[_Piece]:
     length = sum(s[0] for s in shape.segments)
     widths = [s[1] for s in shape.segments] + [diameter for diameter, _ in shape.far_ends]
-    widest = max(widths, default=0.0)
+    widest = max([*widths, around * LUG_HEIGHT_SHARE], default=0.0)
     if length <= 0.0 or widest <= 0.0:
         return []
     scale = min((across - 2 * DRAWING_MARGIN) / length, MAX_HEIGHT_RATIO * across / widest)

@@ -63,10 +63,14 @@ class StressAlong:
 
     @property
     def top(self) -> float:
-        """The largest stress of surface, section and row; of pressure where there is no other."""
+        """The largest stress of surface, section and row; of pressure where there is no other;
+        1 of a pin without stress.
+        """
         curves = [s for _, s in self.surface] + [self.section[1]]
         largest = [float(np.nanmax(s)) for s in curves if np.isfinite(s).any()]
-        return max([*largest, self.maximum or 0.0]) or max(p for *_, p in self.pressure)
+        return max([*largest, self.maximum or 0.0]) or max(
+            (p for *_, p in self.pressure), default=1.0
+        )
 
 
 def governing_rows(results: Results) -> dict[str, PinResult]:

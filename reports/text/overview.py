@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+
+import numpy as np
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
 from reports.data.changes import Remedy, command
@@ -11,12 +13,12 @@ from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TO
 from reports.data.overview import GOOD, PinLine, QuietCase, pin_lines, quiet_cases
 from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
 from reports.data.unknowns import NO_SPREAD, Unknown, decided_by
-from reports.format.numbers import engineering, short
+from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 from reports.format.words import undecided_because
-from reports.tables.strength.changes import SINGULARITY_REMEDIES
+from reports.tables.strength.changes import singularity_remedies
 from reports.tables.strength.margins import not_made_briefly
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
@@ -60,12 +62,13 @@ def actions(results: Results, study: str = "") -> Content:
     study: its path, by default its name.
     """
     lines = pin_lines(results)
-    parts = [*_exceeded(lines), *_singular(lines)]
+    parts = repairs(lines)
     if not results.changes:
         return parts
     if needed := [line for line in lines if line.diameter and line.diameter.needed]:
         parts.append(
-            "The estimated diameters follow the law of the section; the command verifies them."
+            "Diameters are estimates: the factor grows with their cube in bending, their square in "
+            "shear, their power 1.5 beneath contact. The command verifies them."
         )
     parts += _eyes(results, needed)
     parts += _other_ways(results)
@@ -101,6 +104,7 @@ def skipped_checks(results: Results) -> Content:
     """Return a sentence on the checks that lack a number; nothing if all were made."""
     without = [x.pin for x in pin_lines(results) if _without_range(x.row)]
     parts = [f"joint range of {names(without)}"] if without else []
+    parts += ["fatigue"] * (results.fatigue is None)
     parts += [text] if (text := not_made_briefly(results)) else []
     return [f"Skipped: {'; '.join(parts)}."] if parts else []
 
@@ -134,12 +138,19 @@ def flips_words(unknown: Unknown, units: Units) -> str:
 
 def range_words(unknown: Unknown, units: Units) -> str:
     """Return the range of an open value."""
-    parts = list(unknown.states)
+    parts = [state for state in unknown.states if state != given_words(unknown)]
     if unknown.ends:
         dimension = unknown.rows[0][1].dimension
         ends = dict.fromkeys(short(float(f"{end:.6g}")) for end in unknown.ends)
         parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
     return ", ".join(parts)
+
+
+def given_words(unknown: Unknown) -> str:
+    """Return the study's own value in the unit of the range; a dash for none, or several."""
+    given = {value.given for _, value in unknown.rows}
+    value = given.pop() if len(given) == 1 else None
+    return short(float(f"{value:.6g}")) if isinstance(value, float) else value or DASH
 
 
 def names(pins: Sequence[str]) -> str:
@@ -183,7 +194,7 @@ def flips(row: PinResult, units: Units) -> str:
             continue
         what = d.value if d.what == BENEATH_CONTACT else d.what
         if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
-            what = f"the {d.over} as a whole"
+            what = f"the combined {d.over} range"
         at = _at(d, units)
         told.append(f"{what} ({at})" if at else what)
     return ", ".join(dict.fromkeys(told))
@@ -243,7 +254,7 @@ def _quiet(results: Results, case: QuietCase, pins: int) -> str:
     if 1 < case.pins < pins:
         every = f"the {case.pins} pins solved are"
     of = f" ({low.pin})" if low and pins > 1 else ""
-    least = f", lowest factor {factor_range(low)}{of}" if low else ""
+    least = f", lowest {factor_range(low)}{of}" if low else ""
     return f"In {case.case} {every} {state}{least}."
 
 
@@ -261,7 +272,7 @@ def _path(results: Results, lines: Sequence[PinLine]) -> str:
     rest = [force for force in forces.values() if force < LARGE_FORCE * most]
     verb = "carry" if len(through) > 1 else "carries"
     text = f"{names(through)} {verb} up to {engineering(most, 3)} {units.force}"
-    others = f", others up to {engineering(max(rest), 3)}" if rest else ""
+    others = f", others {engineering(max(rest), 3)}" if rest else ""
     return f"{text}{others}."
 
 
@@ -279,11 +290,13 @@ def _between(high: float, low: float, digits: int = 3) -> str:
 
 
 def _size(load: GoverningLoad) -> float:
-    return float(sum(x * x for x in load.force) ** 0.5)
+    return float(np.linalg.norm(load.force))
 
 
-def _largest(loads: Iterable[GoverningLoad]) -> float:
-    return max(map(_size, loads))
+def _largest(loads: Sequence[GoverningLoad]) -> float:
+    """Return the largest force of a link on a pin, or of all together, which its supports take."""
+    total = sum(np.asarray(load.force) for load in loads)
+    return max(*map(_size, loads), float(np.linalg.norm(total)))
 
 
 def _actions(lines: Sequence[PinLine]) -> str:
@@ -293,7 +306,7 @@ def _actions(lines: Sequence[PinLine]) -> str:
         if kind := action(line.row):
             by_action.setdefault(kind, []).append(line.pin)
     told = [
-        f"{kind} {'governs ' * (not k)}{names(pins)}"
+        f"{kind} {'dominates ' * (not k)}{names(pins)}"
         for k, (kind, pins) in enumerate(by_action.items())
     ]
     text = ", ".join(told)
@@ -318,6 +331,11 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
     return f"Largest stress: {'; '.join(told)}; {engineering(permitted, 3)} is {word}."
 
 
+def repairs(lines: Sequence[PinLine]) -> Content:
+    """Return sentences on failing checks by formula, and on singularities that can be removed."""
+    return [*_exceeded(lines), *_singular(lines)]
+
+
 def _exceeded(lines: Sequence[PinLine]) -> Content:
     """Return a sentence on each check by formula that a pin fails, with what it lacks."""
     failing = [x for x in lines if x.check.row is None and x.outcome == FAILS and x.check.factor]
@@ -331,24 +349,19 @@ def _exceeded(lines: Sequence[PinLine]) -> Content:
 def _singular(lines: Sequence[PinLine]) -> Content:
     """Return the remedies of the singularities that govern pins that are not safe."""
     rows = [x.row for x in lines if x.outcome not in GOOD]
-    kinds = [zone.kind for row in rows for zone in row.singular_at if zone.governs]
-    ways = [
-        remedy
-        for name, remedy in SINGULARITY_REMEDIES.items()
-        if any(kind.endswith(name) for kind in kinds)
-    ]
+    ways = singularity_remedies(zone for row in rows for zone in row.singular_at if zone.governs)
     return [f"For a maximum instead of a range: {'; '.join(ways)}."] if ways else []
 
 
 def _eyes(results: Results, lines: Sequence[PinLine]) -> Content:
     """Return a sentence on the pins that would not fit into their lugs."""
-    small = [x for x in lines if x.diameter and x.diameter.eye]
+    small = [x for x in lines if x.diameter and x.diameter.too_large(x.diameter.needed)]
     if not small:
         return []
     eyes = {engineering(x.diameter.eye, 3) for x in small if x.diameter}
     return [
-        f"{names([x.pin for x in small])} would not fit lug eyes of {', '.join(sorted(eyes))} "
-        f"{results.units.length}: enlarge the lugs or add shear planes."
+        f"{names([x.pin for x in small])} would not fit lugs of {', '.join(sorted(eyes))} "
+        f"{results.units.length} outer diameter: enlarge the lugs or add shear planes."
     ]
 
 
@@ -365,7 +378,7 @@ def _other_ways(results: Results) -> Content:
         parts.append(f"Or a yield strength of {strength} for {worst.pin}.")
     if worst.impulse_time and worst.given_time:
         parts.append(
-            f"Or an impulse of {engineering(worst.impulse_time, 3)} instead of "
+            f"Or an impulse time of {engineering(worst.impulse_time, 3)} instead of "
             f"{short(worst.given_time)} {results.units.time} for {worst.pin}."
         )
     return parts

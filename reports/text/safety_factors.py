@@ -22,7 +22,15 @@ from reports.tables.strength.overview import (
     overview_table,
 )
 from reports.text.fitted_table import fitted_table, print_table
-from reports.text.overview import accuracy, actions, decisions, measure_first, skipped_checks, why
+from reports.text.overview import (
+    accuracy,
+    actions,
+    decisions,
+    measure_first,
+    repairs,
+    skipped_checks,
+    why,
+)
 from reports.text.summary import ALL_CONVERGED, caveats
 
 if TYPE_CHECKING:
@@ -52,7 +60,7 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
             console.print(Text(key))
     else:
         console.print(Text("No pin was solved."))
-    for title, sentences in _parts(results, unknown, study):
+    for title, sentences in _parts(results, lines, unknown, study):
         console.print(Text.assemble((f"{title} ", "bold"), " ".join(sentences)))
     if results.fatigue:
         console.print(Text(fatigue_sentence(results.fatigue)))
@@ -60,13 +68,15 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     print_table(console, "Published values", published_maxima(results), results.units)
 
 
-def _parts(results: Results, unknown: list[Unknown], study: str) -> list[tuple[str, list[str]]]:
+def _parts(
+    results: Results, lines: list[PinLine], unknown: list[Unknown], study: str
+) -> list[tuple[str, list[str]]]:
     """Return the titles and sentences under the table; only those that say something."""
     ways = actions(results, study)
     command = [way for way in ways if way.startswith("pinstress ")]
     parts = [
         ("Why:", why(results, 1)),
-        ("Do:", command or ways),
+        ("Do:", [*repairs(lines), *command] if command else ways),
         ("Error:", [*accuracy(results), *measure_first(unknown)]),
         ("Other checks:", [*_margins(results), *skipped_checks(results)]),
         ("Note:", [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]),
@@ -86,7 +96,7 @@ def _key(lines: list[PinLine]) -> str:
     parts.append(f"{REQUIRED_MARK} {limit_name}")
     diameters = [line.diameter for line in lines if line.diameter and line.diameter.needed]
     parts += ["→ estimate"] * bool(diameters)
-    parts += ["† too large for its lug"] * any(d.eye for d in diameters)
+    parts += ["† too large for its lug"] * any(d.too_large(d.needed) for d in diameters)
     return "   ".join(parts)
 
 

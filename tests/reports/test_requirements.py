@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from assess.plastic.records import LimitLoad
 from assess.requirement import StatedRequirement
 from pinstress import run, study_from
 from pinstress.analysis.results import RunResults
@@ -156,14 +157,28 @@ def test_no_collapse_before_yield(strong: RunResults) -> None:
     low = 235.0 / pin.maximum.upper_end
     any_lugs = 235.0 / pin.joint.range.max_von_mises[1]
     assert any_lugs < low
-    for factor, outcome in ((0.99 * any_lugs, "met"), (1.01 * any_lugs, "not checked")):
+    for factor, outcome in (
+        (0.99 * any_lugs, "met"),
+        (1.01 * any_lugs, "depends"),
+        (1.01 * low, "not checked"),
+    ):
         rows = stated(strong, StatedRequirement("P", "pull", "ultimate", "limit load", factor))
         row = the(rows, "ultimate", "limit load")
         assert row.outcome == outcome
-        assert row.reached == (pytest.approx(low) if outcome == "met" else None)
-    rows = stated(strong, StatedRequirement("P", "pull", "ultimate", "limit load", 2.0 * low))
-    row = the(rows, "ultimate", "limit load")
-    assert (row.outcome, row.needs) == ("not checked", "a limit load (--limit-load)")
+        if outcome == "not checked":
+            assert row.needs == 'analysis.limit_load other than "never"'
+        else:
+            assert row.reached == pytest.approx(low)
+
+
+def test_the_bracket_of_a_limit_load_decides(strong: RunResults) -> None:
+    (pin,) = strong.pins
+    known = replace(pin, limit_load=LimitLoad("solid", 5.0, 5.2, True))
+    results = replace(strong, pins=(known,))
+    for factor, outcome in ((4.9, "met"), (5.1, "not decided"), (5.3, "missed")):
+        rows = stated(results, StatedRequirement("P", "pull", "ultimate", "limit load", factor))
+        row = the(rows, "ultimate", "limit load")
+        assert (row.outcome, row.reached) == (outcome, 5.0)
 
 
 def test_fatigue_without_a_spectrum_and_rows_that_are_left_out(strong: RunResults) -> None:

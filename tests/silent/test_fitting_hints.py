@@ -94,7 +94,7 @@ profile = [ { length = 100, diameter = 22 }, { length = 20, diameter = 22, conne
     ("text", "kind", "remedy"),
     [
         (FREE, "the edge of a load", 'first spread the load by distribution = "cosine"'),
-        (CLAMPED, "the edge of a clamp", "first replace the clamp by its hub"),
+        (CLAMPED, "the edge of a clamp", "replace the clamp by its hub"),
     ],
     ids=["edge of a load", "edge of a clamp"],
 )

@@ -51,4 +51,5 @@ def test_a_column_of_one_line_is_in_every_output(
     }
     for output, text in people.items():
         assert text.count("toy [psi]") == 1, output
-        assert text.count("8,765") == count, output
+        # The terminal has a line for each pin, in its worst case.
+        assert text.count("8,765") == (count // 2 if output == "terminal" else count), output

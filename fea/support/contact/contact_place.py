@@ -27,16 +27,18 @@ def contact_place(
     required: float | None,
     error: float,
     row: float,
+    deep: bool = True,
 ) -> ContactPlace:
     """The results of contact at the row's instant.
 
     loads: on the rings at all instants of the case.
     error: of the stress beneath contact, relative.
     row: the maximum of surface and section, Pa, below which the depth of stress is not needed.
+    deep: whether the depth is wanted at all.
     """
     deepest = answer.beneath(loads)
     limits = reached(material, required)
-    instants = dict.fromkeys((deepest.instant, _instant(loads, contact)))
+    instants = dict.fromkeys((deepest.instant, _instant(loads, contact)) if deep else ())
     least = min(row, *limits) if limits else row
     steps = [x for t in instants for x in answer.depths(loads, t, least)]
     known = stairs(*np.array(steps).reshape(-1, 2).T)

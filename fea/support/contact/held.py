@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -34,7 +35,8 @@ from fea.support.contact.contact_place import contact_place
 from fea.support.contact.cut_in_lugs import neglected, with_neglected
 from fea.support.contact.pressed_cases import Candidates, Compared, PressedCases
 from fea.support.contact.solve_joint import ContactModel, JointContact, Resolution
-from fea.support.contact.variations import ResolutionComparison, compare
+from fea.support.contact.unit_pressures import unit_model, unit_patterns
+from fea.support.contact.variations import ResolutionComparison, compare, uncompared
 from fea.support.contact.what_contact_says import contact_result
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces
@@ -42,6 +44,7 @@ from fea.support.lugs.rings import whole_names
 from fea.support.prescribed import balanced, imbalance
 from fea.support.support import HeldPin, PinProblem, Progress, Solution, StressReading, silent
 from geometry import CutPin, Pin, PinLike
+from pinbase.memo import Memo
 
 # They are tried in this order, until one is fine enough.
 RESOLUTIONS: tuple[Resolution, ...] = (
@@ -50,6 +53,7 @@ RESOLUTIONS: tuple[Resolution, ...] = (
     Resolution(16, 64, 20),
 )
 ROUGH = Resolution(4, 24, 8)  # may decide a required factor
+Alone = Literal["unit", "alone"]
 MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
 
 
@@ -57,10 +61,14 @@ class ContactSupport:
     """A support by lugs in contact, on cells of one resolution (fea.support.support.Support).
 
     finer: the next resolution, None for the last.
+    alone: without an error of the cells or variations of the joint; "unit": by unit pressures of
+    the rings, which a memo has (fea.support.contact.unit_pressures).
     """
 
-    def __init__(self, cells: Resolution, finer: Resolution | None = None) -> None:
-        self.cells, self.finer = cells, finer
+    def __init__(
+        self, cells: Resolution, finer: Resolution | None = None, alone: Alone | None = None
+    ) -> None:
+        self.cells, self.finer, self.alone = cells, finer, alone
 
     def hold(
         self,
@@ -80,19 +88,27 @@ class ContactSupport:
         if isinstance(coarser, HeldContact):
             near = coarser.candidates
         progress(f"pin {problem.pin.name}, flexibility of {self.cells.rings} rings of each lug")
-        profile = profile_of(problem.pin)
-        model = ContactModel(profile, problem.material, problem.lugs, self.cells, problem.memo)
-        progress(f"pin {problem.pin.name}, contact")
-        cut = isinstance(problem.pin, CutPin)
-        contact = PressedCases(model, left, problem.between, problem.also, cut=cut)
+        profile, cut = profile_of(problem.pin), isinstance(problem.pin, CutPin)
+        of, between, also = (profile, problem.material, problem.lugs), problem.between, problem.also
+        if self.alone:
+            unit, memo = self.alone == "unit", problem.memo or Memo()
+            model = unit_model(*of, self.cells, memo, together=not unit)
+            patterns = unit_patterns(model) if unit else None
+            contact = PressedCases(model, left, between, {}, cut, patterns)
+        else:
+            model = ContactModel(*of, self.cells, problem.memo)
+            progress(f"pin {problem.pin.name}, contact")
+            contact = PressedCases(model, left, between, also, cut)
         if not contact.instants.keys() <= near.keys():
             near = contact.near(requirement)
         contact.follow(near)
-        compared = contact.compared(near, requirement)
+        compared = contact.compared(near, requirement, alone=self.alone is not None)
         # More cells than memory allows are none; and on the last ones all cases are answered.
         finest = self.finer is None or _count(model, self.finer) > MAX_CELLS
         starts = {case: contact.press(links) for case, links in contact.instants.items()}
-        held = HeldContact(problem, contact, starts, near, compared, finest, refused)
+        held = HeldContact(
+            problem, contact, starts, near, compared, finest, refused, alone=self.alone is not None
+        )
         if self.finer is None or self.cells is not ROUGH:  # rough ones are a trial only
             failed = {case: _failed(problem, case, why) for case, why in contact.failed.items()}
             held = replace(held, failures=held.failures | failed)
@@ -150,6 +166,7 @@ class HeldContact:
     starts: by case, the pressures at the instants of which their patterns are made.
     candidates: by case, the instants that may govern.
     compared: by case, contact on these cells against that on larger ones.
+    alone: whether nothing is compared with other cells or meshes.
     """
 
     problem: PinProblem
@@ -161,6 +178,7 @@ class HeldContact:
     failures: dict[str, Maximum]
     notes: Mapping[str, Reason] = field(default_factory=dict)
     clamps: tuple[str, ...] = ()
+    alone: bool = False
 
     @property
     def model(self) -> ContactModel:
@@ -228,7 +246,9 @@ class HeldContact:
         known = self.compared[case.case].near(at_surface, case, self._compared_anew(requirement))
         missed = self.contact.patterns.left_out(model.waves(at_surface.contact))
         surface = self._evidence(reading, case, at_surface, known.surface.cells.surface + missed)
-        error = known.surface.cells.beneath + self._by_mesh(answer, known.surface)
+        error = known.surface.cells.beneath
+        if not self.alone:
+            error += self._by_mesh(answer, known.surface)
         section, links = None, None
         if self.cut is None:
             section = self._section(case, known.section.cells.section, requirement)
@@ -243,7 +263,10 @@ class HeldContact:
         solution = self._at_row(reading, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
         row = peak.max_von_mises or 0.0
-        place = contact_place(contact, material, answer, reading.loads, required, error, row)
+        place = contact_place(
+            contact, material, answer, reading.loads, required, error, row,
+            deep=not self.alone,
+        )  # fmt: skip
         over = known.row.range(row, place.beneath)
         joint = contact_result(contact, over, solution.loads, known.row.left_out)
         peak = with_contact(peak, place)
@@ -277,6 +300,8 @@ class HeldContact:
         self, requirement: Requirement
     ) -> Callable[[JointContact], ResolutionComparison]:
         of = self.contact
+        if self.alone:
+            return uncompared
         return lambda contact: compare(of.model, [contact], requirement, of.patterns)[0]
 
     def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:

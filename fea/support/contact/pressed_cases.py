@@ -30,7 +30,12 @@ from fea.support.contact.pressure_loads import (
     resultants,
 )
 from fea.support.contact.solve_joint import ContactModel, JointContact
-from fea.support.contact.variations import CELL_ERROR_SHARE, ResolutionComparison, compare
+from fea.support.contact.variations import (
+    CELL_ERROR_SHARE,
+    ResolutionComparison,
+    compare,
+    uncompared,
+)
 
 # Of the largest stress on the first mesh: an instant above it may govern on finer meshes. Chosen by
 # judgement, with room for the error of the first mesh.
@@ -115,6 +120,7 @@ class PressedCases:
     Pressures made of the same patterns act on one mesh.
     instants: by case, the loads of which the patterns are made.
     failed: the reason why a case has no contact.
+    patterns: those of any pressures; None: they are made from the pressures of the cases.
     """
 
     def __init__(
@@ -124,13 +130,15 @@ class PressedCases:
         between: Mapping[str, Between],
         besides: Mapping[str, PinLoads],
         cut: bool,
+        patterns: PressureModes | None = None,
     ) -> None:
         self.model, self.cut = model, cut
+        self._whole = patterns is not None
         self.failed: dict[str, str] = {}
         self.instants: dict[str, PinLoads] = {}
         self._known: dict[tuple[str, float], ContactState] = {}
         self._besides: dict[str, Floats] = {}
-        self.patterns: PressureModes | None = None
+        self.patterns = patterns
         self.sections: dict[str, SectionField] = {}
         # Contact of all cases comes first: patterns and sections are made from all of it, and a
         # case without contact must not stop the others.
@@ -184,7 +192,7 @@ class PressedCases:
         for case, links in self.instants.items():
             waves, may = self.model.waves(self._at(links)), near[case].may
             parts += [(waves[:, may], MODE_TOLERANCE), (waves[:, ~may], ROUGH_MODE_TOLERANCE)]
-        if parts:
+        if parts and not self._whole:
             self.patterns = self.model.patterns(parts, self.patterns)
 
     def _at(self, links: PinLoads) -> list[ContactState]:
@@ -215,10 +223,12 @@ class PressedCases:
         return self.model.joined(self._at(here), self.press(here))
 
     def compared(
-        self, near: Mapping[str, Candidates], requirement: Requirement
+        self, near: Mapping[str, Candidates], requirement: Requirement, alone: bool = False
     ) -> dict[str, Compared]:
         """The comparisons of each case, at the instants of the largest stress of the surface on the
         first mesh and of sections.
+
+        alone: whether nothing is wanted but the places.
         """
         at, vary, which = list[JointContact](), list[bool](), dict[str, tuple[int, int]]()
         for case, links in self.instants.items():
@@ -232,7 +242,10 @@ class PressedCases:
             at += [self.joined(links, t) for t in distinct]
             governs = both[stress > near[case].largest]
             vary += [t == governs for t in distinct]
-        comparisons = compare(self.model, at, requirement, self.patterns, vary)
+        if alone:
+            comparisons = tuple(uncompared(contact) for contact in at)
+        else:
+            comparisons = compare(self.model, at, requirement, self.patterns, vary)
         return {case: Compared(comparisons[a], comparisons[b]) for case, (a, b) in which.items()}
 
 

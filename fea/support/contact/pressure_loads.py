@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,9 +94,7 @@ class PressureModes:
         acting = dict(others_along(self.pin, self.rings, links).coefficients())
         for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
             amounts = np.einsum("trp,kr->ktp", wave, patterns)
-            for pattern, amount in zip(patterns.tolist(), amounts, strict=True):
-                parts = tuple(zip(self.rings, pattern, strict=True))
-                acting[UnitLoad("", "pressure", n, parts)] = amount
+            acting.update(zip(self._units[n], amounts, strict=True))
         return PressureLoads(
             links.case,
             self.rings,
@@ -106,6 +105,17 @@ class PressureModes:
             acting=acting,
             of_links=links,
             pressed=pressed,
+        )
+
+    @cached_property
+    def _units(self) -> tuple[tuple[UnitLoad, ...], ...]:
+        """The unit load of each pattern, by harmonic."""
+        return tuple(
+            tuple(
+                UnitLoad("", "pressure", n, tuple(zip(self.rings, pattern, strict=True)))
+                for pattern in patterns.tolist()
+            )
+            for n, patterns in enumerate(self.by_harmonic)
         )
 
     def left_out(self, waves: Floats) -> float:

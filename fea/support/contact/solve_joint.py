@@ -134,7 +134,7 @@ class JointContact:
 class ContactModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances.
 
-    first: its first mesh for stress.
+    first: its first mesh for stress, None where nothing is solved on it again.
     on_pin, on_lugs: the meshes of the flexibilities, one for equal lugs.
     memo: of flexibilities and meshes, shared with other models.
 
@@ -149,7 +149,8 @@ class ContactModel:
         cells: Resolution = Resolution(),
         memo: Memo | None = None,
     ) -> None:
-        self.cells, self.first, self._memo = cells, FirstMesh(memo), memo or Memo()
+        self.first: FirstMesh | None = FirstMesh(memo)
+        self.cells, self._memo = cells, memo or Memo()
         self._shape(pin, material, lugs)
         self.on_pin, self.of_pin = self._pin_flexibility()
         self.of_lugs = np.zeros_like(self.of_pin)
@@ -203,6 +204,14 @@ class ContactModel:
         if before != cut:
             self._cut, self.pin = cut, ringed(pin, self.ends)
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
+
+    def without_meshes(self) -> ContactModel:
+        """The model ready for contact, without what only derivatives and other shapes need."""
+        other = copy.copy(self)
+        other._memo = Memo()
+        for meshes in ("on_pin", "on_lugs", "first"):
+            del other.__dict__[meshes]
+        return other.varied(other.lugs)
 
     def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> ContactModel:
         """The model of another pin in other lugs on such cells, without computing flexibilities.

@@ -62,6 +62,9 @@ class AtPlaces:
         return max(self.surface, self.section)
 
 
+NOWHERE = AtPlaces(0.0, 0.0, 0.0)
+
+
 @dataclass(frozen=True)
 class ResolutionComparison:
     """The stress at one instant on the first mesh, and its relative error from the cells.
@@ -153,6 +156,11 @@ def compare(
         left_out = f"not included: {'; '.join(why)}" if why else ""
         out.append(ResolutionComparison(first, cells, contact.loads.links, ratios, left_out))
     return tuple(out)
+
+
+def uncompared(contact: JointContact) -> ResolutionComparison:
+    """What stands for a comparison where none was made."""
+    return ResolutionComparison(NOWHERE, NOWHERE, contact.loads.links, ())
 
 
 def _by_cells(stress: AtPlaces, coarse: AtPlaces, rings: int) -> AtPlaces:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
@@ -95,14 +95,13 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
 
 def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
     """Return the rows of a plan, as `results_of` has them, by pin and case."""
-    study = plan.study
-    return {
-        (row.pin, row.case): in_units(
-            _completed(study, plan.loads[row.case], task, row, plan.published), study.system.factor
-        )
+    study, factor, units = plan.study, plan.study.system.factor, _units(plan.study)
+    rows = (
+        _completed(study, plan.loads[row.case], task, row, plan.published)
         for task, outcome in zip(plan.tasks, outcomes, strict=True)
         for row in outcome.rows
-    }
+    )
+    return {(row.pin, row.case): in_units(replace(row, units=units), factor) for row in rows}
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
@@ -127,8 +126,12 @@ def _in_order(
 
 
 def _in_study_units(results: plain.Results, study: Study) -> plain.Results:
+    return results.in_units(_units(study), study.system.factor)
+
+
+def _units(study: Study) -> plain.Units:
     s = study.system
-    return results.in_units(plain.Units(s.length, s.force, s.stress, s.time), s.factor)
+    return plain.Units(s.length, s.force, s.stress, s.time)
 
 
 def loads_only(study: Study, cases: Iterable[str] | None = None) -> plain.Results:
@@ -164,7 +167,7 @@ def _results(
         tolerance=tolerance,
         pins=tuple(_completed(study, loads[row.case], task, row, published) for task, row in rows),
         shapes=tuple(
-            _shape(tasks[name], [row.maximum for _, row in rows if row.pin == name])
+            shape_of_task(tasks[name], [row.maximum for _, row in rows if row.pin == name])
             for name in table.pin
             if name in tasks
         ),
@@ -229,7 +232,11 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
     )
 
 
-def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
+def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
+    """Return the pin of a task as it is drawn, SI.
+
+    peaks: its maxima, of which local solids are drawn.
+    """
     pin, density = task.pin, task.material.density
     held = {pin.surface(c) for c in task.clamps}
     segments = tuple(

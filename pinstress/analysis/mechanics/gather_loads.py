@@ -79,7 +79,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
         "drive": tuple(t for n, d in dynamics.items() for t in _drives(study, n, d, loads[n])),
-        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
+        "motion": tuple(linkage_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
@@ -217,9 +217,13 @@ def _extremes(over: OverTime) -> plain.Extremes:
     )
 
 
-def _motion(
+def linkage_motion(
     study: Study, name: str, dynamics: Dynamics, over: OverTime | None
 ) -> plain.LinkageMotion:
+    """Return the motion of the linkage in a case, SI.
+
+    over: results of the whole motion, if they are known.
+    """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     timed = dynamics.reactions.times is not None
     bodies = [b.name for b in linkage.bodies]

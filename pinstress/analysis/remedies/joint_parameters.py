@@ -17,6 +17,7 @@ from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.lugs import LugTable
 
 # Of the pin's radius: what steps of a clearance are parts of, as it may be none
@@ -51,8 +52,8 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
         ):
             if scale or value:
                 changed = partial(_with_lug, study, task, name, key)
-                number = value or 0.0
-                one = JointParameter(f"lug.{name}.{key}", number, scale or number, changed)
+                number, full_key = value or 0.0, f"lug.{key_part(name)}.{key}"
+                one = JointParameter(full_key, number, scale or number, changed)
                 yield StudyParameter("length", one)
     made_of = [task.material, *(m for x in task.lugs for m in (x.material, x.bearing))]
     for part in dict.fromkeys(made_of):
@@ -65,8 +66,8 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
             value = getattr(part, key)
             if value:
                 changed = partial(_with_material, study, task, part.name, key)
-                full = f"material.{part.name}.{key}"
-                yield StudyParameter(kind, JointParameter(full, value, value, changed))
+                full_key = f"material.{key_part(part.name)}.{key}"
+                yield StudyParameter(kind, JointParameter(full_key, value, value, changed))
 
 
 def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:

@@ -104,6 +104,9 @@ def why_missed(results: Results, pin: str) -> str:
         return f"in {', '.join(loose)} the error of the stress leaves it open"
     if check := _strict_check(results, pin):
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g}"
+    worst = worst_checks(results)[pin]
+    if worst.stated and worst.outcome == NOT_DECIDED:
+        return f"{worst.check} was not checked: {worst.reason}"
     if depends:
         every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
         ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])

@@ -26,7 +26,7 @@ class ImpulseLoads:
     each.
 
     times, velocities: (P,); forces: (P,) N, with P pulses.
-    nominal, nominal_pulse: of the case.
+    nominal, nominal_pulse: of the case, with the force nominal_force, N.
     """
 
     times: Floats
@@ -36,6 +36,7 @@ class ImpulseLoads:
     reactions: Reactions
     nominal: tuple[float, float]
     nominal_pulse: str
+    nominal_force: float
 
 
 @dataclass(frozen=True)
@@ -138,6 +139,7 @@ def over_range(
         _of_sizes(study, name, motion, ranged[0], sizes),
         (impulse.impulse_time, impulse.velocity_change),
         impulse.pulse,
+        _size(impulse, impulse.velocity_change, impulse.impulse_time),
     )
 
 

@@ -38,6 +38,32 @@ def required_factors(study: Study, pin: str, cases: Iterable[str]) -> dict[str, 
     return {case: f for case, f in factors.items() if f is not None and f != default}
 
 
+def common_required_factor(study: Study, pins: Iterable[str] | None = None) -> float | None:
+    """Return the factor that is required of all pins in all cases; None without one or where
+    requirements differ, so that a summary of many rows cannot name one.
+
+    pins: by default all.
+    """
+    table = study.table
+    if not table.require:
+        return table.analysis.required_safety_factor
+    names = table.pin if pins is None else pins
+    factors = {required_factor(study, pin, case) for pin in names for case in table.case}
+    return factors.pop() if len(factors) == 1 else None
+
+
+def sizing_factor(study: Study, pin: str, case: str) -> float | None:
+    """Return the factor against yield with which a pin meets its requirements on stress in a case,
+    on yield and rupture; None without any.
+    """
+    material = study.table.material[study.table.pin[pin].material]
+    factors = [required_factor(study, pin, case)]
+    rupture = stated_factor(study, pin, case, "rupture", "ultimate")
+    if rupture and material.yield_strength and material.ultimate_strength:
+        factors.append(rupture * material.yield_strength / material.ultimate_strength)
+    return max((factor for factor in factors if factor is not None), default=None)
+
+
 def stated_factor(
     study: Study, pin: str, case: str, check: RequiredCheck, level: RequiredLevel
 ) -> float | None:

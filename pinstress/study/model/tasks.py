@@ -18,6 +18,7 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, lugs
 from pinstress.study.model.moving_loads import MovingLoads
 from pinstress.study.model.pins import material
+from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import listed
 
@@ -147,6 +148,37 @@ def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:
         f"Case{'s' * many} {listed(assumed)} state{'s' * (not many)} no distribution: forces act "
         'as bearing pressure on the loaded half of their bands ("cosine").'
     )
+
+
+def require_models(study: Study, todo: Iterable[Task], model: str) -> None:
+    """Raise InputError, with all such tasks, for a model that cannot solve some."""
+    wrong = Errors(study.path)
+    for task in todo:
+        wrong.attempt(partial(_require_model, study, model, task))
+    wrong.tell()
+
+
+def _require_model(study: Study, model: str, task: Task) -> None:
+    """Raise InputError for a model that cannot solve a task."""
+    pin = task.pin.name
+    if model in ("beam", "harmonic") and not task.pin.revolved:
+        raise study.error(
+            f"pin {pin} is not a body of revolution, which the {model} model needs: use auto or "
+            "solid",
+            at=f"pin.{pin}",
+            code="not-of-revolution",
+        )
+    if not task.lugs:
+        return
+    beam = study.table.analysis.joints == "foundation"
+    how, fits = ("on foundations in", "beam") if beam else ("in contact with", "harmonic")
+    if model not in ("auto", fits):
+        raise study.error(
+            f"pin {pin} is {how} its lugs, which requires the {fits} model: use auto or {fits}, "
+            f'or analysis.joints = "prescribed" for the {model} model',
+            at=f"pin.{pin}",
+            code="model-without-contact",
+        )
 
 
 def _at(build: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

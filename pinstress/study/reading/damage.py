@@ -140,6 +140,8 @@ class Damage:
         """
         if any(place[: len(p)] == p for p in self.places):
             return True
+        if any(wrong.message.startswith(f"{said(p)} is missing") for p in self.places):
+            return True  # its place ends before what the remainder lacks
         if wrong.name and wrong.name in self.names:
             return True
         return any(self.touches(cause) for cause in CAUSES.get(wrong.code, ()))

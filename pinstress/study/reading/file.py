@@ -7,6 +7,7 @@ import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -53,7 +54,7 @@ class Remainder:
     damage: Damage
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Study:
     """A valid study.
 
@@ -69,6 +70,24 @@ class Study:
     provenance: tuple[Sourced, ...]
     questions: tuple[str, ...] = ()
     located: bool = True
+
+    def __repr__(self) -> str:
+        parts = f"pins: {len(self.table.pin)}, cases: {len(self.table.case)}, {self.table.units}"
+        return f"<Study {self.table.title!r} ({self.path}): {parts}>"
+
+    def _repr_html_(self) -> str:
+        """Return the pins with their connections, clamps and material as an HTML table."""
+        lines = [("pin", "connections", "clamps", "material")]
+        for name, pin in self.table.pin.items():
+            lines.append(
+                (name, ", ".join(self.connections(name)), ", ".join(pin.clamp), pin.material)
+            )
+        body = "".join(
+            f"<tr>{''.join(f'<td>{escape(x)}</td>' for x in line)}</tr>" for line in lines
+        )
+        cases = f"cases: {', '.join(self.table.case)}; units: {self.table.units}"
+        title = f"<p><b>{escape(self.table.title)}</b> ({escape(str(self.path))})</p>"
+        return f"{title}<p>{escape(cases)}</p><table>{body}</table>"
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -220,16 +239,24 @@ def named_materials(study: Study) -> tuple[StoredMaterial, ...]:
 def with_value(raw: Mapping[str, Any], path: Sequence[str | int], value: Any) -> dict[str, Any]:
     """Return a copy of a study's raw content with another value at a path; the rest is shared.
 
-    Tables of lugs that are only in lug_defaults are added.
+    Tables of lugs that are not in it are added; one number for both ends is made two.
     """
     content: dict[str, Any] = dict(raw)
     here: Any = content
     for part in path[:-1]:
         missing = isinstance(here, dict) and part not in here
-        here[part] = {} if missing else copy.copy(here[part])
+        inner = {} if missing else here[part]
+        here[part] = copy.copy(inner) if isinstance(inner, dict | list) else [inner, inner]
         here = here[part]
+    if replaces_fit(path):
+        here.pop("fit", None)
     here[path[-1]] = value
     return content
+
+
+def replaces_fit(path: Sequence[str | int]) -> bool:
+    """Return whether a value is the clearance of a lug, which its fit gives otherwise."""
+    return path[0] == "pin" and "lug" in path and path[-1] == "clearance"
 
 
 def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:

@@ -122,12 +122,13 @@ def looked_up(path: Path, raw: dict[str, Any]) -> dict[str, StoredMaterial]:
     Raises: InputError for a file of materials that cannot be read.
     """
     file, own = raw.get("materials"), raw.get("material", {})
-    given = read_materials(path.parent / file) if isinstance(file, str) else {}
-    if not isinstance(own, dict):
+    names = dict.fromkeys(_named(raw)) if isinstance(own, dict) else {}
+    wanted = [name for name in names if name not in own]
+    if not wanted:
         return {}
-    names = dict.fromkeys(name for name in _named(raw) if name not in own)
-    known = {**library(), **given} if names else {}
-    return {name: known[name] for name in names if name in known}
+    given = read_materials(path.parent / file) if isinstance(file, str) else {}
+    known = {**library(), **given}
+    return {name: known[name] for name in wanted if name in known}
 
 
 def with_materials(path: Path, raw: dict[str, Any]) -> dict[str, Any]:

@@ -9,16 +9,19 @@ from dataclasses import dataclass
 from assess.judgement import DEPENDS
 from assess.strength.model_stress import YIELD_METHOD
 from reports.data.decision import limit
-from reports.data.overview import PinLine
-from reports.data.results import Results, Units
+from reports.data.overview import Diameter, PinLine
+from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import place_words
 from reports.format.ranges import END_DIGITS, factor_range
 from reports.format.words import result_words
 from reports.tables.column import Column, Table
+from reports.tables.strength import safety_factors
+from reports.tables.strength.safety_factors import FACTOR_COLUMN_ORDER, FactorRow
 
 MAX_DECADES = 4.0  # of the axis; what lies beyond is at its end
 AXIS_MARGIN = 1.3  # ratio, beyond the smallest and the largest factor
+MAX_RANK = 10  # of columns that a narrow terminal drops first
 SPREAD_DIGITS = 2
 BAR_WIDTH = 20  # characters
 SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
@@ -96,7 +99,7 @@ def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]
         Column("bar", lambda x: bar(x, axis) if axis else DASH, heading=_heading(axis),
                numeric=False, rank=4, drop_if_empty=True),
         Column("spread", spread_words, heading="open range", rank=3, drop_if_empty=True),
-        Column("diameter", lambda x: diameter_words(x, results.units), heading="diameter",
+        Column("diameter", diameter_words, "length", "diameter",
                numeric=False, rank=2, drop_if_empty=True),
         Column("max_von_mises", lambda x: x.row.max_von_mises, "stress", "max von Mises", rank=6),
         Column("error_estimate", lambda x: error_words(x), heading="±", rank=7),
@@ -105,7 +108,23 @@ def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]
                numeric=False, rank=8, drop_if_empty=True),
         Column("time", lambda x: x.row.time, "time", "t", rank=9, drop_if_empty=True),
     ]  # fmt: skip
-    return Table("overview", columns, list(lines))
+    return Table("overview", [*columns, *_added(results)], list(lines))
+
+
+def _added(results: Results) -> list[Column[PinLine]]:
+    """Return the columns of the safety factors that are not among the usual ones, of each row."""
+
+    def of_line(column: Column[FactorRow]) -> Column[PinLine]:
+        text, unit = column.text, column.dimension
+        return Column(
+            column.key, lambda x: column.cell(FactorRow(x.row, results)),
+            (lambda x: unit(FactorRow(x.row, results))) if callable(unit) else unit,
+            column.heading, text and (lambda x: text(FactorRow(x.row, results))), column.numeric,
+            max(column.rank, MAX_RANK), column.drop_if_empty,
+        )  # fmt: skip
+
+    shown = (c for c in safety_factors.COLUMNS if c.heading and c.key not in FACTOR_COLUMN_ORDER)
+    return [of_line(column) for column in shown]
 
 
 def outcome_words(line: PinLine) -> str:
@@ -124,18 +143,26 @@ def spread_words(line: PinLine) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def diameter_words(line: PinLine, units: Units) -> str:
-    """Return the estimated diameter: "2 → 3.40 in", "keep 2 in"; a dagger where its lug is too
-    small, a dash without one.
+def diameter_words(line: PinLine) -> str:
+    """Return the diameter, and the estimated one of a pin that fails: "2 → 3.40", "2"; a dagger
+    where its lug is too small, a dash without one.
     """
     d = line.diameter
     if d is None:
         return DASH
     given = short(float(f"{d.given:.4g}"))
-    if d.needed is None:
-        return f"keep {given} {units.length}"
-    mark = " †" if d.eye else ""
-    return f"{given} → {engineering(d.needed, END_DIGITS)} {units.length}{mark}"
+    return f"{given} → {_diameter(d, d.needed)}" if d.needed else given
+
+
+def whatever_words(line: PinLine) -> str:
+    """Return the estimated diameter over all that is open; a dash where it stays as it is."""
+    d = line.diameter
+    return DASH if d is None or d.whatever is None else _diameter(d, d.whatever)
+
+
+def _diameter(d: Diameter, diameter: float) -> str:
+    mark = " †" if d.too_large(diameter) else ""
+    return f"{engineering(diameter, END_DIGITS)}{mark}"
 
 
 def error_words(line: PinLine) -> str:

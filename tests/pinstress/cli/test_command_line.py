@@ -163,7 +163,19 @@ def test_without_a_command_the_help_is_whole(capsys: pytest.CaptureFixture[str])
 
 @each(
     "command",
-    ["run", "loads", "chart", "check", "import", "init", "schema", "size", "view", "completion"],
+    [
+        "run",
+        "loads",
+        "chart",
+        "check",
+        "export",
+        "import",
+        "init",
+        "schema",
+        "size",
+        "view",
+        "completion",
+    ],
 )
 def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line([command, "--help"]) == 0

@@ -240,3 +240,61 @@ def test_check_lists_what_is_required(tmp_path: Path, capsys: pytest.CaptureFixt
     said = capsys.readouterr().out
     assert "requires rupture at ultimate load, factor 1.5: pin P in pull\n" in said
     assert "requires fatigue, factor 4: all pins\n" in said
+
+
+@pytest.mark.slow
+def test_a_required_limit_load_is_computed() -> None:
+    """A stub whose factors against yield and collapse are 1.37 and 2.8: also where it does not
+    yield, of which no limit load is computed otherwise.
+    """
+    profile = [
+        {"length": 40, "diameter": 20},
+        {"length": 10, "diameter": 20, "connection": "L"},
+    ]
+    pins = {"P": {"material": "steel", "clamp": ["start"], "profile": profile}}
+    pull = {"kind": "given", "forces": {"L": [3000, 0]}}
+    given = {**study(STRENGTHS), "pin": pins, "case": {"pull": pull}}
+    for factor, outcome in ((1.5, "met"), (3.0, "missed")):
+        need = {"check": "limit load", "factor": factor}
+        results = run(study_from({**given, "require": [need]}))
+        (row,) = [r for r in requirement_rows(results) if r.check == "limit load" and r.stated]
+        assert row.outcome == outcome
+        limit = results.pins[0].limit_load
+        assert limit is not None
+        assert limit.method == "solid"
+        assert row.reached == limit.lower
+    assert run(study_from(given)).pins[0].limit_load is None
+
+
+def test_compare_ends_with_4_where_a_requirement_was_lost(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shear = {"check": "shear", "factor": 8}
+    folders = []
+    for name, requirements in (
+        ("both", ({"check": "yield", "factor": 2}, shear)),
+        ("stricter", ({"check": "yield", "factor": 2}, {**shear, "factor": 9})),
+        ("one", ({"check": "yield", "factor": 2},)),
+    ):
+        (tmp_path / name).mkdir()
+        command(required(*requirements), tmp_path / name)
+        folders.append(str(tmp_path / name / "out"))
+    both, stricter, one = folders
+    capsys.readouterr()
+    for first, second, status, sentence, message in (
+        (both, both, 0, "No factor of a pin changed; no requirements newly met, none lost.", ""),
+        (both, stricter, 4, "no requirements newly met, one lost.",
+         "Requirement lost: P (pull): shear at limit load.\n"),
+        (stricter, both, 0, "one requirement newly met, none lost.", ""),
+        (both, one, 0, "one asking for less.", ""),  # the factor on limit loads still asks for 1
+    ):  # fmt: skip
+        assert run_command_line(["compare", first, second]) == status
+        said = capsys.readouterr()
+        assert sentence in said.out.partition("\nA: ")[0].replace("\n", " ").replace("  ", " ")
+        assert said.err == message
+    fatigue = required({"check": "yield", "factor": 2}, {"check": "fatigue", "factor": 2})
+    (tmp_path / "fatigue").mkdir()
+    command(fatigue, tmp_path / "fatigue")
+    capsys.readouterr()
+    assert run_command_line(["compare", str(tmp_path / "fatigue" / "out"), one]) == 4
+    assert "Requirement gone: P: fatigue life.\n" in capsys.readouterr().err

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from loads import noted_files
+from pinbase.memo import Memo
 from pinstress import Engine, InputError, load_study, prepare, run
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.scaled_study import moved
@@ -114,12 +115,13 @@ def test_a_study_comes_before_its_file_and_that_before_the_library(tmp_path: Pat
 
 
 def test_a_changed_file_gives_new_answers(tmp_path: Path) -> None:
-    """Also of a run whose answers are stored, and in what `sweep --resume` compares."""
+    """Also where answers are remembered, and in what `sweep --resume` compares."""
     path, factors, values = written(tmp_path, "S", 'materials = "ours.toml"'), [], []
+    memo = Memo()
     for strength in ("355 MPa", "710 MPa"):
         (tmp_path / "ours.toml").write_text(steel(strength=strength))
         study = load_study(path)
-        factors.append(Engine(study).row({}, "B", "landing").safety_factor)
+        factors.append(Engine(study, memo=memo).row({}, "B", "landing").safety_factor)
         values.append(inputs(study))
     assert None not in factors
     assert factors[1] == pytest.approx(2.0 * (factors[0] or 0.0))
@@ -135,6 +137,16 @@ def test_a_number_of_a_material_that_is_only_named_has_a_key(tmp_path: Path) -> 
     changed = Engine(study).changed({key: 300})
     assert yield_of(changed) == pytest.approx(3e8)
     assert changed.table.material["6061-T651"].density == pytest.approx(2700.0, rel=1e-3)
+
+
+def test_an_engine_takes_another_material_of_the_library(tmp_path: Path) -> None:
+    study, changes = load_study(written(tmp_path, "6061-T651")), {"pin.B.material": "316L"}
+    engine = Engine(study)
+    row, changed = engine.row(changes, "B", "landing"), engine.changed(changes)
+    assert row.safety_factor == pytest.approx(run(changed)["B", "landing"].safety_factor)
+    assert yield_of(changed) == pytest.approx(42.1 * KSI)
+    with pytest.raises(InputError, match="A36' of the library of pinstress has no youngs_modulus"):
+        engine.row({"pin.B.material": "A36"}, "B", "landing")
 
 
 def test_a_study_that_is_written_elsewhere_names_the_same_file(tmp_path: Path) -> None:

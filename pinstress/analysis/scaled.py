@@ -1,0 +1,257 @@
+"""Rows of a changed study, scaled from those of the study as it is.
+
+Two further solutions, of the study as it is and as it is changed, on one coarse mesh and rough
+cells (fea.support.contact.unit_pressures), are off by much the same part: their ratio, place by
+place, times the row that was solved in full is the row of the changed study. Where the change only
+multiplies all loads of a joint without gaps, this is exact. Otherwise the coarse solutions may be
+off by different parts; a share of what the first one is off by covers that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from fea.core.material import Material
+from fea.core.peak import ErrorParts, Maximum
+from fea.core.places import BandPressure, ContactPlace, Place, Places
+from fea.core.requirement import Requirement
+from fea.support.contact.contact_place import reached
+from fea.support.lugs.lug import Lug, LugRange
+from fea.support.records import JointRange, JointResult
+from geometry import Pin
+from pinbase.arrays import Floats
+from pinstress.study.model.impulses import ImpulseLoads
+from pinstress.study.model.tasks import Task
+from reports.data.results import LandingRange, PinResult
+
+# Relative: ratios of places that differ by less are those of one factor on all loads.
+PROPORTIONAL_TOLERANCE = 1e-7
+# What the ratio of two coarse solutions may be off by: of what the first one is off by, and at
+# least. Tuned on `python -m benchmarks edits`.
+BIAS_SHARE, MIN_RATIO_ERROR = 0.5, 0.02
+NOMINAL_STRENGTH = 1e9  # Pa: of what is solved for any strength
+SCALED_CODE = "scaled"
+RANGE_REMARK = "the range is that of the joint as the study has it"
+
+
+def scalable(task: Task) -> bool:
+    """Return whether rows of a task may be scaled: those of a pin without cuts in its lugs."""
+    return bool(task.lugs) and isinstance(task.pin, Pin)
+
+
+def coarse(requirement: Requirement, lasting: bool) -> Requirement:
+    """Return the requirement on the solutions whose ratio is taken.
+
+    lasting: whether the shape is to be solved again under other loads.
+    """
+    cells: Literal["unit", "alone"] = "unit" if lasting else "alone"
+    return replace(requirement, cells=cells, meshes=1, goal="value", required=None)
+
+
+def same_shape(one: Task, other: Task) -> bool:
+    """Return whether two tasks differ by loads, clearances and tilts only."""
+    return _shape(one) == _shape(other)
+
+
+def _shape(task: Task) -> object:
+    task = elastic_task(task)
+    eyes = [replace(x, clearance=0.0, tilt=0.0, range=LugRange()) for x in task.lugs]
+    return task.pin, task.material, eyes
+
+
+def elastic_task(task: Task) -> Task:
+    """Return a task whose coarse solution serves for any strengths and names of its materials."""
+    return replace(task, material=_elastic(task.material), lugs=tuple(map(_elastic_lug, task.lugs)))
+
+
+def _elastic(material: Material) -> Material:
+    elastic = material.youngs_modulus, material.poisson_ratio, material.density
+    return Material("", *elastic, yield_strength=NOMINAL_STRENGTH)
+
+
+def _elastic_lug(lug: Lug) -> Lug:
+    bushing = lug.bushing and replace(lug.bushing, material=_elastic(lug.bushing.material))
+    return replace(lug, material=_elastic(lug.material), bushing=bushing)
+
+
+def scaled_row(
+    row: PinResult,
+    before: PinResult,
+    now: PinResult,
+    task: Task,
+    requirement: Requirement,
+    over: ImpulseLoads | None = None,
+) -> PinResult | None:
+    """Return the row of a changed study, not yet assessed; None where it cannot be scaled.
+
+    row: of the study as it is, solved in full; before, now: of it and of the changed study, coarse.
+    task, requirement: of the changed study. over: the ranges of its landing's impulse, if any.
+    """
+    parts = [_comparable(x) for x in (row, before, now)]
+    first, coarse_first, coarse_now = parts
+    if first is None or coarse_first is None or coarse_now is None:
+        return None
+    ratios = {name: coarse_now[name] / coarse_first[name] for name in coarse_now}
+    spread = max(ratios.values()) / min(ratios.values()) - 1.0
+    drift = dict.fromkeys(ratios, 0.0)
+    if spread > PROPORTIONAL_TOLERANCE:
+        bias = {name: abs(first[name] / coarse_first[name] - 1.0) for name in first}
+        drift = {name: max(MIN_RATIO_ERROR, BIAS_SHARE * x) for name, x in bias.items()}
+    places = _places(row, now, ratios, drift, task, requirement)
+    peak = _peak(row.maximum, now.maximum, places, requirement.tolerance)
+    assert peak.max_von_mises is not None
+    by = peak.max_von_mises / (row.max_von_mises or 1.0)
+    joint = now.joint and _with_range(now.joint, row.joint, by, ratios["beneath"])
+    landing, strength = None, task.material.yield_strength
+    if row.landing is not None and over is not None:
+        landing = _landing(row.landing, over, peak, strength)
+    return PinResult(peak, joint=joint, landing=landing)
+
+
+def _comparable(row: PinResult) -> dict[str, float] | None:
+    """Return the stresses of a row's places, Pa; None where one is missing or has no bound."""
+    places = row.places
+    if places is None or places.section is None or places.contact is None:
+        return None
+    stress = {
+        "surface": places.surface.max_von_mises,
+        "section": places.section.max_von_mises,
+        "beneath": places.contact.beneath,
+    }
+    bounded = row.verdict in ("converged", "unconverged")
+    return stress if bounded and min(stress.values()) > 0.0 else None
+
+
+def _places(
+    row: PinResult,
+    now: PinResult,
+    ratios: dict[str, float],
+    drift: dict[str, float],
+    task: Task,
+    requirement: Requirement,
+) -> Places:
+    """Return the places of a row, scaled; where and when the largest stress is comes from `now`.
+
+    ratios, drift: by place, of the coarse solutions, and the relative error of these.
+    """
+    assert row.places is not None
+    assert now.places is not None
+    of, at = row.places, now.places
+    assert of.section is not None
+    assert at.section is not None
+    assert of.contact is not None
+    assert at.contact is not None
+
+    def stress(name: str, value: float, error: float) -> tuple[float, float, str]:
+        scaled, relative = value * ratios[name], error / value + drift[name]
+        known = "converged" if relative <= requirement.tolerance else "unconverged"
+        return scaled, relative * scaled, known
+
+    a = stress("surface", of.surface.max_von_mises, of.surface.error_estimate)
+    b = stress("section", of.section.max_von_mises, of.section.error_estimate)
+    beneath, beneath_error, _ = stress("beneath", of.contact.beneath, of.contact.beneath_error)
+    surface = replace(at.surface, max_von_mises=a[0], error_estimate=a[1], verdict=a[2])
+    section = replace(at.section, max_von_mises=b[0], error_estimate=b[1], verdict=b[2])
+    strength, used = task.material.yield_strength, at.section.plastic_utilisation
+    used = None if strength is None or used is None else used * NOMINAL_STRENGTH / strength
+    section = replace(section, plastic_utilisation=used)
+    depths = tuple((x * ratios["beneath"], depth) for x, depth in of.contact.depths)
+    bands = tuple(_band(band, task) for band in at.contact.bands)
+    contact = replace(
+        at.contact, beneath=beneath, beneath_error=beneath_error, depths=depths, edges=(),
+        bands=bands,
+    )  # fmt: skip
+    governs: Place = "section" if b[0] > a[0] else "surface"
+    return Places(governs, surface, section, _with_reach(contact, task, requirement))
+
+
+def _band(band: BandPressure, task: Task) -> BandPressure:
+    """Return a band with its part of the bearing strengths of a task's materials."""
+    made_of = [task.material, *(x.bearing for x in task.lugs if x.connection == band.name)]
+    known = [x.bearing_strength for x in made_of if x.bearing_strength]
+    return replace(band, bearing_share=band.mean_pressure / min(known) if known else None)
+
+
+def _with_reach(contact: ContactPlace, task: Task, requirement: Requirement) -> ContactPlace:
+    depths = [contact.depth(x) for x in reached(task.material, requirement.required)]
+    reach, required = (*depths, None, None)[:2]
+    return replace(contact, reach=reach, reach_required=required)
+
+
+def _peak(full: Maximum, now: Maximum, places: Places, tolerance: float) -> Maximum:
+    """Return the maximum of the row: that of the larger place, as uncertain as both."""
+    assert places.section is not None
+    both = [(x.max_von_mises, x.error_estimate) for x in (places.surface, places.section)]
+    value, own = max(both)
+    error = max(own, max(x + e for x, e in both) - value)
+    known = error <= tolerance * value
+    text = f"scaled from the study as it is: estimated error {error / value:.1%}"
+    return replace(
+        now,
+        verdict="converged" if known else "unconverged",
+        note=text,
+        max_von_mises=value,
+        error_estimate=error,
+        history=(),
+        why=full.why,
+        parts=ErrorParts(0.0, model=error),
+        reasons=(SCALED_CODE, *full.reasons),
+        places=places,
+    )
+
+
+def _with_range(
+    joint: JointResult, full: JointResult | None, by: float, beneath: float
+) -> JointResult:
+    """Return the joint of a coarse solution with the range of the full one, scaled."""
+    over = full.range if full is not None else None
+    if over is None:
+        return joint
+    low, high = over.max_von_mises
+    variations = tuple(
+        replace(
+            x,
+            max_von_mises=x.max_von_mises * by,
+            interval=x.interval and (x.interval[0] * by, x.interval[1] * by),
+            beneath=None if x.beneath is None else x.beneath * beneath,
+        )
+        for x in over.variations
+    )
+    scaled = JointRange((low * by, high * by), variations, over.model, over.assumed)
+    return replace(joint, range=scaled, remark=RANGE_REMARK)
+
+
+def _landing(
+    full: LandingRange, over: ImpulseLoads, peak: Maximum, strength: float | None
+) -> LandingRange:
+    """Return the results over a landing's ranges: the stress over the force of the study as it is,
+    by the force, times a factor that gives the maximum at the nominal force.
+
+    Without gaps stress over force does not change but for the weights.
+    """
+    order = np.argsort(full.force)
+    per_force = full.max_von_mises[order] / full.force[order]
+
+    def at(force: Floats) -> Floats:
+        return np.asarray(force * np.interp(force, full.force[order], per_force))
+
+    assert peak.max_von_mises is not None
+    assert peak.error_estimate is not None
+    maxima = at(over.forces) * (peak.max_von_mises / float(at(np.array(over.nominal_force))))
+    return replace(
+        full,
+        impulse_time=over.times,
+        velocity_change=over.velocities,
+        pulses=over.pulses,
+        force=over.forces,
+        max_von_mises=maxima,
+        safety_factor=None if strength is None else strength / maxima,
+        nominal=over.nominal,
+        nominal_pulse=over.nominal_pulse,
+        verdict=peak.verdict,
+        spread=None,
+        error=peak.error_estimate / peak.max_von_mises,
+    )

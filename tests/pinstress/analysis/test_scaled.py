@@ -1,0 +1,177 @@
+"""Quick rows of pins in contact, scaled from the study as it is, against runs of changed ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from fea.core.peak import meets_limit
+from pinbase.records import plain
+from pinstress import Engine, changed_study, load_study, run, shipped_studies, study_from
+from pinstress.analysis import engine as engine_module
+from pinstress.analysis.solve import unjudged
+from reports.data.results import PinResult
+
+STUDY = """
+title = "A pin in three lugs"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+yield_strength = "600 MPa"
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "left" },
+  { length = 1, diameter = 20 },
+  { length = 20, diameter = 20, connection = "middle" },
+  { length = 1, diameter = 20 },
+  { length = 10, diameter = 20, connection = "right" },
+]
+[pin.P.lug.left]
+edge_radius = 0.5
+[pin.P.lug.middle]
+edge_radius = 0.5
+[pin.P.lug.right]
+edge_radius = 0.5
+[case.pull]
+kind = "given"
+forces = { left = [0, 5000], middle = [0, -10000], right = [0, 5000] }
+[analysis]
+joints = "contact"
+required_safety_factor = 2
+tolerance = 0.05
+"""
+FORCES = {"left": [0, 8000], "middle": [0, -16000], "right": [0, 8000]}
+MIDDLE = "pin.P.profile[3].diameter"
+STRENGTH = "material.steel.yield_strength"
+
+
+@pytest.fixture(scope="module")
+def engine() -> Engine:
+    """The study, asked for its full row."""
+    asked = Engine(study_from(STUDY))
+    asked.row({}, "P", "pull")
+    return asked
+
+
+@pytest.fixture
+def coarse(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The pins of which a coarse solution was made."""
+    names: list[str] = []
+
+    def counted(plan: Any, task: Any, memo: Any) -> Any:
+        names.append(task.pin.name)
+        return unjudged(plan, task, memo)
+
+    monkeypatch.setattr(engine_module, "unjudged", counted)
+    return names
+
+
+def quick(engine: Engine, changes: dict[str, Any]) -> PinResult:
+    """The quick row of the pin."""
+    return engine.row(changes, "P", "pull", accuracy="quick")
+
+
+def test_without_a_change_it_is_the_full_row(engine: Engine) -> None:
+    full, scaled = engine.row({}, "P", "pull"), quick(engine, {})
+    assert scaled.max_von_mises == pytest.approx(full.max_von_mises, rel=1e-12)
+    assert scaled.error_estimate == pytest.approx(full.error_estimate, rel=1e-9)
+    assert scaled.outcome == full.outcome
+    assert full.joint is not None
+    assert scaled.joint is not None
+    over, of = scaled.joint.range, full.joint.range
+    assert over is not None
+    assert of is not None
+    assert over.max_von_mises == pytest.approx(of.max_von_mises, rel=1e-9)
+
+
+@pytest.mark.slow
+def test_loads_in_proportion_are_exact(engine: Engine) -> None:
+    """Contact without gaps is linear: the error, relative, is that of the full row."""
+    full, scaled = engine.row({}, "P", "pull"), quick(engine, {"case.pull.forces": FORCES})
+    assert full.max_von_mises is not None
+    assert scaled.max_von_mises == pytest.approx(1.6 * full.max_von_mises, rel=1e-9)
+    assert scaled.error_estimate == pytest.approx(1.6 * (full.error_estimate or 0.0), rel=1e-6)
+    anew = run(changed_study(engine.study, {"case.pull.forces": FORCES}))["P", "pull"]
+    assert scaled.max_von_mises == pytest.approx(anew.max_von_mises, rel=1e-6)
+    ours, theirs = ([m.utilisation for m in row.margins if m.utilisation] for row in (scaled, anew))
+    assert len(theirs) > 2
+    assert ours == pytest.approx(theirs, rel=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"pin.P.lug.middle.clearance": 0.05},
+        {"pin.P.lug.left.clearance": 0.03, "case.pull.forces": FORCES},
+        {MIDDLE: 18.5},
+        {"pin.P.lug.left.outer_diameter": 30, "pin.P.lug.left.edge_radius": 1.0},
+        {"case.pull.forces": {"left": [0, 7000], "middle": [0, -12000], "right": [0, 5000]}},
+    ],
+)
+def test_it_is_within_its_error_of_a_run(engine: Engine, changes: dict[str, Any]) -> None:
+    scaled = quick(engine, changes)
+    anew = run(changed_study(engine.study, changes))["P", "pull"]
+    for place in ("surface", "section"):
+        ours, theirs = getattr(scaled.places, place), getattr(anew.places, place)
+        assert abs(ours.max_von_mises - theirs.max_von_mises) <= ours.error_estimate
+    assert scaled.max_von_mises is not None
+    assert anew.max_von_mises is not None
+    assert abs(scaled.max_von_mises - anew.max_von_mises) <= (scaled.error_estimate or 0.0)
+    assert (scaled.error_estimate or 0.0) < 0.25 * scaled.max_von_mises
+    assert anew.max_von_mises != pytest.approx(engine.row({}, "P", "pull").max_von_mises, rel=1e-3)
+
+
+def test_a_strength_solves_nothing(engine: Engine, coarse: list[str]) -> None:
+    before = quick(engine, {})
+    coarse.clear()
+    weak = quick(engine, {STRENGTH: "300 MPa"})
+    assert coarse == []
+    assert weak.max_von_mises == before.max_von_mises
+    assert weak.safety_factor == pytest.approx(0.5 * (before.safety_factor or 0.0))
+    full = engine.row({STRENGTH: "300 MPa"}, "P", "pull")
+    assert full.places is not None
+    assert weak.places is not None
+    assert full.places.section is not None
+    assert weak.places.section is not None
+    used = full.places.section.plastic_utilisation
+    assert weak.places.section.plastic_utilisation == pytest.approx(used, rel=0.05)
+
+
+@pytest.mark.slow
+def test_the_same_whatever_was_asked_before(engine: Engine) -> None:
+    changes = {"pin.P.lug.right.clearance": 0.02}
+    quick(engine, {MIDDLE: 21.0})
+    fresh = Engine(study_from(STUDY))
+    assert plain(quick(engine, changes)) == plain(quick(fresh, changes))
+
+
+@pytest.mark.slow
+def test_a_pin_that_contact_cannot_hold_fails_as_in_a_run(engine: Engine) -> None:
+    """Lugs that are free to tilt leave it the couple of links that are not in line."""
+    forces = {"left": [0, 7000], "middle": [0, -12000], "right": [0, 5000]}
+    tilts = {f"pin.P.lug.{name}.tilt": "free" for name in forces}
+    changes: dict[str, Any] = {"case.pull.forces": forces, **tilts}
+    scaled = quick(engine, changes)
+    assert scaled.verdict == "failed"
+    assert scaled.note == run(changed_study(engine.study, changes))["P", "pull"].note
+
+
+@pytest.mark.slow
+def test_ranges_of_a_landing_are_scaled() -> None:
+    """A pin of the landing gear: every point of its ranges within the error."""
+    study = load_study(shipped_studies()["landing_gear"])
+    gear = Engine(study, cases=["landing"])
+    changes = {"case.landing.apply[1].impulse.impulse_time": 0.12}
+    ours = gear.row(changes, "H", "landing", accuracy="quick")
+    theirs = gear.row(changes, "H", "landing")
+    assert ours.landing is not None
+    assert theirs.landing is not None
+    assert ours.landing.nominal == theirs.landing.nominal
+    assert ours.landing.force.tolist() == theirs.landing.force.tolist()
+    apart = abs(ours.landing.max_von_mises / theirs.landing.max_von_mises - 1.0)
+    assert apart.max() <= ours.landing.error
+    assert meets_limit(ours.maximum, 1e9) == meets_limit(theirs.maximum, 1e9)
