@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from assess.judgement import BELOW_YIELD, FAILS, SAFE, YIELDS
@@ -21,6 +22,7 @@ from reports.tables.strength.overview import (
     SPREAD_MARK,
     overview_table,
 )
+from reports.tables.strength.sensitivities import MAX_BRIEF_ROWS, shown_sensitivities
 from reports.text.fitted_table import fitted_table, print_table
 from reports.text.overview import (
     accuracy,
@@ -62,10 +64,19 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
         console.print(Text("No pin was solved."))
     for title, sentences in _parts(results, lines, unknown, study):
         console.print(Text.assemble((f"{title} ", "bold"), " ".join(sentences)))
+    if len(results.changes) == 1:
+        sensitivities = shown_sensitivities(_of_changes(results), MAX_BRIEF_ROWS)
+        print_table(console, "Sensitivities", sensitivities, results.units)
     if results.fatigue:
         console.print(Text(fatigue_sentence(results.fatigue)))
     print_table(console, "Past yield", limits_table(results), results.units)
     print_table(console, "Published values", published_maxima(results), results.units)
+
+
+def _of_changes(results: Results) -> Results:
+    """Return the results with the sensitivities of only the pins that have to be changed."""
+    pins = [change.pin for change in results.changes]
+    return replace(results, sensitivities=tuple(x for x in results.sensitivities if x.pin in pins))
 
 
 def _parts(
@@ -76,7 +87,7 @@ def _parts(
     command = [way for way in ways if way.startswith("pinstress ")]
     parts = [
         ("Why:", why(results, 1)),
-        ("Do:", [*repairs(lines), *command] if command else ways),
+        ("Do:", [*repairs(lines), *command] if command and len(results.changes) > 1 else ways),
         ("Error:", [*accuracy(results), *measure_first(unknown)]),
         ("Other checks:", [*_margins(results), *skipped_checks(results)]),
         ("Note:", [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]),
