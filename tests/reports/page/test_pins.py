@@ -14,6 +14,7 @@ from fea.core.places import Places, SectionPlace, SurfacePlace
 from fea.support.records import JointForces
 from reports.data.results import PinShape, Results, Surface, Units
 from reports.data.surface import LoadCourse
+from reports.format.drawing.camera import View
 from reports.page.pin_drawing import draw_pin
 from reports.page.pins import governing_names, pin_parts
 from reports.page.pins_reading import reading_parts, signs
@@ -239,3 +240,14 @@ def test_conventions_are_said_where_they_are_needed() -> None:
     assert not {"Lugs", "Singularities", "Places"} & set(reading_parts(bare))
     assert "right-handed" not in " ".join(joined.values())
     assert signs().count("marker-end") == 4
+
+
+@pytest.mark.parametrize("peak", [(0.0, 1.0, 0.2), (-1.0, 0.0, 2.9), (0.6, -0.8, 1.5)])
+def test_views_have_z_from_left_to_right_as_drawings(peak: tuple[float, float, float]) -> None:
+    points = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (0.0, 3.0)])
+    view = View.of(points, np.array(peak))
+    towards = view.eye - view.centre
+    right = np.cross(view.up, towards)
+    assert right[2] > 0.8 * np.linalg.norm(right)
+    assert view.up[2] == pytest.approx(0.0)  # the axis is level
+    assert towards[:2] @ np.array(peak[:2]) > 0.0  # from the side of the maximum
