@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal
@@ -14,6 +15,9 @@ Level = Literal["limit", "ultimate"]
 RATIO_DIMENSION = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
 JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
 COMPARISON_SUFFIX = "for comparison"
+# Methods of margins that stand for several checks that could not be made.
+FORMULA_CHECKS, CLAMPED_LUG_PREFIX = "checks by formula", "lug of "
+BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")  # of TOML
 
 
 @dataclass(frozen=True)
@@ -144,4 +148,10 @@ def _without_place(margin: Margin) -> Margin:
 
 def strength_key(material: str, which: str) -> str:
     """The key of a study that would give a strength."""
-    return f"material.{material}.{which}_strength"
+    return material_key(material, f"{which}_strength")
+
+
+def material_key(material: str, key: str) -> str:
+    """Return a key of a material as a study writes it, quoted where the name needs that."""
+    name = material if BARE_KEY.fullmatch(material) else f'"{material}"'
+    return f"material.{name}.{key}"

@@ -9,7 +9,14 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parent.parent)]
 
 project = "pinstress"
 version = release = installed("pinstress")
-extensions = ["myst_parser", "sphinx.ext.autodoc", "mathml", "modules", "study_reference"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "captions",
+    "mathml",
+    "modules",
+    "study_reference",
+]
 myst_enable_extensions = ["amsmath", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["measured"]  # tables that pages include
@@ -26,6 +33,7 @@ html_math_renderer = "mathml"
 html_title = "pinstress"
 html_static_path = ["static"]
 html_css_files = ["tables.css"]
+html_js_files = ["reachable.js"]
 html_theme = "furo"
 html_theme_options = {
     "navigation_with_keys": True,

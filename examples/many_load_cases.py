@@ -10,7 +10,8 @@ FLAPS = {0: 0.55, 10: 0.7, 25: 0.9, 40: 1.0}  # angle in degrees: fraction of th
 
 def case(force: float, angle: float) -> dict[str, object]:
     x, y = force * cos(radians(angle)), force * sin(radians(angle))
-    return {"kind": "given", "forces": {"rod": [f"{x} kN", f"{y} kN"]}}
+    forces = {"rod": [f"{x} kN", f"{y} kN"]}
+    return {"kind": "given", "distribution": "uniform", "forces": forces}
 
 
 STEEL = {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3, "yield_strength": "900 MPa"}

@@ -1,4 +1,4 @@
-"""The study that `pinstress init` writes: safety factor, error, verdict and hand checks."""
+"""A clamped pin, which `pinstress init` writes: safety factor, error, verdict and hand checks."""
 
 import pinstress
 

@@ -75,16 +75,22 @@ def _no_process_is_left() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
     """The folder of results of a shipped study, which the command has run once for all tests; the
-    file "status" beside it has how it ended.
+    files "status" and "terminal" beside it have how it ended and what it printed in 80 columns.
     """
 
     def found(study: str) -> Path:
         def run(folder: Path) -> None:
             out, path = folder / "out", ROOT / "studies" / f"{study}.toml"
             command = [sys.executable, "-m", "pinstress", "run", str(path), "--out", str(out)]
-            done = subprocess.run([*command, "--no-pictures"], capture_output=True, text=True)
+            done = subprocess.run(
+                [*command, "--no-pictures"],
+                capture_output=True,
+                text=True,
+                env={**os.environ, "COLUMNS": "80"},
+            )
             assert done.returncode in (0, 1), done.stderr
             (folder / "status").write_text(str(done.returncode))
+            (folder / "terminal").write_text(done.stdout, encoding="utf-8")
 
         return once(tmp_path_factory, f"study-{study}", run) / "out"
 

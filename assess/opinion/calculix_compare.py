@@ -54,13 +54,11 @@ def second_opinions(
 
     Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
     """
-    constrained = tuple(pin.surface(name) for name in clamps)
     instants = {p.case: p for p in peaks if p.verdict != "rigid"}
     live = tuple(case for case in cases if case.case in instants)
     if not live:
         return ()
-    singularities = singularities_of(pin, material, constrained, live, distance)
-    solution = solid_solution(pin, material, constrained, live, singularities, MeshSize(), distance)
+    solution = first_solid_solution(pin, material, clamps, live, distance)
     out = []
     for case in live:
         progress(f"pin {pin.name}, {case.case}, CalculiX")
@@ -73,6 +71,22 @@ def second_opinions(
         except calculix.CalculixError as error:
             out.append(replace(answer, failure=str(error)))
     return tuple(out)
+
+
+def first_solid_solution(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    distance: float,
+) -> SolidSolution:
+    """The cases of a pin on the solid model's first mesh; arguments as `second_opinions`.
+
+    Raises: MeshError, SolveError.
+    """
+    constrained = tuple(pin.surface(name) for name in clamps)
+    singularities = singularities_of(pin, material, constrained, cases, distance)
+    return solid_solution(pin, material, constrained, cases, singularities, MeshSize(), distance)
 
 
 def _compared(
@@ -97,7 +111,7 @@ def _compared(
         )
     ours = von_mises(nodal_stress(space, material, u[..., None])[..., 0])
     theirs = von_mises(results.stress)
-    outside = _outside(solution)
+    outside = compared_nodes(solution)
     return replace(
         answer,
         unknowns=space.unknowns,
@@ -108,7 +122,7 @@ def _compared(
     )
 
 
-def _outside(solution: SolidSolution) -> Ints:
+def compared_nodes(solution: SolidSolution) -> Ints:
     """The nodes at which maxima are compared.
 
     For a body of revolution they are all nodes outside the excluded zones, also those inside the

@@ -34,7 +34,7 @@ def write_deck(
     zero, 3 n + c for component c of node n. forces: (N, 3) on the nodes, N.
     """
     with path.open("w", encoding="ascii", newline="\n") as file:
-        for line in _lines(nodes, elements, material, fixed, forces):
+        for line in deck_lines(nodes, elements, material, fixed, forces):
             file.write(line + "\n")
 
 
@@ -58,9 +58,10 @@ def mesh_lines(kind: str, nodes: Floats, elements: Ints, material: Material) -> 
     yield "*SOLID SECTION, ELSET=PIN, MATERIAL=ONE"
 
 
-def _lines(
+def deck_lines(
     nodes: Floats, elements: Ints, material: Material, fixed: Ints, forces: Floats
 ) -> Iterator[str]:
+    """The lines of such a deck; arguments as `write_deck`, in any consistent units."""
     yield from mesh_lines("C3D10", nodes, c3d10(nodes, elements), material)
     yield "*BOUNDARY"
     for node, axis in zip(*divmod(fixed, 3), strict=True):

@@ -61,7 +61,7 @@ def opinion_in_lugs(
     try:
         loads = transverse(seated, peak.governing)
         opinions = []
-        for number, mesh in enumerate(meshes or _meshes(loads), 1):
+        for number, mesh in enumerate(meshes or meshes_for(loads), 1):
             progress(f"pin {peak.pin}, {peak.case}, contact by CalculiX, mesh {number} of 2")
             opinions.append(joint_opinion(seated.pin, seated.material, seated.lugs, loads, mesh))
     except (ArgumentError, CalculixError, SolveError) as error:
@@ -103,7 +103,7 @@ def _require_modelled(seated: PinInLugs) -> None:
         )
 
 
-def _meshes(loads: PinLoads) -> Meshes:
+def meshes_for(loads: PinLoads) -> Meshes:
     """The coarser and the finer mesh, as fine as can be solved in minutes."""
     _, half = plane_of(loads.forces[0, :, :2])
     return HALF_MODEL_MESHES if half else FULL_MODEL_MESHES

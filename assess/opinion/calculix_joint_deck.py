@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,8 @@ from fea.core.material import Material
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+Dialect = Literal["calculix", "abaqus"]
 
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
 FACE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
@@ -77,12 +80,15 @@ class JointDeck:
     stiffness: of the contact, Pa/m.
     half: whether y = 0 is a plane of symmetry; forces and stiffnesses of lugs are then those of the
     half.
+    dialect: the program that reads it; Abaqus has no total force CF in *CONTACT PRINT, and takes
+    elements, not nodes, in *EL FILE.
     """
 
     pin: Part
     eyes: tuple[Eye, ...]
     stiffness: float
     half: bool
+    dialect: Dialect = "calculix"
 
     def lines(self) -> Iterator[str]:
         """The text of the deck."""
@@ -218,14 +224,15 @@ class JointDeck:
             if b:
                 for axis in self.axes:
                     yield f"{self._auxiliary(b)[0]}, {axis}, {real(float(eye.force[axis - 1]))}"
-        for eye in self.eyes:
+        for eye in self.eyes if self.dialect == "calculix" else ():
             for k in range(len(eye.rings)):
                 pair = f"SLAVE={slave(eye.part.name, k)}, MASTER=BORE{eye.part.name}"
                 yield f"*CONTACT PRINT, {pair}, {LAST_INCREMENT_ONLY}"
                 yield "CF"
         yield f"*NODE FILE, NSET={self.pin.name}, {LAST_INCREMENT_ONLY}"
         yield "U"
-        yield f"*EL FILE, NSET={self.pin.name}, {LAST_INCREMENT_ONLY}"
+        kind = "NSET" if self.dialect == "calculix" else "ELSET"
+        yield f"*EL FILE, {kind}={self.pin.name}, {LAST_INCREMENT_ONLY}"
         yield "S"
         yield "*END STEP"
 

@@ -12,8 +12,10 @@ from assess.check import CheckText, check
 from assess.margin import RATIO_DIMENSION, Margin
 from assess.situation import Situation
 
+COLLAPSE_METHOD = "limit load, collapse"
 
-@check("limit load, collapse", "14 CFR 25.305", kind="collapse", takes="results", level="ultimate",
+
+@check(COLLAPSE_METHOD, "14 CFR 25.305", kind="collapse", takes="results", level="ultimate",
        dimension=RATIO_DIMENSION)  # fmt: skip
 def collapse(text: CheckText, s: Situation) -> list[Margin]:
     """The margin against collapse at ultimate load; none where no limit load was requested."""

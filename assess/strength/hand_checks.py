@@ -42,6 +42,14 @@ BENDING_TEXTS: dict[ForcesKind, tuple[str, str]] = {  # method and clause
     "joint": ("bending, joint model", "Shigley, 3-10"),
     "concentrated": ("bending, concentrated forces", "Shigley, problem 3-40"),
 }
+# Methods that compare the pressure on bands, and the shear of pin and lugs, with strengths.
+BEARING_METHODS = "bearing", "lug, bearing"
+SHEAR_METHODS = (
+    "single shear, mean",
+    "single shear, at the neutral axis",
+    "double shear, mean",
+    "lug, shear-out",
+)
 MAX_HALF_DIFFERENCE = 0.1  # part of a band's load by which its two sides may differ in double shear
 
 

@@ -49,6 +49,7 @@ class SectionPlace:
     Forces and moments are positive but for the axial force.
     plastic_utilisation: the used part of what a fully plastic section carries
     (assess.plastic.hinge); None without a yield strength.
+    course: pairs of z and the largest stress of the section there, along the pin at that instant.
     """
 
     max_von_mises: Stress
@@ -61,6 +62,7 @@ class SectionPlace:
     bending_moment: Moment
     torque: Moment
     plastic_utilisation: float | None = None
+    course: tuple[tuple[Length, Stress], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from fea.core.material import Material
@@ -32,6 +32,7 @@ class Requirement:
     cells: of contact with lugs, these alone; None: until they are fine enough. "unit": rough ones,
     with the unit pressures of each on the first mesh (fea.support.contact.unit_pressures); "alone":
     rough ones on the first mesh, with nothing to compare them with.
+    factors: the required factors of cases where these are not `required`.
 
     A support adds what it knows:
     elsewhere: by case, stress, Pa, of sections; a surface that surely has less needs no finer mesh.
@@ -47,6 +48,7 @@ class Requirement:
     memory: float | None = None
     joints: Joints = "auto"
     cells: Literal["unit", "alone", "rough", "usual"] | None = None
+    factors: Mapping[str, float] = field(default_factory=dict)
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)
 
@@ -54,6 +56,10 @@ class Requirement:
     def for_ratio(self) -> bool:
         """Whether the solution only serves for its ratio to another (pinstress.analysis.scaled)."""
         return self.cells in ("unit", "alone")
+
+    def of_case(self, case: str) -> Requirement:
+        """The requirement with the factor of a case."""
+        return replace(self, required=self.factors.get(case, self.required))
 
     def left(self, case: str) -> float:
         """The part of the tolerance that meshes and instants of a case may use, at least
@@ -89,7 +95,7 @@ def accurate_enough(requirement: Requirement, material: Material, seen: MeshHist
         return False
     return (
         seen.known(requirement.left(seen.case))
-        or decided(requirement, material, *seen.range)
+        or decided(requirement.of_case(seen.case), material, *seen.range)
         or below_sections(requirement, seen)
     )
 

@@ -53,7 +53,7 @@ class FoundSection:
         return SectionPlace(
             at.value, self.parts.total, "converged" if self.known(tolerance) else "unconverged",
             at.z, self.time, at.axial_force, at.shear_force, at.bending_moment, abs(at.torque),
-            used,
+            used, at.course,
         )  # fmt: skip
 
 

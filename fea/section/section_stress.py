@@ -28,12 +28,14 @@ from fea.core.pin_loads import LoadAmounts, Loads
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference, Crest
 from geometry import Pin
+from geometry.shape.chords import needed
 from pinbase.arrays import Floats, Mask
 
 SECTIONS_BETWEEN_STATIONS = 9  # sections between two stations, both ends included
 WALL_FRACTIONS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
 # Points between two of these, about the angle, and along the pin, near the largest
 CLOSER_POINTS = 33
+COURSE_TOLERANCE = 2e-3  # of the largest stress: what drawing the stress along a pin may lose
 MIN_SECTION_GAIN = 1e-9  # relative: a section must have so much more than another
 CLOSER_ANGLE = np.radians(2.0)  # of that angle
 
@@ -44,6 +46,7 @@ class AtSection:
 
     z, r, angle: of the point, m, m, rad, in a cell of the beam.
     The axial and shear forces, N, bending moment and torque, N m, are those at the point.
+    course: pairs of z, m, and the largest stress of the section there, Pa, at the instant.
     """
 
     value: float
@@ -57,6 +60,7 @@ class AtSection:
     bending_moment: float
     torque: float
     section: Circle
+    course: tuple[tuple[float, float], ...] = ()
 
     def plastic_use(self, strength: float) -> float:
         """The part of the fully plastic section's resistance that is used.
@@ -153,8 +157,21 @@ class SectionField:
         value, r, angle = crests[k]
         return AtSection(
             value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
-            float(np.hypot(*M)), float(T[1]), sections[k],
+            float(np.hypot(*M)), float(T[1]), sections[k], self._course(loads, top.instant),
         )  # fmt: skip
+
+    def _course(self, loads: Loads, instant: int) -> tuple[tuple[float, float], ...]:
+        """Pairs of z, m, and the largest stress of the section there, Pa, at an instant.
+
+        Sections whose stress follows from their neighbours' are left out.
+        """
+        points = np.arange(len(self.fields.points))
+        stress, _ = self.around(loads).round(points, np.full(len(points), instant))
+        largest = stress.reshape(len(self._z), -1).max(axis=1)
+        allowed = np.full((len(largest), 1), COURSE_TOLERANCE * float(largest.max()) or 1.0)
+        jumps = np.diff(self._z, prepend=-np.inf, append=np.inf) <= 0.0
+        keep = needed(self._z, largest[:, None], allowed, jumps[1:] | jumps[:-1])
+        return tuple(zip(self._z[keep].tolist(), largest[keep].tolist(), strict=True))
 
     def held_twice(self, at: AtSection) -> float:
         """The relative error of the section forces there if the point is between two clamps; else

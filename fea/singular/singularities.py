@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads
+from fea.core.pin_loads import PinLoads, UnitLoad
 from fea.core.zone import MESH_SCALE_RATIO, Kind, Zone
 from fea.singular.williams import Side, antiplane_exponent, plane_exponent
 from geometry import Arc, Pin, PinLike, Vertex, body_of_revolution, meridian, vertices
@@ -184,6 +184,17 @@ CLAMP_ADVICE = "model the hub that supports the pin, or replace the clamp by loa
 _TRACTION_ADVICE = (
     'use distribution = "cosine": a bearing pressure has no jump of shear at its edge'
 )
+_AXIAL_ADVICE = (
+    "a force or torque along the axis acts as shear on its band, whatever the distribution: apply "
+    "it to a band that reaches to an end of the pin, or read stress away from this edge"
+)
+_MOMENT_ADVICE = (
+    "a moment across the axis acts as shear on its band, whatever the distribution: give two "
+    'transverse forces instead, with distribution = "cosine"'
+)
+_IMBALANCE_ADVICE = (
+    "the bands react what is left of the balance of the loads as shear: give loads in equilibrium"
+)
 _BORE_ADVICE = "a radius here would make it finite: the bore_radius of the wider segment"
 
 
@@ -225,4 +236,21 @@ def singularities_of(
     if acting and not clamps:  # all bands react the imbalance
         loaded |= set(pin.connections)
     nu = material.poisson_ratio
-    return find_singularities(profile, clamps, tuple(sorted(loaded)), nu, distance)
+    zones = find_singularities(profile, clamps, tuple(sorted(loaded)), nu, distance)
+    return tuple(
+        replace(zone, advice=_load_advice(profile, zone, acting))
+        if zone.kind == "edge of a load"
+        else zone
+        for zone in zones
+    )
+
+
+def _load_advice(pin: Pin, zone: Zone, acting: Collection[UnitLoad]) -> str:
+    """What would make stress finite at the edge of a load, by the loads on its band, for people."""
+    here = {load for load in acting if pin.surface(load.surface) in zone.between}
+    causes = {
+        _TRACTION_ADVICE: any(x.kind == "force" and x.n == 1 for x in here),
+        _MOMENT_ADVICE: any(x.kind == "moment" and x.n == 1 for x in here),
+        _AXIAL_ADVICE: any(x.n == 0 for x in here),
+    }
+    return "; ".join(text for text, acts in causes.items() if acts) or _IMBALANCE_ADVICE

@@ -153,7 +153,7 @@ def _beam(at: Attempt) -> dict[str, Solution]:
             if solution.answer.estimate.error is None:
                 continue
             value, error = peak.max_von_mises or 0.0, peak.error_estimate or 0.0
-            if decided(requirement, material, value - error, value + error):
+            if decided(requirement.of_case(case.case), material, value - error, value + error):
                 why = BEAM_DECIDES
             elif peak.verdict == "converged":
                 why = BEAM_WITHIN_TOLERANCE
@@ -244,12 +244,12 @@ def _contact(at: Attempt) -> dict[str, Solution]:
                 f"pin {held.pin.name}: no local solid about the cuts will do, since {refused}",
                 refused.code,
             ) from refused
-    limit, solutions = _limit(problem, requirement), at.refined(model, why)
+    solutions = at.refined(model, why)
     return {
         case: solution
         for case, solution in solutions.items()
         if held.finest
-        or limit is None
+        or (limit := _limit(problem, requirement.of_case(case))) is None
         or solution.peak.verdict == "singular"
         or not cells_matter(solution.peak, limit)
     }
@@ -282,14 +282,19 @@ def _foundation(at: Attempt) -> dict[str, Solution]:
     from fea.support.foundation.held import HeldFoundation
 
     assert isinstance(at.held, HeldFoundation)
-    out, limit = {}, _limit(at.problem, at.requirement) or 0.0
-    bounded = limit > 0.0 and at.held.bounded_everywhere(at.requirement)
+    out = {}
     for case in at.problem.cases:
         solution = at.held.solution(case, at.requirement)
+        limit = _limit(at.problem, at.requirement.of_case(case.case)) or 0.0
         value, error = solution.peak.max_von_mises, solution.peak.error_estimate
         if at.held.bending_governs(solution):
             out[case.case] = with_reason(solution, WITHIN_TOLERANCE_REASON)
-        elif bounded and value is not None and error is not None and value + error < limit:
+        elif (
+            value is not None
+            and error is not None
+            and value + error < limit
+            and at.held.bounded_everywhere(at.requirement)
+        ):
             out[case.case] = with_reason(solution, DECIDES_REASON)
     return out
 

@@ -164,7 +164,7 @@ def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reas
     if seen.known(requirement.tolerance):
         meshes = f"its error is within the tolerance on {len(seen.results)} meshes"
         return Reason(f"; {meshes}", ("mesh-converged",))
-    if decided(requirement, material, *seen.range):
+    if decided(requirement.of_case(seen.case), material, *seen.range):
         return Reason(f"; {DECIDED_TEXT}", ("mesh-decides",))
     if below_sections(requirement, seen):
         below = "stress of the surface is surely below that of sections"

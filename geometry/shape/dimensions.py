@@ -10,6 +10,7 @@ from typing import Any
 from geometry.shape.pin import Pin
 from geometry.shape.segment import Pair
 
+KEY_JOINT = " & "
 _RADIUS_KEYS = (("edge_radius", "edge_radii"), ("bore_radius", "bore_radii"))
 
 
@@ -17,7 +18,7 @@ _RADIUS_KEYS = (("edge_radius", "edge_radii"), ("bore_radius", "bore_radii"))
 class Dimension:
     """A dimension of a pin.
 
-    key: in the pin's table of a study.
+    key: in the pin's table of a study; several of one dimension are joined by KEY_JOINT.
     value: m.
     changed: gives the pin with another value of the dimension.
     """
@@ -67,11 +68,12 @@ def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> 
         return replace(pin, segments=tuple(segments))
 
     whole = sorted({k for k, _ in at if (k, 0) in at and (k, 1) in at})
-    if not whole:
-        k, end = at[-1]
-        return Dimension(f"profile[{k + 1}].{key}[{end + 1}]", value, changed)
-    where = f"{whole[0] + 1}" if len(whole) == 1 else f"{whole[0] + 1}-{whole[-1] + 1}"
-    return Dimension(f"profile[{where}].{key}", value, changed)
+    keys = []
+    if whole:
+        where = f"{whole[0] + 1}" if len(whole) == 1 else f"{whole[0] + 1}-{whole[-1] + 1}"
+        keys.append(f"profile[{where}].{key}")
+    keys += [f"profile[{k + 1}].{key}[{end + 1}]" for k, end in at if k not in whole]
+    return Dimension(KEY_JOINT.join(keys), value, changed)
 
 
 def _of_segment(

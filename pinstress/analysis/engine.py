@@ -31,7 +31,7 @@ from pinstress.analysis.scaled import (
     scalable,
     scaled_row,
 )
-from pinstress.analysis.solve import solve_tasks, unjudged
+from pinstress.analysis.solve import for_task, solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.errors import InputError
@@ -156,7 +156,7 @@ class Engine:
         effects = next(s for s in results.sensitivities if (s.pin, s.case) == (pin, case))
         if effects.note:
             return effects.note
-        by_key = {f"pin.{pin}.{x.key}" if _of_pin(x.key) else x.key: x.stress for x in effects.rows}
+        by_key = {x.key: x.stress for x in effects.rows}
         missing = [key for key in keys if key not in by_key]
         if missing:
             return f"no derivative with respect to {', '.join(missing)}"
@@ -205,8 +205,9 @@ class Engine:
         now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():
             return None
+        of = for_task(plan.study, task, plan.requirement)
         rows = [
-            scaled_row(*before[x.case], x, task, plan.requirement, plan.loads[x.case].range)
+            scaled_row(*before[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
             for x in now
         ]
         if any(row is None for row in rows):
@@ -241,11 +242,6 @@ class Engine:
 
         content = hashlib.sha256(pack(cache_key(plan, task))).digest()
         return self._answers.get(("coarse", content), make)
-
-
-def _of_pin(key: str) -> bool:
-    """Whether a parameter is one of the pin's own table: others are of loads and materials."""
-    return not key.startswith(("force ", "moment ", "material."))
 
 
 def _quick(requirement: Requirement) -> Requirement:

@@ -15,7 +15,7 @@ from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.mechanism.linkage import determined, linkage
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.sequence import chosen_cases, require_times
-from pinstress.study.model.tasks import Task, tasks
+from pinstress.study.model.tasks import Task, require_models, tasks
 from pinstress.study.reading.choices import (
     require_model,
     require_positive,
@@ -25,6 +25,7 @@ from pinstress.study.reading.choices import (
 from pinstress.study.reading.errors import Errors, InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published, read_published
+from pinstress.study.schema.cases import GivenCase, LegCase
 from pinstress.study.schema.shown import as_text
 
 ExtraFields = Literal["motion", "solid"] | None
@@ -36,11 +37,15 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 
     Raises: InputError with the errors of all cases.
     """
-    mechanism = linkage(study) if study.table.mechanism else None
-    if mechanism is not None:
-        determined(study, mechanism)  # once, not in every case
     wrong = Errors(study.path)
-    attempts = {name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in cases}
+    mechanism = wrong.attempt(lambda: linkage(study)) if study.table.mechanism else None
+    if mechanism is not None:  # once, not in every case
+        wrong.attempt(partial(determined, study, mechanism))
+    given = [name for name in cases if isinstance(study.table.case[name], GivenCase | LegCase)]
+    possible = given if wrong.lines else cases
+    attempts = {
+        name: wrong.attempt(partial(case_loads, study, name, mechanism)) for name in possible
+    }
     wrong.tell()
     loads = {name: loads for name, loads in attempts.items() if loads is not None}
     require_times(study, {name: case.reactions.times for name, case in loads.items()})
@@ -51,6 +56,7 @@ def all_loads(study: Study, cases: list[str]) -> dict[str, CaseLoads]:
 class Plan:
     """The inputs of an analysis before anything is solved; all have been read and checked.
 
+    pins: names of those that were chosen, also where no case loads them.
     checked: the task whose pin the beam check compares, if any.
     also: the fields that are wanted in addition to those of the model at the governing instant.
     sensitive: whether sensitivities of all cases are wanted, instead of each pin's worst one only.
@@ -69,6 +75,7 @@ class Plan:
     sensitive: bool = False
     limit_load: bool = False
     explained: bool = True
+    pins: tuple[str, ...] = ()
 
 
 def prepare(
@@ -110,39 +117,37 @@ def prepare(
     wrong.tell()
     assert published is not None
     assert loads is not None
-    checks.motion_check(study, loads, published)  # mistakes there should not wait for the stresses
-    published_values(study, loads, published)
     todo = tasks(study, [pin for pin in shapes.values() if pin is not None], loads)
+    checked = _require_solvable(study, loads, todo, published, requirement.model)
+    return Plan(
+        study, requirement, loads, todo, published, checked, also, limit_load=limit_load,
+        pins=tuple(names),
+    )  # fmt: skip
+
+
+def _require_solvable(
+    study: Study,
+    loads: dict[str, CaseLoads],
+    todo: list[Task],
+    published: Published,
+    model: Model,
+) -> Task | None:
+    """Return the task whose pin the beam check compares, if any.
+
+    Raises: InputError with all mistakes that would end a run after some of its solutions.
+    """
+    wrong = Errors(study.path)
+    wrong.attempt(lambda: checks.motion_check(study, loads, published))
+    wrong.attempt(lambda: published_values(study, loads, published))
     check, checked = study.table.beam_check, None
     if check is not None:
         choice = (t for t in todo if t.pin.name == check.pin and check.case in t.left_out)
         checked = next(choice, None)
         if checked is not None:
-            checks.require_cantilever(study, checked, check.case)
-    for task in todo:
-        if requirement.model in ("beam", "harmonic") and not task.pin.revolved:
-            raise study.error(
-                f"pin {task.pin.name} is not a body of revolution, which the "
-                f"{requirement.model} model needs: use auto or solid",
-                at=f"pin.{task.pin.name}",
-                code="not-of-revolution",
-            )
-        if task.lugs:
-            _require_model(study, requirement.model, task.pin.name)
-    return Plan(study, requirement, loads, todo, published, checked, also, limit_load=limit_load)
-
-
-def _require_model(study: Study, model: Model, pin: str) -> None:
-    """Raise InputError for a model that cannot solve a pin in its lugs."""
-    beam = study.table.analysis.joints == "foundation"
-    how, fits = ("on foundations in", "beam") if beam else ("in contact with", "harmonic")
-    if model not in ("auto", fits):
-        raise study.error(
-            f"pin {pin} is {how} its lugs, which requires the {fits} model: use auto or {fits}, "
-            f'or analysis.joints = "prescribed" for the {model} model',
-            at=f"pin.{pin}",
-            code="model-without-contact",
-        )
+            wrong.attempt(partial(checks.require_cantilever, study, checked, check.case))
+    wrong.attempt(lambda: require_models(study, todo, model))
+    wrong.tell()
+    return checked
 
 
 def requirement_of(

@@ -14,32 +14,22 @@ from pinbase.processes.threads import one_thread
 from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.gather.gather import results_of
 from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.row import Png, Row
 from pinstress.analysis.solve import solve_tasks
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.reading.choices import require_count
-from pinstress.study.reading.extras import require_fatigue
+from pinstress.study.reading.extras import EXTRAS, require_fatigue
 from pinstress.study.reading.file import Study
 from reports.data.results import Field, Results
 from reports.format.words import headline
 from reports.tables.all import load_tables, stress_tables
 from reports.tables.column import Table
 from reports.text.html import safety_factors_html
-from reports.text.summary import summary
 
 if TYPE_CHECKING:
     import pandas
     import polars
     import pyvista
-
-
-class Png:
-    """A PNG that notebooks show."""
-
-    def __init__(self, png: bytes) -> None:
-        self.png = png
-
-    def _repr_png_(self) -> bytes:
-        return self.png
 
 
 @dataclasses.dataclass(frozen=True, repr=False)
@@ -54,7 +44,16 @@ class RunResults(Results):
     plan: Plan | None = None
 
     def __repr__(self) -> str:
-        return f"<{self.title}: {headline(self)} {summary(self)}>"
+        pins = len({row.pin for row in self.pins})
+        counts = f"pins: {pins}, rows: {len(self.pins)}"
+        return f"<{self.title}: {counts}. {headline(self)}".rstrip() + ">"
+
+    def __getitem__(self, row: tuple[str, str]) -> Row:
+        """Return the result of a pin in a case: results["E", "landing"].
+
+        Raises: KeyError that says which pins and cases there are.
+        """
+        return Row.of(super().__getitem__(row), self, self.to_pyvista)
 
     def _repr_html_(self) -> str:
         return safety_factors_html(self)
@@ -63,6 +62,15 @@ class RunResults(Results):
     def tables(self) -> dict[str, Table[Any]]:
         """Return all tables of the run by name: columns, and rows with every digit."""
         return {t.name: t for t in (*stress_tables(self), *load_tables(self))}
+
+    def frame(self, table: str = "safety_factors") -> pandas.DataFrame:
+        """Return a table as a pandas frame, by default a line per pin and case.
+
+        table: one of `tables`.
+
+        Raises: ImportError without pandas, ValueError for an unknown table.
+        """
+        return self.to_pandas(table)
 
     def to_pandas(self, table: str = "safety_factors") -> pandas.DataFrame:
         """Return a table as a pandas frame.
@@ -145,8 +153,9 @@ def _library(name: str) -> Any:
     try:
         return import_module(name)
     except ImportError:
+        extra = f", or the extra: pip install 'pinstress[{EXTRAS[name]}]'" if name in EXTRAS else ""
         raise ImportError(
-            f"to_{name} needs {name}, which is not installed: pip install {name}", name=name
+            f"a frame needs {name}, which is not installed: pip install {name}{extra}", name=name
         ) from None
 
 

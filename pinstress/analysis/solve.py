@@ -24,6 +24,7 @@ from pinstress.analysis.cache import OutcomeStore
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import Entry, PinOutcome, cache_key, independent_of_memory
 from pinstress.study.model.pins import shape_notes
+from pinstress.study.model.requirements import required_factors
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import Field, PinResult
@@ -190,7 +191,13 @@ def solutions(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         memo,
     )  # fmt: skip
-    return solve(problem, replace(requirement, joints=_joints(study, task)), tell)
+    return solve(problem, for_task(study, task, requirement), tell)
+
+
+def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
+    """Return a requirement with the joints and the factors of a task."""
+    factors = required_factors(study, task.pin.name, (loads.case for loads in task.loads))
+    return replace(requirement, joints=_joints(study, task), factors=factors)
 
 
 def _joints(study: Study, task: Task) -> Joints:
@@ -227,7 +234,7 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    remedy = change(plan.requirement, task, solved)
+    remedy = change(for_task(study, task, plan.requirement), task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
     sensitive = sensitivities(study, plan.requirement, task, solved, step, plan.sensitive)

@@ -15,8 +15,9 @@ from fea.core.memory import too_much
 from fea.core.peak import Maximum
 from geometry import CutPin, Pin, PinLike
 from loads import read_regular
-from pinstress.analysis.assessed.limits import rung_of
+from pinstress.analysis.assessed.limits import collapse_factors, rung_of
 from pinstress.analysis.plan import Plan
+from pinstress.study.model.requirements import required_factors
 from pinstress.study.model.tasks import Task
 from reports.data.changes import Remedy
 from reports.data.results import Field, PinResult
@@ -81,6 +82,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         task.surroundings,
         study.table.analysis.joints,
         rung_of(plan, task.pin.name),
+        collapse_factors(study, task),
         task.loads,
         task.left_out,
         task.ranges,
@@ -88,6 +90,7 @@ def cache_key(plan: Plan, task: Task, seconds: float | None = None) -> object:
         [(case.reactions.times, case.range) for case in cases],
         task.material,
         replace(plan.requirement, memory=None),
+        required_factors(study, task.pin.name, (loads.case for loads in task.loads)),
         plan.also,
         plan.sensitive,
         plan.explained,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sized
+from dataclasses import dataclass
 from functools import partial
 
 from geometry import PinLike
@@ -17,27 +18,55 @@ from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.lugs import lugs
 from pinstress.study.model.mechanism.drives import span
 from pinstress.study.model.mechanism.linkage import determined, linkage
+from pinstress.study.model.pins import far_ends, outline, shape_notes, weight
 from pinstress.study.model.pins import pin as pin_of
-from pinstress.study.model.pins import shape_notes, weight
 from pinstress.study.model.sequence import require_times
-from pinstress.study.model.tasks import tasks
+from pinstress.study.model.tasks import Task, assumed_distribution, require_models, tasks
 from pinstress.study.reading.errors import Errors
-from pinstress.study.reading.file import Study
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.published_tables import read_published
 from pinstress.study.schema.cases import GivenCase, LegCase, MotionCase
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.pins import PinTable
+from pinstress.study.schema.require import RequireTable, level_of
+from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import VaryTable
 
 
+@dataclass(frozen=True)
+class Examination:
+    """What is known of a valid study before anything is solved.
+
+    lines: of the summary.
+    unheld: why unconstrained pins would not be solved.
+    warnings: of loads left over at other pins, and of designs that cannot be built.
+    """
+
+    lines: list[str]
+    loads: dict[str, CaseLoads]
+    tasks: list[Task]
+    unheld: list[str]
+    warnings: list[str]
+
+
 def describe(study: Study) -> tuple[str, list[str], list[str]]:
-    """Return a summary of a valid study, the reasons why unconstrained pins would not be solved,
-    and warnings of loads left over at other pins.
+    """Return the summary of a study, and the reasons and warnings of its examination.
+
+    Raises: InputError as `examine`.
+    """
+    x = examine(study)
+    return "\n".join(x.lines), x.unheld, x.warnings
+
+
+def examine(study: Study) -> Examination:
+    """Read all files of a valid study and compute its loads.
 
     Raises: InputError for errors that involve several tables.
     """
     table = study.table
     lines = [f"{study.path}: {table.title}", f"units {study.system.name}"]
+    for stored in named_materials(study):
+        lines.append(f"material {stored.name}: that of {stored.file} ({stored.source})")
     wrong = Errors(study.path)
     wrong.attempt(lambda: read_published(study))
     mechanism = wrong.attempt(lambda: linkage(study)) if table.mechanism else None
@@ -62,17 +91,28 @@ def describe(study: Study) -> tuple[str, list[str], list[str]]:
     lines += [wrong.attempt(partial(_pin, study, pin)) or "" for pin in valid_pins]
     wrong.tell()
     todo = tasks(study, valid_pins, loads) if valid_pins else []
+    require_models(study, todo, table.analysis.model)
     a = table.analysis
     goal = (
         f", required safety factor {a.required_safety_factor:g}" if a.required_safety_factor else ""
     )
     lines.append(f"model {a.model}, tolerance {a.tolerance:g}{goal}")
+    lines += filter(None, [assumed_distribution(study, todo)])
+    lines += map(_requirement, table.require)
     warnings = other_warnings(study, todo)
     if table.vary is not None or "reliability" in table.model_fields_set:
         lines += _varied(study)
         warnings += _impossible(study) if todo else []
     loose = [line for task in todo for line in unheld(study, task).values()]
-    return "\n".join(lines), loose, warnings
+    return Examination(lines, loads, todo, loose, warnings)
+
+
+def _requirement(table: RequireTable) -> str:
+    """Describe a requirement: "requires rupture at ultimate load, factor 1.5: pin E in landing"."""
+    level = "" if table.check == "fatigue" else f" at {level_of(table)} load"
+    pins = f"pin{'s' * (len(table.pins) > 1)} {', '.join(table.pins)}" if table.pins else "all pins"
+    cases = f" in {', '.join(table.cases)}" if table.cases else ""
+    return f"requires {table.check}{level}, factor {table.factor:g}: {pins}{cases}"
 
 
 def _sampled(vary: VaryTable) -> bool:
@@ -112,7 +152,7 @@ def _impossible(study: Study) -> list[str]:
     Raises: InputError for given forces that vary one by one, out of equilibrium.
     """
     from pinstress.explore.sweep.evaluate import Evaluator  # imports what solves
-    from pinstress.explore.sweep.possible import drawn, tried
+    from pinstress.explore.sweep.possible import drawn, impossible_ends, tried
 
     vary = study.table.vary
     sampled = vary is not None and _sampled(vary)
@@ -121,25 +161,38 @@ def _impossible(study: Study) -> list[str]:
         values = designs_of(vary, parameters, correlations_of(study, parameters))
     else:
         values = drawn(study, parameters)
-    return tried(study, Evaluator(study, parameters), values).warnings
+    evaluator = Evaluator(study, parameters)
+    return impossible_ends(evaluator, parameters) + tried(study, evaluator, values).warnings
 
 
 def _pin(study: Study, pin: PinLike) -> str:
+    """Describe a pin in a line: size, links in the order of z, supports."""
     name, p, system = pin.name, study.table.pin[pin.name], study.system
     ways = dict.fromkeys(study.clamps(name, case) for case in study.table.case)
-    supports = dict.fromkeys(_support(study, pin, way) for way in ways)
+    supports = dict.fromkeys(support_of(study, pin, way) for way in ways)
     density = study.table.material[p.material].density
     heavy = ""
     if density:
         heavy = f", {weight(pin, density) / system.factor('force'):.4g} {system.force}"
+    links = sorted(pin.connections, key=lambda connection: pin.band(connection).z0)
     return (
-        f"pin {name}: {p.material}, {_form(p)}{heavy}; "
-        f"loaded at {', '.join(pin.connections) or 'nothing'}; {' or '.join(supports)}"
+        f"pin {name}: {p.material}, {_size(pin, system)}, {_form(p)}{heavy}; "
+        f"loaded at {', '.join(links) or 'nothing'}; {' or '.join(supports)}"
         + (f"; {notes}" if (notes := shape_notes(pin)) else "")
     )
 
 
-def _support(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
+def _size(pin: PinLike, system: UnitSystem) -> str:
+    """Return the length and the least and largest diameter of a pin."""
+    parts, length = outline(pin), system.factor("length")
+    diameters = [d for _, d, *_ in parts] + [d for d, _ in far_ends(pin)]
+    ends = dict.fromkeys(f"{d / length:.4g}" for d in (min(diameters), max(diameters)))
+    long = sum(part[0] for part in parts) / length
+    return f"{long:.4g} {system.length} long, ⌀ {' to '.join(ends)}"
+
+
+def support_of(study: Study, pin: PinLike, clamps: tuple[str, ...]) -> str:
+    """Describe what holds a pin with these clamps."""
     if lugs(study, pin, clamps):
         beam = study.table.analysis.joints == "foundation"
         return f"{'on foundations in' if beam else 'in contact with'} its lugs"

@@ -13,12 +13,14 @@ from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
 from reports.data.headline import judged_checks
+from reports.data.requirements import NOT_CHECKED, requirement_rows
 from reports.data.results import PinResult, Results, SingularZone
-from reports.format.numbers import engineering
-from reports.format.words import but_words, undecided_because
+from reports.format.words import but_words, spare_words, undecided_because
 
 EXIT_NUMERICS_FAILED, EXIT_REQUIREMENT_MISSED = 3, 4  # exit statuses
+Row = TypeVar("Row")
 Reason = TypeVar("Reason", bound=Hashable)
+TOLERANCE_REMEDY = '; give a larger tolerance, or goal = "decide"'
 VERDICT_WORDS = {
     "singular": "singular",
     "unconverged": "not converged",
@@ -84,12 +86,34 @@ def report_violations(results: Results) -> int:
     for p in depending:
         but = but_words(p.depends_on, results.units, "not")
         click.echo(f"Safe as described, {but}: {_listed([p])}.", err=True)
-    negative = [c for c in judged_checks(results) if c.row is None and c.outcome == FAILS]
-    for c in negative:
+    others = [c for c in judged_checks(results) if c.row is None and c.outcome in (FAILS, DEPENDS)]
+    for c in others:
         case = f" ({c.case})" if c.case else ""
-        spare = engineering(1.0 / c.used - 1.0, 3)
-        click.echo(f"Negative margin of safety: {c.pin}{case}: {c.check}, {spare}.", err=True)
-    return EXIT_REQUIREMENT_MISSED if short or depending or negative else 0
+        what = "Negative margin of safety"
+        if c.stated:
+            what = f"Requirement {'missed' if c.outcome == FAILS else 'met only as described'}"
+        click.echo(f"{what}: {c.pin}{case}: {c.check}, {spare_words(c)}.", err=True)
+    return EXIT_REQUIREMENT_MISSED if short or depending or others else 0
+
+
+def report_unchecked(results: Results) -> int:
+    """Report the stated requirements that were not checked, or not decided although the row of the
+    pin is; return the exit status. What the choice of pins and cases leaves out does not count.
+    """
+    rows = [
+        row
+        for row in requirement_rows(results)
+        if row.stated
+        and not row.left_out
+        and (row.outcome == NOT_CHECKED or (row.outcome == NOT_DECIDED and row.check != "yield"))
+    ]
+    for which, (outcome, title, needs) in _together(
+        (row, (row.outcome, row.title, row.needs)) for row in rows
+    ):
+        why = f" (needs {needs})" if needs else ""
+        listed = ", ".join(row.where for row in which)
+        click.echo(f"Requirement {outcome}: {title}{why}: {listed}.", err=True)
+    return int(bool(rows))
 
 
 def report_status_zero(results: Results) -> None:
@@ -145,13 +169,14 @@ def _lines(rows: Iterable[PinResult]) -> list[str]:
         if verdict == "singular":
             lines.append(f"{head}{reason}{_between(which)}: {_listed(which)}.")
         else:
-            lines.append(f"{head}: {_listed(which)}: {reason}.")
+            loose = TOLERANCE_REMEDY if "above the tolerance" in reason else ""
+            lines.append(f"{head}: {_listed(which)}: {reason}{loose}.")
     return lines
 
 
-def _together(rows: Iterable[tuple[PinResult, Reason]]) -> list[tuple[list[PinResult], Reason]]:
+def _together(rows: Iterable[tuple[Row, Reason]]) -> list[tuple[list[Row], Reason]]:
     """Group rows with equal reasons, in the order of the rows."""
-    groups: dict[Reason, list[PinResult]] = {}
+    groups: dict[Reason, list[Row]] = {}
     for pin, reason in rows:
         groups.setdefault(reason, []).append(pin)
     return [(which, reason) for reason, which in groups.items()]

@@ -15,6 +15,8 @@ from pinbase.processes import interrupts
 from pinbase.processes.interrupts import EXIT_INTERRUPTED, Unfinished
 from pinbase.processes.threads import hold_threads
 from pinstress.cli.design_commands import cluster_keys, reliability, sweep
+from pinstress.cli.export import export
+from pinstress.cli.lookup_commands import fits, materials
 from pinstress.cli.more_commands import (
     compare_runs,
     completion,
@@ -27,7 +29,7 @@ from pinstress.cli.more_commands import (
     size,
     view,
 )
-from pinstress.cli.shared import CASES_OPTION, Commands, choices, example, read_study
+from pinstress.cli.shared import CASES_OPTION, Commands, choices, example, open_page, read_study
 from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, clipped
 
@@ -94,7 +96,7 @@ def _status(error: BaseException) -> int | None:
 @click.group(
     cls=Commands,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="A first run: pinstress init trial && pinstress run trial/one_pin.toml",
+    epilog="A first run: pinstress init trial && pinstress run trial/pin_in_lugs.toml",
 )
 @click.version_option(package_name="pinstress")
 def commands() -> None:
@@ -123,9 +125,9 @@ def _settle_environment() -> None:
     help=example("pinstress run studies/grenier2008.toml --pins B,E --out out/trial")
     + "\nCompute reactions, stresses and safety factors. Prints the safety factor table; writes "
     "tables, VTK files and report.html with its plots.\n\n"
-    "Exit status: 0 done; 1 done, but a requested accuracy was not reached or CalculiX disagrees; "
-    "2 bad input; 3 the solution failed; 4 with --fail-on-miss, where a pin misses its "
-    "requirements; 130 interrupted.",
+    "Exit status: 0 done; 1 done, but a requested accuracy was not reached, a stated requirement "
+    "was not checked, or CalculiX disagrees; 2 bad input; 3 the solution failed; 4 with "
+    "--fail-on-miss, where a pin misses its requirements; 130 interrupted.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Output folder [out/<study name>].")
@@ -178,8 +180,14 @@ def _settle_environment() -> None:
 @click.option(
     "--fail-on-miss",
     is_flag=True,
-    help="Exit with status 4 where a pin fails, or its result depends on a range, or a margin is "
-    "negative.",
+    help="Exit with status 4 where a pin fails, or its result depends on a range, a requirement is "
+    "missed, or a margin is negative.",
+)
+@click.option(
+    "--junit",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    help="Also write the requirements as JUnit XML, a test case each, for continuous integration.",
 )
 @click.option("--no-cache", is_flag=True, help="Solve all pins again; do not reuse cached results.")
 @click.option("--json", "as_json", is_flag=True, help="Print results.json instead of the table.")
@@ -201,6 +209,7 @@ def run(
     limit_load: bool,
     sensitivities: bool,
     fail_on_miss: bool,
+    junit: Path | None,
     no_cache: bool,
     as_json: bool,
     quiet: bool,
@@ -215,8 +224,9 @@ def run(
     second, cached = second_opinion is not None, not no_cache
     drawn = plots and not no_pictures
     wanted = OutputOptions(
-        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss
-    )
+        drawn, pdf, second, vtk, as_json, quiet, opens, jobs, cached, sensitivities, fail_on_miss,
+        junit,
+    )  # fmt: skip
     return run_and_write(
         loaded,
         directory,
@@ -350,29 +360,50 @@ def chart(
 @commands.command(
     short_help="Validate a study without solving it.",
     help=example("pinstress check studies/grenier2008.toml")
-    + "\nRead and validate a study and all its files without solving; print what would be run.\n\n"
+    + "\nRead and validate a study and all its files without solving; print what would be run. "
+    "With --open a page draws the linkage with its loads and every pin in its lugs.\n\n"
     "Exit status: 0 done; 1 done, but a pin is unconstrained, or its loads are not in equilibrium; "
     "2 bad input.",
 )
 @click.argument("study", type=click.Path(path_type=Path))
-def check(study: Path) -> int:
-    from pinstress.cli.check import describe
+@click.option("--open", "opens", is_flag=True, help="Draw a page and open it in the browser.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="File of the page, which is then drawn; default with --open out/<study>_check.html.",
+)
+@click.option("--no-browser", is_flag=True, help="With --open, do not open the page.")
+def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
+    from pinstress.cli.check import examine
 
-    text, unheld, warnings = describe(read_study(study))
-    click.echo(text)
-    for line in warnings:
+    loaded = read_study(study)
+    x = examine(loaded)
+    click.echo("\n".join(x.lines))
+    for line in x.warnings:
         click.echo(f"Warning: {line}", err=True)
-    for line in unheld:
+    for line in x.unheld:
         click.echo(f"Not decided: {line}.", err=True)
-    return EXIT_NOT_REACHED if unheld else EXIT_REACHED
+    if opens or out is not None:
+        from pinstress.cli.check_page import write_check_page
+
+        page = out or Path("out") / f"{loaded.name}_check.html"
+        page.parent.mkdir(parents=True, exist_ok=True)
+        write_check_page(loaded, x, page)
+        click.echo(f"Page: {page}", err=True)
+        if opens and not no_browser:
+            open_page(page)
+    return EXIT_NOT_REACHED if x.unheld else EXIT_REACHED
 
 
 for _command in (
     cluster_keys,
     compare_runs,
     curve,
+    export,
+    fits,
     import_,
     init,
+    materials,
     pdf_of,
     plots,
     reliability,

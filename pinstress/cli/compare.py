@@ -10,6 +10,7 @@ import click
 
 from pinbase.processes.apart import Failed, apart
 from pinbase.processes.pool import preload
+from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS, draw_pin
 from pinstress.cli.run import console
@@ -18,6 +19,7 @@ from pinstress.cli.view import opened_results
 from pinstress.study.reading.errors import InputError
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 from reports.data.comparison import DECISION_CHANGED, UNCHANGED, RowPair, RunComparison, compared
+from reports.data.requirement_pairs import GONE, LOST
 from reports.page.comparison import PicturePair, write_comparison
 from reports.plots.comparison import comparison_plot
 from reports.plots.draw import svg
@@ -34,7 +36,7 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
     """Print the differences between two results folders, and write them into a folder if one is
     given.
 
-    Returns the exit status: 1 if something could not be drawn.
+    Returns the exit status: 4 if a requirement was lost, 1 if something could not be drawn.
 
     Raises: InputError.
     """
@@ -46,8 +48,9 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
         require_replaceable(out, COMPARISON_PAGE)
     with unneeded(out or first):
         print_comparison(comparison, console())
+    status = _report_lost(comparison)
     if out is None:
-        return 0
+        return status
     failed: dict[str, Failed] = {}
     with replacing(out, COMPARISON_PAGE) as staging:
         write_markdown(comparison, staging / "comparison.md")
@@ -57,7 +60,18 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
     if failed:
         said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
         click.echo(f"Error: missing in it: {said}", err=True)
-    return int(bool(failed))
+    return max(status, int(bool(failed)))
+
+
+def _report_lost(comparison: RunComparison) -> int:
+    """Report the requirements that were lost, and return the exit status."""
+    lost = comparison.requirements_that(LOST, GONE)
+    for change in (LOST, GONE):
+        rows = [f"{x.row.where}: {x.row.title}" for x in lost if x.change == change]
+        if rows:
+            many = "s" * (len(rows) > 1)
+            click.echo(f"Requirement{many} {change}: {'; '.join(rows)}.", err=True)
+    return EXIT_REQUIREMENT_MISSED if lost else 0
 
 
 def _plot(comparison: RunComparison, failed: dict[str, Failed]) -> str:

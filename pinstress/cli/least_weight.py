@@ -15,7 +15,6 @@ from pinstress.cli.run import console, progress_bar
 from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
-from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.judged_pin import why_missed
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import Lightest, WeightGoal
@@ -25,6 +24,8 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import weight
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import key_part
+from reports.data.decision import low_factor
 from reports.format.numbers import DASH, short
 from reports.format.ranges import factor_range
 from reports.text.least_weight import ChangedDimension, LightRow, print_light
@@ -188,11 +189,11 @@ def _dimensions(study: Study, new: Study, lightest: Lightest) -> list[ChangedDim
     """List the dimensions that changed."""
     from pinstress.analysis.remedies.dimensions import dimensions_of
 
-    unit = study.system.factor("length")
+    unit, table = study.system.factor("length"), f"pin.{key_part(lightest.pin)}"
     old = {d.key: d.value for d in dimensions_of(study, pin_of(study, lightest.pin))}
     after = {d.key: d.value for d in dimensions_of(new, pin_of(new, lightest.pin))}
     return [
-        ChangedDimension(key, old[key] / unit, after[key] / unit)
+        ChangedDimension(f"{table}.{key}", old[key] / unit, after[key] / unit)
         for key in after
         if key in old and abs(after[key] - old[key]) > 1e-9 * old[key]
     ]

@@ -12,34 +12,43 @@ from pinstress.cli.shared import JOBS_OPTION, PINS_OPTION, QUIET_OPTION, example
 from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError
 
+NEW_STUDIES = "pin_in_lugs.toml", "one_pin.toml"  # that init writes, the first to begin with
+
 
 @click.command(
-    short_help="Write a small example study to start from.",
+    short_help="Write small example studies to start from.",
     help=example("pinstress init trial")
-    + "\nWrite a small commented study, one_pin.toml, that runs as it is.",
+    + "\nWrite two small commented studies that run as they are: pin_in_lugs.toml, a clevis pin in "
+    "its lugs, and one_pin.toml, a pin that is clamped.",
 )
 @click.argument("directory", type=click.Path(path_type=Path, file_okay=False), default=Path("."))
-@click.option("--open", "opens", is_flag=True, help="Run it immediately and open the report.")
+@click.option(
+    "--open", "opens", is_flag=True, help="Run the first immediately and open the report."
+)
 def init(directory: Path, opens: bool) -> int:
-    from pinstress.cli.new_file import write_new
+    from pinstress.cli.new_file import require_new, write_new
     from pinstress.study.reading.shipped import shipped
 
-    target = directory / "one_pin.toml"
+    target, *_ = targets = [directory / name for name in NEW_STUDIES]
     try:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
             f"{target}: cannot be written ({error.strerror})", code="cannot-write"
         ) from None
-    write_new(target, shipped("one_pin.toml").read_bytes(), "name another folder")
+    remedy = "name another folder"
+    for path in targets:
+        require_new(path, remedy)
+    for path in targets:
+        write_new(path, shipped(path.name).read_bytes(), remedy)
     with unneeded(target):
-        click.echo(str(target))
+        click.echo("\n".join(map(str, targets)))
     out = Path("out") / target.stem
     if not opens:
         click.echo(f"Next: pinstress run {target}  (writes {out / 'report.html'})", err=True)
         return 0
     from pinstress.cli.run import OutputOptions, run_and_write
-    from pinstress.study.reading.file import load_study
+    from pinstress.study.model.load import load_study
 
     return run_and_write(load_study(target), out, OutputOptions(opens=True))
 
@@ -128,9 +137,12 @@ def pdf_of(results: Path) -> int:
     "compare",
     short_help="Show what differs between two runs.",
     help=example("pinstress compare out/before out/after --out out/comparison")
-    + "\nPrint which inputs of two runs differ, and which maxima, safety factors, margins and "
-    "forces changed: beyond their errors, or within. A and B are folders that `pinstress run` "
-    "wrote; units may differ.",
+    + "\nPrint how the factors of pins changed and which requirements are newly met or lost, then "
+    "which inputs of two runs differ, and which maxima, margins and forces changed: beyond their "
+    "errors, or within. A and B are folders that `pinstress run` wrote, the older one first; units "
+    "may differ.\n\n"
+    "Exit status: 0 done; 1 done, but something could not be drawn; 2 bad input; 4 a requirement "
+    "that was met no longer is, or is gone.",
 )
 @click.argument("first", metavar="A", type=click.Path(path_type=Path))
 @click.argument("second", metavar="B", type=click.Path(path_type=Path))
@@ -207,7 +219,7 @@ def completion(context: click.Context, shell: str) -> None:
 @click.option(
     "--fos",
     type=click.FloatRange(0.0, min_open=True),
-    help="Safety factor to reach; overrides the study's required_safety_factor.",
+    help="Safety factor to reach; overrides required_safety_factor and [[require]] of the study.",
 )
 @PINS_OPTION
 @click.option(
@@ -280,11 +292,18 @@ def size(
         raise InputError(f"{wished.given[0]} needs --least-weight", code="needs-least-weight")
     if least_weight and resume:
         raise InputError("--resume is not for --least-weight", code="contradiction")
+    goal = require_wish(loaded, fos, metres)
     if least_weight:
-        aim = require_aim(loaded, wished, require_wish(loaded, fos, metres).required, metres)
+        if goal.more:
+            raise InputError(
+                "--least-weight takes one factor for all pins and cases, and those that "
+                "[[require]] states differ: give --fos",
+                code="contradiction",
+            )
+        aim = require_aim(loaded, wished, goal.required, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
     options = SizeOptions(out, pins, jobs, resume, quiet)
-    return size_and_write(loaded, require_wish(loaded, fos, metres), options)
+    return size_and_write(loaded, goal, options)
 
 
 @click.command(

@@ -1,4 +1,6 @@
-"""Files named by the user: an existing one is never overwritten without permission."""
+"""Files named by the user: an existing one is never overwritten without permission, except a file
+of JUnit results.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +8,8 @@ import os
 from pathlib import Path
 
 from pinstress.study.reading.errors import InputError
+
+JUNIT_HEAD_SIZE = 4096  # bytes, in which JUnit results begin
 
 
 def require_new(path: Path, remedy: str) -> None:
@@ -33,3 +37,32 @@ def write_new(path: Path, content: bytes, remedy: str) -> None:
         raise InputError(
             f"{path}: cannot be written ({error.strerror})", code="cannot-write"
         ) from None
+
+
+def require_junit(path: Path, directory: Path) -> None:
+    """Check that JUnit results can be written: into a folder that exists, over nothing but such
+    results, and not into the output folder, which has no files but its own.
+
+    Raises: InputError.
+    """
+    if path.resolve().is_relative_to(directory.resolve()):
+        raise InputError(
+            f"--junit: {path} is inside the output folder {directory}, which is replaced as a "
+            "whole; choose another place",
+            code="inside-output",
+        )
+    if not path.parent.is_dir():
+        raise InputError(f"--junit: there is no folder {path.parent}", code="no-folder")
+    if path.is_dir():
+        raise InputError(f"--junit: {path} is a folder; give a file", code="not-a-file")
+    try:
+        with path.open("rb") as file:
+            start = file.read(JUNIT_HEAD_SIZE)
+    except FileNotFoundError:
+        return
+    except OSError as error:
+        raise InputError(f"--junit: {path}: {error.strerror}", code="cannot-read") from None
+    if start.strip() and b"<testsuite" not in start:
+        raise InputError(
+            f"--junit: {path} exists and has no JUnit results; choose another file", code="exists"
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -27,12 +28,15 @@ from pinstress.cli.closing import (
     report_reused,
     report_slow_rows,
     report_status_zero,
+    report_unchecked,
     report_violations,
 )
+from pinstress.cli.new_file import require_junit
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
+from pinstress.explore.size.size_state import replace_file
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
@@ -40,6 +44,7 @@ from pinstress.study.reading.file import Study
 from pinstress.study.reading.file_names import field_name
 from reports.data.results import Field, Results, Units
 from reports.files import write_loads, write_pages, write_reports, write_stress_tables
+from reports.junit import junit_xml
 from reports.page.scripts import REPORT_PAGE
 from reports.tables.column import MAX_CSV_ROWS
 from reports.text.loads import print_loads
@@ -47,6 +52,7 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
+FILE_COLUMNS = 120  # of output that is no terminal
 # What solving a pin imports on demand: libraries of nearly all pins, and models
 RUN_LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 RUN_MODELS = (
@@ -75,6 +81,7 @@ class OutputOptions:
     cached: whether results in the user's cache may be reused.
     sensitive: whether sensitivities are found in all cases.
     strict: whether a pin that misses its requirements changes the exit status.
+    junit: the file for the requirements as JUnit XML, if any.
     """
 
     plots: bool = False
@@ -88,6 +95,7 @@ class OutputOptions:
     cached: bool = True
     sensitive: bool = False
     strict: bool = False
+    junit: Path | None = None
 
 
 def run_and_write(
@@ -103,6 +111,8 @@ def run_and_write(
     if wanted.pdf:
         require_package("typst", "--pdf")
     require_replaceable(directory)
+    if wanted.junit is not None:
+        require_junit(wanted.junit, directory)
     also: Any = wanted.vtk if wanted.vtk in ("motion", "solid") else None
     plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
     for warning in other_warnings(study, plan.tasks):
@@ -122,6 +132,8 @@ def run_and_write(
                 _write_flows(results, staging / "vtk")
             progress("report", 1.0)
             _write(results, staging, most)
+    if wanted.junit is not None:
+        replace_file(wanted.junit, junit_xml(results))
     if cache:
         cache.trim()
     if wanted.as_json:
@@ -137,7 +149,7 @@ def run_and_write(
         click.echo(f"Report: {directory / REPORT_PAGE}", err=True)
         _large_tables(directory)
     status = report_missed(results, study.table.analysis.goal == "decide")
-    status = max(status, report_disagreements(results))
+    status = max(status, report_unchecked(results), report_disagreements(results))
     violated = report_violations(results) if wanted.strict else 0
     if not (status or wanted.strict or wanted.quiet):
         report_status_zero(results)
@@ -252,9 +264,11 @@ def _large_tables(directory: Path) -> None:
 
 
 def console() -> Console:
-    """Return standard output as a console as wide as the terminal."""
-    wide = {} if sys.stdout.isatty() else {"width": 120}  # a file has no width
-    return Console(**wide)  # type: ignore[arg-type]
+    """Return standard output as a console as wide as the terminal, or as COLUMNS for a file."""
+    columns = os.environ.get("COLUMNS", "")
+    if sys.stdout.isatty():
+        return Console()
+    return Console(width=int(columns) if columns.isdecimal() and int(columns) else FILE_COLUMNS)
 
 
 @contextmanager

@@ -79,8 +79,8 @@ def read_study(path: Path) -> Study:
     """
     from pinstress.study.model.balance import given_warnings
     from pinstress.study.model.landing import unsprung_warnings
+    from pinstress.study.model.load import load_study
     from pinstress.study.model.weights import weight_warnings
-    from pinstress.study.reading.file import load_study
 
     study = load_study(path)
     warnings = (weight_warnings(study), unsprung_warnings(study), given_warnings(study))
@@ -99,8 +99,8 @@ def open_page(page: Path) -> None:
 
 # Commands by what they are for.
 COMMAND_SECTIONS = {
-    "Studies": ("init", "check", "import", "schema"),
-    "Analysis": ("run", "loads", "chart"),
+    "Studies": ("init", "check", "import", "schema", "fits", "materials"),
+    "Analysis": ("run", "loads", "chart", "export"),
     "Designs": ("size", "curve", "sweep", "reliability", "cluster-keys"),
     "Earlier runs": ("view", "compare", "plots", "pdf"),
 }

@@ -21,6 +21,7 @@ from pinstress.explore.size.size_state import SizeState, identity, replace_file
 from pinstress.explore.size.standard_diameters import standard_diameters
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import slenderness, weight
+from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
@@ -80,7 +81,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     rows = [_row(study, new, result) for result in sized]
     s = study.system
     with unneeded(target):
-        print_sizes(rows, goal.required, Units(s.length, s.force, s.stress, s.time), console())
+        print_sizes(rows, goal.written, Units(s.length, s.force, s.stress, s.time), console())
     if not options.quiet:
         close(study, new, target if sizing.written else None)
     missed = [row for row in rows if row.why]
@@ -162,14 +163,36 @@ def require_wish(study: Study, fos: float | None, step: float | None) -> SizingG
 
     Raises: InputError.
     """
-    required = require_positive("fos", fos) or study.table.analysis.required_safety_factor
+    required, more = require_positive("fos", fos), dict[tuple[str, str], float]()
+    if required is None:
+        required, more = _stated_goal(study)
     if required is None:
         raise study.error(
             "size needs a factor of safety to reach: --fos 10, or "
             "required_safety_factor in [analysis]",
             code="no-required-factor",
         )
-    return SizingGoal(required, standard_diameters(study.table.size, step))
+    return SizingGoal(required, standard_diameters(study.table.size, step), more)
+
+
+def _stated_goal(study: Study) -> tuple[float | None, dict[tuple[str, str], float]]:
+    """Return the factor that a study requires, and where its requirements demand others, times the
+    factor by pin and case.
+    """
+    table = study.table
+    required = table.analysis.required_safety_factor
+    if not table.require:
+        return required, {}
+    factors = {
+        (pin, case): sizing_factor(study, pin, case) or 0.0
+        for pin in table.pin
+        for case in table.case
+    }
+    required = required or max(factors.values(), default=0.0)
+    if not required:
+        return None, {}
+    more = {place: factor / required for place, factor in factors.items()}
+    return required, more if set(more.values()) != {1.0} else {}
 
 
 def target_of(study: Study, out: Path | None, new: bool = True) -> Path:

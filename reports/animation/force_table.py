@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reports.animation.frames import nice
-from reports.animation.scene import MAX_ARROW_LENGTH, Scene
+from reports.animation.scene import APPLIED_GAP, MAX_ARROW_LENGTH, Scene
 from reports.data.results import DriveTable, Units
 from reports.format.fixed_decimals import Fixed
 from reports.format.numbers import short
@@ -42,6 +42,21 @@ def arrows(scene: Scene) -> list[Arrow]:
         length = MAX_ARROW_LENGTH * float(np.hypot(fx, fy)) / (scene.largest or 1.0)
         colour = scene.colour(scene.motion.connections[c][1])
         shown_arrows.append(Arrow(colour, (x, y), length, float(np.degrees(np.arctan2(-fy, fx)))))
+    return shown_arrows
+
+
+def applied_arrows(scene: Scene) -> list[tuple[Arrow, float]]:
+    """Return the arrow of each applied load, which ends just before its point, and its size."""
+    shown_arrows = []
+    for at, force in scene.applied:
+        (x, y), (fx, fy) = at[0].tolist(), force[0].tolist()
+        size = float(np.hypot(fx, fy))
+        length = MAX_ARROW_LENGTH * size / (scene.largest or 1.0)
+        if size > 0.0:
+            back = length + APPLIED_GAP
+            x, y = x - back * fx / size, y + back * fy / size
+        angle = float(np.degrees(np.arctan2(-fy, fx)))
+        shown_arrows.append((Arrow("plain", (x, y), length, angle), size))
     return shown_arrows
 
 

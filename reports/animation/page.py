@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from reports.animation.force_table import Shown, arrows, key, rows
+from reports.animation.force_table import Shown, applied_arrows, arrows, key, rows
 from reports.animation.frames import frames, nice
 from reports.animation.player_data import player_data, speeds
 from reports.animation.scene import Scene, clipped
@@ -51,6 +51,7 @@ def render_animation(motion: LinkageMotion, results: Results) -> str:
             scene=scene,
             moving=len(scene.instants) > 1,
             arrows=arrows(scene),
+            applied=applied_arrows(scene),
             key=key(scene),
             short=short,
             clipped=clipped,

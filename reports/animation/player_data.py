@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from reports.animation.frames import nice
-from reports.animation.scene import MAX_ARROW_LENGTH, Scene
+from reports.animation.scene import APPLIED_GAP, MAX_ARROW_LENGTH, Scene
 from reports.data.results import DriveTable, Floats, Units
 from reports.format.numbers import short
 
@@ -38,10 +38,14 @@ def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[st
         ],
         "pitch": [pixels(ends.reshape(-1, 4)) for _, ends, _ in scene.pitch],
         "connections": _connections(scene),
+        "applied": [
+            {"xy": pixels(at), "fx": digits(force[:, 0]), "fy": digits(force[:, 1])}
+            for at, force in scene.applied
+        ],
         "drives": [
             {"position": digits(d.position[at]), "force": digits(d.force[at])} for d in drives
         ],
-        "arrow": {"longest": MAX_ARROW_LENGTH, "largest": scene.largest},
+        "arrow": {"longest": MAX_ARROW_LENGTH, "largest": scene.largest, "gap": APPLIED_GAP},
     }
 
 

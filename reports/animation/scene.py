@@ -15,6 +15,8 @@ from reports.data.results import Floats, LinkageMotion, ReactionTable
 from reports.format.drawing.svg_labels import label_offsets
 
 MAX_ARROW_LENGTH = 120.0  # arrow
+APPLIED_GAP = 9.0  # between the tip of an applied load and its point, at which a joint may be
+LABELLED_LENGTH_FACTOR = 1.2  # of an applied load's arrow with the room for its size
 BODY_COLOUR_COUNT = 10  # in animation.css
 JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of joints' names
 MAX_NAME_LETTERS = 14  # of a name on the picture
@@ -83,6 +85,13 @@ class Scene:
         longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
         arrows = MAX_ARROW_LENGTH * longer * self.forces / (self.largest or 1.0)
         tails = self.motion.joint_position[self.instants][:, self.tails]
+        # An applied load ends at its point.
+        for load in self.motion.applied:
+            size = load.sizes[self.instants, None]
+            longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
+            away = -(MAX_ARROW_LENGTH * longer * load.force[self.instants]) / self.largest
+            tails = np.concatenate([tails, load.position[self.instants, None]], axis=1)
+            arrows = np.concatenate([arrows, away[:, None] * LABELLED_LENGTH_FACTOR], axis=1)
         corners = np.stack([self.points.min(axis=0), self.points.max(axis=0)])
         return Viewport.of(corners, tails.reshape(-1, 2), arrows.reshape(-1, 2))
 
@@ -102,8 +111,16 @@ class Scene:
 
     @cached_property
     def largest(self) -> float:
-        """The largest force of all connections and instants."""
-        return 0.0 if self.table is None else float(np.max(self.table.magnitudes, initial=0.0))
+        """The largest force of all connections, applied loads and instants."""
+        sizes = [load.sizes for load in self.motion.applied]
+        sizes += [] if self.table is None else [self.table.magnitudes]
+        return max((float(np.max(x, initial=0.0)) for x in sizes), default=0.0)
+
+    @cached_property
+    def applied(self) -> list[tuple[Floats, Floats]]:
+        """The points (F, 2) and the forces (F, 2), y upwards, of the applied loads."""
+        loads, at = self.motion.applied, self.instants
+        return [(self.view(load.position[at]), load.force[at]) for load in loads]
 
     @cached_property
     def joints(self) -> Floats:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
+from reports.data.requirement_pairs import RequirementPair, requirement_pairs
 
 UNCHANGED_TOLERANCE = 1e-9  # relative: what differs by less has not changed
 DECISION_CHANGED = "decision changed"
@@ -104,6 +105,7 @@ class RunComparison:
     inputs: values that differ by key; None where a run of an earlier version wrote no inputs.
     forces: largest forces by case and connection.
     margins: the governing check of each pin, and its margin.
+    requirements: those of both runs; None where a run is of an earlier version, which lists none.
     """
 
     folders: tuple[str, str]
@@ -114,11 +116,16 @@ class RunComparison:
     inputs: tuple[ValuePair, ...] | None
     forces: tuple[ValuePair, ...]
     margins: tuple[ValuePair, ...]
+    requirements: tuple[RequirementPair, ...] | None
     versions: tuple[ValuePair, ...]
 
     def count(self, kind: str) -> int:
         """Return the number of rows of a kind."""
         return sum(row.kind == kind for row in self.rows)
+
+    def requirements_that(self, *changes: str) -> list[RequirementPair]:
+        """Return the requirements with one of some changes."""
+        return [pair for pair in self.requirements or () if pair.change in changes]
 
 
 def compared(
@@ -148,6 +155,7 @@ def compared(
         inputs=_of_keys(first, second, "inputs") if known else None,
         forces=_by_change(_differing(_forces(first, 1.0), _forces(second, force))),
         margins=_differing(_margins(first), _margins(second)),
+        requirements=requirement_pairs(first, second),
         versions=_of_keys(first, second, "versions"),
     )
 

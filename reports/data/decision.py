@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import inf
 
 from assess.judgement import OUTCOME_ORDER
@@ -25,9 +26,35 @@ def factor_ends(pin: PinResult) -> Ends:
     return factor * stress / (stress + error), factor * stress / least if least > 0.0 else inf
 
 
-def limit(results: Results) -> float:
-    """Return the factor that is required; 1, at which a pin yields, where none is required."""
-    return results.required_safety_factor or 1.0
+def low_factor(pin: PinResult) -> float | None:
+    """Return the factor of a row by the largest of these stresses; None without one."""
+    if pin.safety_factor is None or not pin.max_von_mises:
+        return None
+    return min(factor_ends(pin)[0], beneath_factor(pin))
+
+
+def beneath_factor(pin: PinResult) -> float:
+    """Return the factor by the stress beneath contact with its error; inf without any."""
+    contact = pin.places and pin.places.contact
+    if not contact or not contact.upper_end or pin.yield_strength is None:
+        return inf
+    return pin.yield_strength / contact.upper_end
+
+
+def limit(pin: PinResult) -> float:
+    """Return the factor that is required of a row; 1, at which a pin yields, without one."""
+    return pin.required or 1.0
+
+
+def common_factor(pins: Iterable[PinResult]) -> float | None:
+    """Return the factor that is required of all rows, None without one or where they differ."""
+    factors = {pin.required for pin in pins}
+    return factors.pop() if len(factors) == 1 else None
+
+
+def largest_factor(pins: Iterable[PinResult]) -> float | None:
+    """Return the largest factor that is required of any row, None where none is required."""
+    return max((pin.required for pin in pins if pin.required is not None), default=None)
 
 
 def utilisation(pin: PinResult, limit: float) -> Ends | None:
@@ -46,7 +73,7 @@ def worst_first(results: Results) -> list[PinResult]:
     """Return the rows that fail, then those not decided, then the others, each by utilisation."""
 
     def place(pin: PinResult) -> tuple[int, float]:
-        used = utilisation(pin, 1.0)
+        used = utilisation(pin, limit(pin))
         return OUTCOME_ORDER[pin.outcome], -inf if used is None else -used[1]
 
     return sorted(results.pins, key=place)

@@ -18,6 +18,8 @@ from reports.data.results import Dependence, Floats, LandingRange, PinResult
 BENEATH_CONTACT: Literal["beneath"] = "beneath"
 WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
 IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
+JOINT_AND_LANDING: Literal["joint and landing"] = "joint and landing"
+TOGETHER = "together"  # what only both ranges together change
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,34 @@ def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
     ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, pin.joint)]
     if pin.landing is not None:
         ranges += _with_beneath(judged, contact, pin.landing)
+        if not ranges:
+            ranges += _over_both(judged, contact, pin.joint, pin.landing)
     return tuple(ranges)
+
+
+def _over_both(
+    judged: JudgedStress, contact: ContactPlace | None, joint: JointResult | None, r: LandingRange
+) -> Iterator[Dependence]:
+    """Yield the ranges of joint and landing together if neither alone changes the outcome.
+
+    Each multiplies the stress by the ratio that it has alone, since the two were not solved
+    together: exact where stress is proportional to the loads.
+    """
+    over = joint.range if joint else None
+    if over is None:
+        return
+    extreme = max if judged.safe else min
+    of_landing = float(extreme(r.max_von_mises)) / judged.maximum
+    of_joint = extreme(judged.maximum, *over.max_von_mises) / judged.maximum
+    beneath = [contact.upper_end if contact else 0.0]
+    beneath += [_upper_end(contact, v) for v in over.variations]
+    deep = of_landing * extreme(beneath)
+    stress = judged.maximum * of_landing * of_joint
+    fails_beneath = deep > judged.permitted
+    turned = judged.turns(stress)
+    if (turned or fails_beneath) if judged.safe else (turned and not fails_beneath):
+        factor = judged.strength / (max(stress, deep) if judged.safe else stress)
+        yield Dependence(TOGETHER, "", JOINT_AND_LANDING, factor)
 
 
 def _beneath(judged: JudgedStress, contact: ContactPlace | None) -> Iterator[Dependence]:

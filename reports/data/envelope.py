@@ -35,7 +35,7 @@ def governing_cases(results: Results) -> dict[str, str]:
 
 def envelope(results: Results) -> list[EnvelopeCell]:
     """Return a cell for every pin in every case in which it was solved."""
-    governs, required = governing_cases(results), limit(results)
+    governs = governing_cases(results)
     largest: dict[tuple[str, str], list[PeakReaction]] = {}
     for table in results.reactions:
         for pin, peak in zip(table.pins, table.largest, strict=True):
@@ -44,7 +44,7 @@ def envelope(results: Results) -> list[EnvelopeCell]:
         EnvelopeCell(
             row,
             row.outcome,
-            None if (used := utilisation(row, required)) is None else used[1],
+            None if (used := utilisation(row, limit(row))) is None else used[1],
             governs[row.pin] == row.case,
             tuple(largest.get((row.pin, row.case), ())),
         )

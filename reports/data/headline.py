@@ -12,6 +12,13 @@ from assess.margin import PinMargin
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
 from reports.data.decision import factor_ends, limit, utilisation
+from reports.data.requirements import (
+    MET,
+    MISSED,
+    NOT_CHECKED,
+    RequirementRow,
+    requirement_rows,
+)
 from reports.data.results import PinResult, Results
 
 
@@ -24,6 +31,7 @@ class JudgedCheck:
     used: required over actual factor, the upper end of a range, by which checks are compared.
     row: the row of the model's maximum, None for a margin.
     reason: why a check other than the model's maximum is not decided.
+    stated: whether a requirement of the study states the factor, not those on loads.
     """
 
     pin: str
@@ -35,6 +43,7 @@ class JudgedCheck:
     used: float
     row: PinResult | None = None
     reason: str = ""
+    stated: bool = False
 
     @property
     def rank(self) -> tuple[int, float]:
@@ -45,18 +54,32 @@ class JudgedCheck:
 def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
     rows = {(row.pin, row.case): row for row in results.pins}
-    checks = [_of_row(row, limit(results)) for row in results.pins]
+    checks = [_of_row(row, limit(row)) for row in results.pins]
     checks += (
         _of_margin(m, rows.get((m.pin, m.case)))
         for m in results.margins
         if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0
     )
+    checks += map(_of_requirement, _besides(results))
     open_ = results.fatigue.not_decided if results.fatigue else {}
     checks += (
         JudgedCheck(pin, "", FATIGUE_LIFE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
         for pin, reason in open_.items()
     )
     return sorted(checks, key=lambda check: check.rank)
+
+
+def _besides(results: Results) -> list[RequirementRow]:
+    """Return the requirements that neither a row nor a margin judges with the same factor."""
+    stated = {(s.pin, s.case, s.level, s.check) for s in results.stated}
+    factors = {(row.pin, row.case): limit(row) for row in results.pins}
+
+    def besides(r: RequirementRow) -> bool:
+        if r.check == "yield":
+            return r.required > factors.get((r.pin, r.case), inf)
+        return r.key in stated or (r.check == "rupture" and r.outcome == DEPENDS)
+
+    return [r for r in requirement_rows(results) if besides(r) and not r.left_out]
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:
@@ -100,6 +123,17 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
     return JudgedCheck(
         row.pin, row.case, YIELD_METHOD, row.outcome, row.safety_factor, required, high, row
     )
+
+
+def _of_requirement(row: RequirementRow) -> JudgedCheck:
+    """Return the check of a requirement; what was not checked is not decided."""
+    state = {MET: SAFE, MISSED: FAILS, NOT_CHECKED: NOT_DECIDED}.get(row.outcome, row.outcome)
+    used = row.required / row.reached if row.reached else -inf
+    reason = f"needs {row.needs}" if row.needs else ""
+    return JudgedCheck(
+        row.pin, row.case, row.title, state, row.reached, row.required, used, None, reason,
+        stated=True,
+    )  # fmt: skip
 
 
 def _of_margin(pin_margin: PinMargin, row: PinResult | None) -> JudgedCheck:

@@ -267,6 +267,20 @@ class PitchCurve:
 
 
 @dataclass(frozen=True)
+class AppliedForce:
+    """A force that a case applies to a body: at a point (T, 2) of it, world axes, (T, 2)."""
+
+    body: str
+    position: Lengths
+    force: Forces
+
+    @cached_property
+    def sizes(self) -> Floats:
+        """The magnitudes (T,) of the force."""
+        return np.asarray(np.linalg.norm(self.force, axis=1))
+
+
+@dataclass(frozen=True)
 class LinkageMotion:
     """The motion of a linkage in one case, at T instants (one, without time, when it is at rest).
 
@@ -286,6 +300,7 @@ class LinkageMotion:
     linkage on its ground.
     slider_forces: by slider, from the base on the moving body. paths: of named points.
     extremes: over the motion, between the instants too; None: over the instants alone.
+    applied: the forces of the case's loads.
     """
 
     case: str
@@ -315,6 +330,7 @@ class LinkageMotion:
     paths: dict[str, PointPath] = field(default_factory=dict)
     extremes: Extremes | None = None
     pitch: tuple[PitchCurve, ...] = ()
+    applied: tuple[AppliedForce, ...] = ()
 
     @property
     def poorest(self) -> dict[str, tuple[float, float | None]]:

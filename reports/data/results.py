@@ -12,6 +12,7 @@ from typing import Self
 from assess.fatigue.records import PointFatigue, PointHistory
 from assess.margin import PinMargin
 from assess.opinion.records import BeamCheck
+from assess.requirement import StatedRequirement
 from assess.strength.bending_arms import BendingArms
 from fea.core.peak import Refinement, SingularZone
 from pinbase.dimensions import Floats, Force, Length
@@ -35,11 +36,12 @@ from reports.data.mechanics import (
     PublishedValue,
     ReactionTable,
 )
-from reports.data.row import Dependence, GoverningLoad, LandingRange, PinResult
+from reports.data.row import SI, Dependence, GoverningLoad, LandingRange, PinResult, Units
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 from reports.data.surface import Surface
 
 __all__ = [
+    "SI",
     "BandLoad",
     "BeamCheck",
     "Dependence",
@@ -79,19 +81,6 @@ __all__ = [
     "Units",
     "Volume",
 ]  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Units:
-    """The names of the units of results."""
-
-    length: str
-    force: str
-    stress: str
-    time: str
-
-
-SI = Units("m", "N", "Pa", "s")
 
 
 @dataclass(frozen=True)
@@ -177,11 +166,19 @@ class TitleBlock:
     approved: str = ""
 
 
+class NoSuchRow(KeyError):
+    """A pin or case without results; the message says which there are."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])  # that of KeyError is in quotes
+
+
 @dataclass(frozen=True)
 class Results:
     """All results of a run, without the fields inside pins (those are written pin by pin).
 
-    pins: the rows. spectrum_margins: of checks over all cases of a pin, as fatigue.
+    pins: the rows. stated: the requirements of [[require]].
+    spectrum_margins: of checks over all cases of a pin, as fatigue.
     """
 
     title: str
@@ -203,6 +200,7 @@ class Results:
     surfaces: tuple[Surface, ...] = ()
     changes: tuple[Remedy, ...] = ()
     sensitivities: tuple[PinSensitivities, ...] = ()
+    stated: tuple[StatedRequirement, ...] = ()
     spectrum_margins: tuple[PinMargin, ...] = ()
     histories: tuple[PointHistory, ...] = ()
     fatigue: Fatigue | None = None
@@ -221,9 +219,18 @@ class Results:
         """
         matches = [p for p in self.pins if (p.pin, p.case) == row]
         if not matches:
-            known_rows = ", ".join(f'["{p.pin}", "{p.case}"]' for p in self.pins)
-            raise KeyError(f"no row {row!r}; there are {known_rows}")
+            raise NoSuchRow(self._missing(row))
         return matches[0]
+
+    def _missing(self, row: object) -> str:
+        """Return which row is missing, and the pins and cases that there are."""
+        pins = ", ".join(dict.fromkeys(p.pin for p in self.pins))
+        if not isinstance(row, tuple) or len(row) != 2:
+            return f"results[{row!r}]: give a pin and a case; the pins are {pins}"
+        cases = ", ".join(p.case for p in self.pins if p.pin == row[0])
+        if cases:
+            return f"pin {row[0]} has no case {row[1]!r}; its cases are {cases}"
+        return f"no pin {row[0]!r}; the pins are {pins}"
 
     @property
     def margins(self) -> tuple[PinMargin, ...]:
@@ -246,4 +253,5 @@ class Results:
 
         unit: their values in SI, by dimension.
         """
-        return in_units(replace(self, units=units), unit)
+        pins = tuple(replace(pin, units=units) for pin in self.pins)
+        return in_units(replace(self, units=units, pins=pins), unit)

@@ -12,7 +12,7 @@ from pinbase.dimensions import Length, Stress, Time
 class Sensitivity:
     """The derivatives with respect to one parameter.
 
-    key: as in the study, or "force B x" for a load in the axes of the pin.
+    key: of the study ("pin.B.fillet"), or "force B x" for a load in the axes of the pin.
     kind: dimension of the parameter ("length", "force", .., "1"). value: of the parameter.
     stress: derivative of the maximum. factor: of the factor of safety, None without a strength.
     step: a small increase of the parameter. factor_with_step: the factor then, by the derivative.

@@ -89,6 +89,17 @@ class _Margin(JsonPart):
     margin: Number | None
 
 
+class _Requirement(JsonPart):
+    pin: str
+    case: str
+    level: str
+    check: str
+    required: Positive
+    reached: Positive | None
+    outcome: Literal["met", "missed", "depends", "not decided", "not checked"]
+    stated: bool
+
+
 class _Force(JsonPart):
     connection: str
     force: Number | None
@@ -106,6 +117,7 @@ class _Results(JsonPart):
     pins: list[_Row]
     loads: list[_Loads]
     margins: list[_Margin] = Field(default_factory=list)
+    requirements: list[_Requirement] | None = None
     inputs: dict[str, str] = Field(default_factory=dict)
 
 

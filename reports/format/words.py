@@ -11,10 +11,11 @@ from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import Dependence, PinResult, Results, Units
 from reports.format.numbers import engineering, short
-from reports.format.ranges import factor_range
+from reports.format.ranges import factor_range, factor_text
 from reports.format.units import unit_name
 
 BEYOND_YIELD = "beyond yield"
+MAX_NAMED_PINS = 6  # in the first sentence; of more, their number is given
 MAX_NAMED_PROPERTIES = 4  # properties of a range; of more, their number is given
 
 RESULT_ROWS_NOTE = (
@@ -172,20 +173,23 @@ def _dependence(d: Dependence, units: Units) -> str:
 
 
 def headline(results: Results) -> str:
-    """Return the worst of all checks in one sentence; empty when nothing was solved.
+    """Return the outcome of all pins in one sentence; empty when nothing was solved.
 
-    It says whether the pin is safe, its factor, the required one and the case; or that all pins
-    are.
+    It says how many pins fail, with their factors, the required one and the case; of a single pin,
+    or where none fails, what is true of the worst one; or that all pins are safe.
     """
     worst = worst_checks(results)
     if not worst:
         return ""
-    first = min(worst.values(), key=lambda check: check.rank)
+    checks = sorted(worst.values(), key=lambda check: check.rank)
+    first = checks[0]
+    if len(checks) > 1 and first.outcome in (FAILS, YIELDS):
+        return _failing([check for check in checks if check.outcome in (FAILS, YIELDS)], results)
     if first.outcome in (SAFE, BELOW_YIELD):
         return _all_safe(results, first, len(worst))
     if first.row is None:
         return _of_margin(first)
-    row, (factor, needed) = first.row, _factor_words(first.row, results)
+    row, (factor, needed) = first.row, _factor_words(first.row)
     if first.outcome == NOT_DECIDED:
         known = f"; {factor}, {needed}" if row.safety_factor is not None else ""
         why = undecided_because(row)
@@ -199,9 +203,35 @@ def headline(results: Results) -> str:
     )
 
 
-def _factor_words(row: PinResult, results: Results) -> tuple[str, str]:
+def _failing(checks: Sequence[JudgedCheck], results: Results) -> str:
+    """Return the sentence on the pins that fail, the worst first: "5 of 9 pins miss the required
+    factor 10 (landing): E, J, A, G, D."
+    """
+    pins = len({row.pin for row in results.pins})
+    cases, required = ({getattr(c, key) for c in checks} for key in ("case", "required"))
+    by_stress = all(check.row is not None for check in checks)
+    one = len(checks) == 1
+    verb = "fails" if one else "fail"
+    if by_stress and len(required) == 1:
+        asked = all(check.row and check.row.required for check in checks)
+        missed = f"{'misses' if one else 'miss'} the required factor {short(required.pop())}"
+        verb = missed if asked else ("yields" if one else "yield")
+    case = f" ({cases.pop()})" if len(cases) == 1 and "" not in cases else ""
+    told = [_failing_pin(check, not case) for check in checks[:MAX_NAMED_PINS]]
+    more = f" and {len(checks) - MAX_NAMED_PINS} more" if len(checks) > MAX_NAMED_PINS else ""
+    count = f"{len(checks)} of {pins} pins"
+    return f"{count} {verb}{case}: {', '.join(told)}{more}."
+
+
+def _failing_pin(check: JudgedCheck, with_case: bool) -> str:
+    more = [check.case] * (with_case and bool(check.case))
+    more += [_margin_words(check)] * (check.row is None)
+    return f"{check.pin} ({', '.join(more)})" if more else check.pin
+
+
+def _factor_words(row: PinResult) -> tuple[str, str]:
     """Return the safety factor and the required one as text."""
-    required = results.required_safety_factor
+    required = row.required
     needed = "1 at yield" if required is None else f"{short(required)} required"
     return f"FoS {factor_range(row)}", needed
 
@@ -212,7 +242,7 @@ def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     least: the worst of all checks, which may be another than the model's stress against yield.
     """
     row = worst_first(results)[0]
-    factor, needed = _factor_words(row, results)
+    factor, needed = _factor_words(row)
     safe = row.outcome == SAFE
     other = "" if least.row else f"; {_margin_words(least)}, pin {least.pin}"
     if pins == 1:
@@ -228,12 +258,25 @@ def _of_margin(check: JudgedCheck) -> str:
     """Return the sentence on a check other than that of the model's stress against yield."""
     if check.outcome == FAILS:
         return f"Pin {check.pin} fails: {_margin_words(check)}."
+    if check.outcome == DEPENDS:
+        return (
+            f"Pin {check.pin} is safe as described, but within the study's ranges it may fail: "
+            f"{_margin_words(check)}."
+        )
     why = f"{check.check}: {check.reason}" if check.reason else _margin_words(check)
     return f"Whether pin {check.pin} is safe is not decided: {why}."
 
 
 def _margin_words(check: JudgedCheck) -> str:
     case = f" ({check.case})" if check.case else ""
+    name = "" if check.stated else "margin of safety "
+    return f"{check.check}, {name}{spare_words(check)}{case}"
+
+
+def spare_words(check: JudgedCheck) -> str:
+    """Return the margin of safety of a check, or the factor that a requirement states for it."""
+    if check.stated:
+        factor = factor_text(check.factor, check.required)
+        return f"factor {factor}, {short(check.required)} required"
     spare = inf if check.used == 0.0 else 1.0 / check.used - 1.0
-    sign = "+" if spare > 0.0 else ""
-    return f"{check.check}, margin of safety {sign}{engineering(spare, 3)}{case}"
+    return f"{'+' if spare > 0.0 else ''}{engineering(spare, 3)}"

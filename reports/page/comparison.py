@@ -9,7 +9,7 @@ from pathlib import Path
 from reports.data.comparison import RunComparison
 from reports.format.template import environment
 from reports.plots.comparison import comparison_plot
-from reports.text.comparison import headline, sections
+from reports.text.comparison import headline, review, sections
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,7 @@ def write_comparison(
         .get_template("comparison.html.j2")
         .render(
             found=comparison,
+            review=review(comparison),
             headline=headline(comparison),
             sections=[
                 (name, t.grid(), note) for name, t, note in sections(comparison) if t.rows or note

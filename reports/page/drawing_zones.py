@@ -131,7 +131,7 @@ class ZoneMarks:
 def _drawn(mark: _Mark, axis: float) -> list[str]:
     ends = [axis + side * mark.r for side in (-1.0, 1.0)]
     if mark.kind == "section":
-        across = 'class="place" stroke-width="2"'
+        across = 'class="place" style="stroke-width: 2"'
         return [
             line(mark.x, ends[0] - RING_RADIUS, mark.x, ends[1] + RING_RADIUS, across, ZONE_COLOUR)
         ]

@@ -1,14 +1,13 @@
-"""The safety factors on the page: the worst first, each with its utilisation as a bar."""
+"""The safety factors on the page: the worst first."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from pinbase.records import plain
 from reports.data.changes import command
-from reports.data.decision import limit, utilisation
-from reports.data.results import PinResult, Results
+from reports.data.decision import largest_factor
+from reports.data.results import Results
 from reports.format.files.csv import Cell
 from reports.format.words import OUTCOME_MEANINGS
 from reports.tables.column import grid_of
@@ -19,16 +18,6 @@ from reports.tables.strength.limit_load import LIMIT_LOAD_NOTE as PAST_YIELD
 from reports.tables.strength.safety_factors import reading, shown_factors
 from reports.tables.strength.sensitivities import SENSITIVITIES_NOTE as SENSITIVE
 from reports.tables.strength.sensitivities import sensitivity_notes, shown_sensitivities
-
-FULL_BAR_UTILISATION = 2.0  # utilisation at the end of a bar
-
-
-@dataclass(frozen=True)
-class Bar:
-    """The certain and the possible length of a bar, in per cent of its full length."""
-
-    low: float
-    high: float
 
 
 def factor_part(results: Results) -> dict[str, Any]:
@@ -42,7 +31,6 @@ def factor_part(results: Results) -> dict[str, Any]:
             {
                 "outcome": row.pin.outcome,
                 "cells": [(c.shown(row), _sorted_by(c.cell(row))) for c in table.columns],
-                "bar": _bar(row.pin, limit(results)),
             }
             for row in table.rows
         ],
@@ -59,7 +47,7 @@ def change_part(results: Results) -> dict[str, Any] | None:
         "grid": grid_of(changes_table(results), results.units),
         "introduction": REMEDIES_NOTE,
         "notes": change_notes(results),
-        "command": command(results.changes, results.study, results.required_safety_factor),
+        "command": command(results.changes, results.study, largest_factor(results.pins)),
     }
 
 
@@ -88,11 +76,3 @@ def _sorted_by(value: Cell) -> str:
     """Return a sort key with all digits; empty for no value."""
     value = plain(value)
     return "" if value is None else str(value)
-
-
-def _bar(pin: PinResult, required: float) -> Bar | None:
-    used = utilisation(pin, required)
-    if used is None:
-        return None
-    low, high = (100.0 * min(end, FULL_BAR_UTILISATION) / FULL_BAR_UTILISATION for end in used)
-    return Bar(low, high)

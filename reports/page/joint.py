@@ -12,10 +12,30 @@ from reports.tables.column import Column, Grid, PinRow, Table, grid_of, in_order
 from reports.tables.stress.joint import BAND_COLUMNS
 
 JOINT_TITLES = {"contact": "Contact with the lugs", "foundation": "Load from the lugs"}
-BAND_ORDER = ("connection", "force", "contact_angle", "mean_pressure", "bearing_share")
+BAND_ORDER = (
+    "connection",
+    "force",
+    "contact_angle",
+    "mean_pressure",
+    "bearing_share",
+    "carrying_share",
+)
+BANDS_NOTE = (
+    "The force is that of the link on the pin. Half contact angle: half of the arc of the bore "
+    "that carries, where it is widest. Carries over: the part of the lug's thickness along "
+    "which it pushes the pin in the direction of the force; beyond, it does not touch, or holds "
+    "back. Couple on the link: the moment with which the lug's resistance to tilting acts on its "
+    "link. Mean pressure: the force over diameter and length of the band. The plot has the load "
+    "per length in the direction of each link's force (negative: the opposite side of the bore "
+    "carries), and the size of the bending moment."
+)
+RANGE_NOTE = (
+    "Range over the joint: the maximum with one property of the joint changed in all lugs at once, "
+    "all else as the study describes or assumes it."
+)
 FOUNDATION_NOTE = (
-    "By a beam on foundations; contact angles are those of plane contact at the largest load per "
-    "length."
+    "Where the load is by a beam on foundations, contact angles are those of plane contact at the "
+    "largest load per length."
 )
 
 
@@ -58,9 +78,8 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
             over += f" (beam on foundations in {lugs}, its error included)"
     said = "; ".join(filter(None, (error, over)))
     why = f"{';' if joint.range else ':'} {joint.remark}" if joint.remark else ""
-    more = f" {FOUNDATION_NOTE}" if joint.model == "foundation" else ""
     text = f"{said[:1].upper()}{said[1:]}{why}."
-    return f"{text}{more}".lstrip(".: ").strip()
+    return text.lstrip(".: ")
 
 
 def _bands(pin: PinResult, joint: JointResult, units: Units) -> Table[PinRow[BandContact]]:

@@ -16,7 +16,7 @@ from reports.data.results import (
     Results,
     Units,
 )
-from reports.format.numbers import DASH, components, engineering
+from reports.format.numbers import DASH, components, engineering, short
 from reports.plots.loads.reactions import NO_PIN_NAME
 from reports.tables.column import Column, Grid, Table, grid_of, read_only, texts
 from reports.tables.loads.drop import drop_words, impulse_grid, peak_grid
@@ -54,6 +54,17 @@ def load_part(results: Results) -> dict[str, Any]:
         "landed": list(dict.fromkeys(r.case for r in results.landing)),
         "landing_note": LANDING_NOTE,
     }
+
+
+def largest_force(results: Results) -> str:
+    """Return a sentence on the largest force at a connection in any case."""
+    peaks = [(table, peak) for table in results.reactions for peak in table.largest]
+    table, peak = max(peaks, key=lambda of: of[1].force)
+    body = table.bodies[table.connections.index(peak.connection)]
+    when = "" if peak.time is None else f" at t = {short(peak.time)} {results.units.time}"
+    on = f"of {body} on the pin at {peak.connection}" if body else f"at {peak.connection}"
+    force = f"{engineering(peak.force)} {results.units.force}"
+    return f"Largest force: {force} {on}, in {table.case}{when}."
 
 
 def _reactions(table: ReactionTable, units: Units) -> Grid:

@@ -5,34 +5,37 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from reports.data.decision import worst_first
 from reports.data.envelope import detailed_rows
 from reports.data.results import PinShape, Results
 from reports.format.file_names import drive_names, plot_name
 from reports.format.numbers import DASH, engineering, like, ratio, short
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
-from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, headline, verdict_words
+from reports.format.words import BEYOND_YIELD, VERDICT_MEANINGS, verdict_words
 from reports.page.drawing_places import place_marks
 from reports.page.factors import change_part, factor_part, limit_part, sensitivity_part
-from reports.page.loads import load_part, timings
+from reports.page.loads import largest_force, load_part, timings
 from reports.page.motion import motion_parts
+from reports.page.overview import overview_part
 from reports.page.paper import document
 from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
 from reports.page.pins import pin_parts
+from reports.page.pins_reading import SIGNS_NOTE, reading_parts, signs
 from reports.page.scripts import script_part
 from reports.page.strength import envelope_part, fatigue_part, margin_part
+from reports.page.stress_along import stress_along
 from reports.plots.all import all_plots
 from reports.plots.spec import Plot
 from reports.plots.theme import style_sheet
-from reports.tables.strength.hand_checks import HAND_CHECKS_NOTE
 from reports.tables.stress.singular_zones import circles, pin_zones
 from reports.text.method import METHOD_NOTE
-from reports.text.summary import summary
 
 if TYPE_CHECKING:
     from jinja2 import Template
 
 PRINTED_DRAWING_WIDTH = 420.0  # width of a pin's drawing, of half a page
+SMALL_DRAWING_WIDTH = 350.0  # on the first screen
 MAX_PINS_AT_ONCE = 20  # pins; the parts of pages of more are made when they are opened
 
 
@@ -55,13 +58,21 @@ def render(results: Results, directory: Path) -> str:
     printed = {s.pin: _drawing(s, shown, PRINTED_DRAWING_WIDTH) for s in shown.shapes}
     pins, plots = pin_parts(shown, drawings), all_plots(shown)
 
+    anchors = {part.pin: part.anchor for part in pins}
+    worst = next(iter(worst_first(results)), None)
+    of_worst = [s for s in results.shapes if worst and s.pin == worst.pin]
+    small = Markup(_drawing(of_worst[0], shown, SMALL_DRAWING_WIDTH)) if of_worst else ""
+
+    overview = overview_part(results, anchors, small) if results.pins else None
+
     def plot(kind: str, *names: str) -> Plot | None:
         return plots.get(plot_name(kind, *names))
 
     return _template().render(
         results=shown,
         units=shown.units,
-        answer={"headline": headline(results), "summary": summary(results)},
+        overview=overview,
+        largest=largest_force(results) if results.reactions else "No pin was solved.",
         factors=factor_part(shown),
         envelope=envelope_part(results),
         margins=margin_part(shown),
@@ -70,13 +81,16 @@ def render(results: Results, directory: Path) -> str:
         limits=limit_part(shown),
         fatigue=fatigue_part(shown),
         pins=pins,
+        pin_reading=reading_parts(shown),
+        signs=Markup(signs()),
+        signs_note=SIGNS_NOTE,
         deferred=len(pins) > MAX_PINS_AT_ONCE,
-        anchors={part.pin: part.anchor for part in pins},
+        anchors=anchors,
         plot=plot,
         motion=motion_parts(shown, plot, directory),
         loads=load_part(shown),
         timings=timings(results),
-        scripts=script_part(plots, document(results, printed)),
+        scripts=script_part(plots, document(results, printed, overview)),
     )
 
 
@@ -95,7 +109,6 @@ def _template() -> Template:
     templates.globals.update(
         beyond=BEYOND_YIELD,
         meaning=VERDICT_MEANINGS,
-        hand_checks=HAND_CHECKS_NOTE,
         method=METHOD_NOTE,
         drive_names=drive_names,
         shades=style_sheet(),
@@ -107,4 +120,4 @@ def _drawing(shape: PinShape, results: Results, width: float = DRAWING_WIDTH) ->
     zones = pin_zones(results, shape.pin).values()
     every = circles(zone for case in zones for zone in case)
     places = place_marks(results, shape.pin, sum(s[0] for s in shape.segments))
-    return draw_pin(shape, results.units, every, width, places)
+    return draw_pin(shape, results.units, every, width, places, stress_along(results, shape))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import asdict, replace
 from typing import Any
 
 from reports.data.changes import command
-from reports.data.decision import worst_first
+from reports.data.decision import largest_factor, worst_first
 from reports.data.envelope import EnvelopeCell, detailed_rows
 from reports.data.results import PinResult, Provenance, Results
 from reports.format.file_names import plot_name
@@ -25,17 +27,30 @@ from reports.tables.strength.sensitivities import shown_sensitivities
 from reports.text.loads_summary import load_parts
 from reports.text.method import METHOD_NOTE
 from reports.text.pin_sentence import drawing_caption, pin_sentence
-from reports.text.summary import summary
 
 Content = dict[str, Any]
+# Of the drawing of the linkage, as reports/templates/overview.css has it in light colours
+PAPER_STYLE = (
+    "text{font-family:'Libertinus Serif';font-size:14px}.force{font-size:12.5px;fill:#5a6068}"
+    ".b{font-weight:700}.link{fill:none;stroke:#a5a8ac;stroke-linecap:round}.body{fill:#ececee}"
+    ".slide{fill:none;stroke:#5a6068;stroke-width:2;stroke-dasharray:6 4}"
+    ".ground{fill:none;stroke:#1d1f23;stroke-width:1.4}.load{fill:none;stroke:#1d1f23;"
+    "stroke-width:3.5}.head{fill:#1d1f23}.pin circle,.hf{stroke:#fff;stroke-width:1.5}"
+    ".pin path{fill:none;stroke-width:2.4}.pin .h{fill:#fff;stroke-width:2.4}"
+    ".fails circle,.yields circle{fill:#a8211b}.pin .k{stroke:#fff}.safe .h,.below-yield .h,"
+    ".safe path,.below-yield path{stroke:#14663c}.depends .h,.not-decided .h,.not-decided path"
+    "{stroke:#7a5200}.pin .hf{fill:#7a5200;stroke:none}"
+)
 PINS_PER_MATRIX = 12  # pins of the matrix of cases
 MAX_DIMENSIONS = 5  # of a pin's sensitivities
 
 
-def document(results: Results, drawings: dict[str, str]) -> Content:
+def document(
+    results: Results, drawings: dict[str, str], overview: Content | None = None
+) -> Content:
     """Return the content of report.typ.
 
-    drawings: of the pins, as SVG.
+    drawings: of the pins, as SVG. overview: reports.page.overview.
     """
     everything, results = results, detailed_rows(results)
     maxima = grid_of(published_maxima(results), results.units)
@@ -46,7 +61,7 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "versions": dict(sorted(results.versions.items())),
         "block": asdict(results.title_block),
         "headline": headline(everything),
-        "summary": summary(everything),
+        "overview": overview and _on_paper(overview),
         "units": asdict(results.units),
         "factors": _factors(results),
         "reading": reading(shown_factors(results)),
@@ -66,6 +81,19 @@ def document(results: Results, drawings: dict[str, str]) -> Content:
         "assumptions": results.assumptions,
         "method": METHOD_NOTE,
     }
+
+
+def _on_paper(overview: Content) -> Content:
+    """Return the first screen with a drawing that has its own colours."""
+    linkage = overview["linkage"]
+    styled = None
+    if linkage:
+        plain = re.sub(r'<a href="[^"]*">|</a>', "", linkage)
+        styled = plain.replace(">", f"><style>{PAPER_STYLE}</style>", 1)
+    content: Content = json.loads(
+        json.dumps({**overview, "linkage": styled}, ensure_ascii=False).replace("✕", "×")
+    )
+    return content
 
 
 def _factors(results: Results) -> Content | None:
@@ -111,7 +139,7 @@ def _changes(results: Results) -> Content | None:
     if not results.changes:
         return None
     notes = [REMEDIES_NOTE, *change_notes(results)]
-    size = command(results.changes, results.study, results.required_safety_factor)
+    size = command(results.changes, results.study, largest_factor(results.pins))
     grid = changes_table(results).grid(results.units)
     return {"grid": asdict(grid), "notes": notes, "command": size or None}
 

@@ -1,37 +1,53 @@
-"""A pin's profile as an SVG drawing: section, lengths, diameters, bands and singular zones."""
+"""A pin's profile as an SVG drawing: section, sizes, bands, zones, loads, stress along it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 
+from reports.data.check import LugOutline
 from reports.data.results import PinShape, Units
 from reports.format.drawing.cuts import draw_cut, words
 from reports.format.drawing.spread import rows
 from reports.format.drawing.svg import INK_COLOUR, line, text, wide
-from reports.format.numbers import short
+from reports.format.numbers import engineering, short
 from reports.page.drawing_places import PlaceMark
 from reports.page.drawing_zones import STRIPE_PATTERN, ZoneMarks
+from reports.page.stress_along import StressAlong
+from reports.page.stress_panel import ARROW_ROOM, StressPanel, arrow, triad
 from reports.tables.stress.singular_zones import ShownZone
 
-DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 760.0, 45.0, 0.2  # the last in widths
+DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 480.0, 52.0, 0.22  # the last in widths
 LOCAL_SOLID_OFFSET = 3.0  # what the box of a local solid stands off the pin
 TEXT_LINE_HEIGHT = 14.0  # height of the text
+PATTERNS = (
+    '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
+    'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
+    f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}</defs>'
+)
+LUG_COLOUR = "#e3c9a4"
+LUG_HEIGHT_SHARE = 0.6  # of a lug's height, by which drawings with lugs may be higher than others
 FILL_COLOURS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
 
 @dataclass(frozen=True)
 class _Piece:
-    """A segment on the drawing: x to x + width, radii at its two ends in the same unit."""
+    """A segment on the drawing: x to x + width, radii at its two ends in the same unit.
+
+    extent: its length on the pin. label, size, length, force: the words at it.
+    """
 
     x: float
     width: float
+    extent: float
     radii: tuple[float, float]
     bores: tuple[float, float]
     label: str
     size: str
     length: str
     kind: str
+    force: str = ""
 
     @property
     def radius(self) -> float:
@@ -42,6 +58,55 @@ class _Piece:
     def middle(self) -> float:
         return self.x + 0.5 * self.width
 
+    @property
+    def words(self) -> tuple[str, str, str]:
+        """The words above the segment, line by line."""
+        return self.label, self.size, self.force
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Where a pin is drawn.
+
+    left, scale, length: of the pin. radius: the largest. tops: rows of the labels.
+    lines: of a label. axis: its y. foot: y below the section and the arrows there.
+    """
+
+    left: float
+    scale: float
+    length: float
+    radius: float
+    tops: list[int]
+    lines: int
+    axis: float
+    foot: float
+
+    @property
+    def right(self) -> float:
+        return self.left + self.scale * self.length
+
+    @property
+    def row_height(self) -> float:
+        """The height of a row of labels."""
+        return self.lines * TEXT_LINE_HEIGHT
+
+    @staticmethod
+    def of(pieces: list[_Piece], along: StressAlong | None, around: float = 0.0) -> _Layout:
+        """Return the layout of a pin; around: diameter of the largest lug about it."""
+        tops = rows([p.middle for p in pieces], [max(map(wide, p.words)) for p in pieces])
+        lines = 3 if any(p.force for p in pieces) else 2
+        radius = max(p.radius for p in pieces)
+        ups = [load.up for load in along.loads] if along else []
+        above = ARROW_ROOM if min(ups, default=0.0) < 0.0 else 0.0
+        below = ARROW_ROOM if max(ups, default=0.0) > 0.0 else 0.0
+        drawn = sum(p.width for p in pieces)
+        scale = drawn / sum(p.extent for p in pieces)
+        radius = max(radius, 0.5 * scale * around)
+        axis = 8.0 + lines * TEXT_LINE_HEIGHT * (max(tops) + 1) + 12.0 + above + radius
+        return _Layout(
+            pieces[0].x, scale, drawn / scale, radius, tops, lines, axis, axis + radius + below
+        )
+
 
 def draw_pin(
     shape: PinShape,
@@ -49,66 +114,122 @@ def draw_pin(
     zones: list[ShownZone] | None = None,
     width: float = DRAWING_WIDTH,
     places: list[PlaceMark] | None = None,
+    along: StressAlong | None = None,
+    lugs: Sequence[LugOutline] = (),
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
     zones: one per circle. places: of the stress of rows.
     width: of the drawing, in pixels; letters have the size 11.
+    along: stress along the pin and loads, of the governing case.
+    lugs: that are drawn about it, in section.
     """
-    pieces = _pieces(shape, width)
+    around = max((lug.outer_diameter for lug in lugs), default=0.0)
+    pieces = _pieces(shape, units, width, along, around)
     if not pieces:
         return ""
-    tops = rows([p.middle for p in pieces], [_text_width(p) for p in pieces])
+    at = _Layout.of(pieces, along, around)
+    marks = ZoneMarks(zones or [], places or [], (at.left, at.scale, at.radius), width)
+    top = at.foot + marks.height
+    panel = None
+    if along is not None and along.drawn:
+        panel = StressPanel(along, (at.left, at.scale, at.length), top)
+        top = panel.foot
+    chain = top + 19.0
     feet = rows([p.middle for p in pieces], [wide(p.length) for p in pieces])
-    radius = max(p.radius for p in pieces)
-    axis = 8.0 + 2.0 * TEXT_LINE_HEIGHT * (max(tops) + 1) + 12.0 + radius
-    left, right = pieces[0].x, pieces[-1].x + pieces[-1].width
-    scale = (right - left) / sum(s[0] for s in shape.segments)
-    marks = ZoneMarks(zones or [], places or [], (left, scale, radius), width)
-    chain = axis + radius + marks.height + 24.0
-    overall = chain + TEXT_LINE_HEIGHT * (max(feet) + 1) + 22.0
+    overall = chain + TEXT_LINE_HEIGHT * (max(feet) + 1) + 12.0
     height = overall + 12.0 + TEXT_LINE_HEIGHT * len(shape.cuts)
+    total = f"{short(at.length)} {units.length}"
     parts = [
         f'<svg class="pin" viewBox="0 0 {width:.0f} {height:.0f}" role="img" '
         f'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
-        f"<title>{escape(f'Profile of pin {shape.pin}')}</title>",
-        '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
-        'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
-        f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}</defs>',
+        f"<title>{escape(_title(shape, along))}</title>{PATTERNS}",
+        *(part for lug in lugs for part in _lug(lug, pieces, at)),
+        *_body(shape, pieces, at, marks),
+        *([] if along is None else _loads(along, pieces, at)),
+        *([] if along is None else triad(8.0, overall + 2.0, along.angle)),
+        *([] if panel is None else _guides(pieces, at, chain) + panel.draw(units.stress)),
+        *(_dimension(p.x, p.x + p.width, chain, chain - 19.0) for p in pieces),
+        *(
+            text(p.middle, chain + TEXT_LINE_HEIGHT * (feet[i] + 1) - 3.0, p.length)
+            for i, p in enumerate(pieces)
+        ),
+        _dimension(at.left, at.right, overall, chain),
+        text(0.5 * (at.left + at.right), overall + 3.0, total),
+        *marks.draw(at.axis, at.foot),
+        *(
+            text(0.5 * width, overall + 8.0 + TEXT_LINE_HEIGHT * i, words(cut))
+            for i, cut in enumerate(shape.cuts, 1)
+        ),
+        "</svg>",
     ]
-    parts += [_section(p, axis) for p in pieces]
-    parts += [
-        part for p in pieces for wall in _walls(p, axis) for part in marks.stripes(axis, wall)
-    ]
-    parts += [draw_cut(cut, left, axis, scale) for cut in shape.cuts]
-    parts += [_solid(left + scale * z0, left + scale * z1, axis, pieces) for z0, z1 in shape.solids]
-    parts.append(line(left - 14, axis, right + 14, axis, 'stroke-dasharray="12 3 2 3"'))
-    parts += [_leader(p, axis, tops[i]) for i, p in enumerate(pieces)]
-    parts += [_label(p, tops[i]) for i, p in enumerate(pieces)]
-    parts += [_dimension(p.x, p.x + p.width, chain, chain - 24.0) for p in pieces]
-    parts += [
-        text(p.middle, chain + TEXT_LINE_HEIGHT * (feet[i] + 1) - 3.0, p.length)
-        for i, p in enumerate(pieces)
-    ]
-    parts.append(_dimension(left, right, overall, chain))
-    total = f"{short(sum(s[0] for s in shape.segments))} {units.length}"
-    parts.append(text(0.5 * (left + right), overall + 3.0, total))
-    parts += marks.draw(axis, axis + radius)
-    parts += [
-        text(0.5 * width, overall + 8.0 + TEXT_LINE_HEIGHT * i, words(cut))
-        for i, cut in enumerate(shape.cuts, 1)
-    ]
-    return "".join(parts) + "</svg>"
+    return "".join(parts)
 
 
-def _pieces(shape: PinShape, across: float) -> list[_Piece]:
+def _title(shape: PinShape, along: StressAlong | None) -> str:
+    if along is None:
+        return f"Profile of pin {shape.pin}"
+    return f"Profile of pin {shape.pin}, with its loads and the stress along it in {along.case}"
+
+
+def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) -> list[str]:
+    """Return the section with its cuts, excluded zones, axis and labels."""
+    axis = at.axis
+    return [
+        *(_section(p, axis) for p in pieces),
+        *(part for p in pieces for wall in _walls(p, axis) for part in marks.stripes(axis, wall)),
+        *(draw_cut(cut, at.left, axis, at.scale) for cut in shape.cuts),
+        *(
+            _solid(at.left + at.scale * z0, at.left + at.scale * z1, axis, pieces)
+            for z0, z1 in shape.solids
+        ),
+        line(at.left - 14, axis, at.right + 14, axis, 'stroke-dasharray="12 3 2 3"'),
+        *(_leader(p, at, row) for p, row in zip(pieces, at.tops, strict=True)),
+        *(_label(p, at, row) for p, row in zip(pieces, at.tops, strict=True)),
+    ]
+
+
+def _lug(lug: LugOutline, pieces: list[_Piece], at: _Layout) -> Iterator[str]:
+    """Yield the section of a lug above and below the pin."""
+    left, right = (at.left + at.scale * z for z in lug.z)
+    inner = max((p.radius for p in pieces if p.x < right and left < p.x + p.width), default=0.0)
+    wall = 0.5 * at.scale * lug.outer_diameter - inner
+    for y in (at.axis - inner - wall, at.axis + inner):
+        yield (
+            f'<rect class="lug" x="{left:.2f}" y="{y:.2f}" width="{right - left:.2f}" '
+            f'height="{max(wall, 0.0):.2f}" fill="{LUG_COLOUR}" stroke="{INK_COLOUR}" '
+            'stroke-width="0.8"/>'
+        )
+
+
+def _loads(along: StressAlong, pieces: list[_Piece], at: _Layout) -> list[str]:
+    """Return the arrow of every force."""
+    largest = max((load.size for load in along.loads), default=0.0)
+    parts = []
+    for load in along.loads:
+        x = at.left + at.scale * load.z
+        radius = max((p.radius for p in pieces if p.x <= x <= p.x + p.width), default=at.radius)
+        parts += arrow(load, x, at.axis, radius, largest)
+    return parts
+
+
+def _guides(pieces: list[_Piece], at: _Layout, foot: float) -> list[str]:
+    """Return faint lines from the ends of the segments down to the chain of dimensions."""
+    ends = dict.fromkeys([p.x for p in pieces] + [at.right])
+    lines = "".join(f"M{x:.2f},{at.axis + at.radius:.2f}V{foot - 17.0:.2f}" for x in ends)
+    return [f'<path d="{lines}" stroke="{INK_COLOUR}" stroke-width="0.8" opacity="0.18"/>']
+
+
+def _pieces(
+    shape: PinShape, units: Units, across: float, along: StressAlong | None, around: float = 0.0
+) -> list[_Piece]:
     length = sum(s[0] for s in shape.segments)
     widths = [s[1] for s in shape.segments] + [diameter for diameter, _ in shape.far_ends]
-    widest = max(widths, default=0.0)
+    widest = max([*widths, around * LUG_HEIGHT_SHARE], default=0.0)
     if length <= 0.0 or widest <= 0.0:
         return []
     scale = min((across - 2 * DRAWING_MARGIN) / length, MAX_HEIGHT_RATIO * across / widest)
-    x = 0.5 * (across - scale * length)
+    start = x = 0.5 * (across - scale * length)
     pieces = []
     near_ends = [(diameter, bore) for _, diameter, bore, _, _ in shape.segments]
     far_ends = shape.far_ends or near_ends
@@ -118,9 +239,17 @@ def _pieces(shape: PinShape, across: float) -> list[_Piece]:
         diameters, bores = (near[0], far[0]), (near[1], far[1])
         size = f"⌀{_from_to(diameters)}" + (f" / {_from_to(bores)}" if any(bores) else "")
         radii, holes = ((scale * a / 2, scale * b / 2) for a, b in (diameters, bores))
-        pieces.append(_Piece(x, scale * long, radii, holes, label, size, short(long), kind))
+        force = _force(along, units, (x - start) / scale, (x - start) / scale + long)
+        words = (label, size, short(long), kind, force)
+        pieces.append(_Piece(x, scale * long, long, radii, holes, *words))
         x += scale * long
     return pieces
+
+
+def _force(along: StressAlong | None, units: Units, start: float, end: float) -> str:
+    """Return the size of the forces on a segment between two z; empty without any."""
+    forces = [x.size for x in along.loads if start < x.z < end] if along else []
+    return ", ".join(f"{engineering(size)} {units.force}" for size in forces if size > 0.0)
 
 
 def _from_to(ends: tuple[float, float]) -> str:
@@ -168,27 +297,25 @@ def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:
     )
 
 
-def _leader(piece: _Piece, axis: float, row: int) -> str:
-    foot = 8.0 + 2.0 * TEXT_LINE_HEIGHT * (row + 1)
-    return line(piece.middle, foot, piece.middle, axis - piece.radius, 'opacity="0.5"')
+def _leader(piece: _Piece, at: _Layout, row: int) -> str:
+    foot = 8.0 + at.row_height * (row + 1)
+    return line(piece.middle, foot, piece.middle, at.axis - piece.radius, 'opacity="0.3"')
 
 
-def _label(piece: _Piece, row: int) -> str:
-    y = 8.0 + 2.0 * TEXT_LINE_HEIGHT * row + 11.0
-    return text(piece.middle, y, piece.label, halo=True) + text(
-        piece.middle, y + TEXT_LINE_HEIGHT - 1.0, piece.size, halo=True
+def _label(piece: _Piece, at: _Layout, row: int) -> str:
+    y = 8.0 + at.row_height * row + 11.0
+    return "".join(
+        text(piece.middle, y + (TEXT_LINE_HEIGHT - 1.0) * k, part, halo=True)
+        for k, part in enumerate(piece.words)
+        if part
     )
 
 
 def _dimension(left: float, right: float, y: float, from_y: float) -> str:
     """Return a dimension line with ticks and extension lines."""
-    ends = (left, right)
-    ticks = [line(x - 3, y - TEXT_LINE_HEIGHT + 5, x + 3, y - TEXT_LINE_HEIGHT - 1) for x in ends]
-    leads = [line(x, from_y + 2, x, y - TEXT_LINE_HEIGHT + 5, 'opacity="0.4"') for x in ends]
-    return line(left, y - TEXT_LINE_HEIGHT + 2, right, y - TEXT_LINE_HEIGHT + 2) + "".join(
-        ticks + leads
-    )
-
-
-def _text_width(piece: _Piece) -> float:
-    return max(wide(piece.label), wide(piece.size))
+    foot = y - TEXT_LINE_HEIGHT
+    ticks = "".join(f"M{x - 3:.2f},{foot + 5:.2f}l6,-6" for x in (left, right))
+    leads = "".join(f"M{x:.2f},{from_y + 2:.2f}V{foot + 5:.2f}" for x in (left, right))
+    drawn = f"M{left:.2f},{foot + 2:.2f}H{right:.2f}{ticks}"
+    stroke = f'stroke="{INK_COLOUR}" stroke-width="0.8"'
+    return f'<path d="{drawn}" {stroke}/><path d="{leads}" {stroke} opacity="0.4"/>'

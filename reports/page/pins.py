@@ -4,30 +4,36 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from reports.data.decision import worst_first
+from reports.data.governing import governing
 from reports.data.results import PinResult, Results
-from reports.format.numbers import ratio
+from reports.format.numbers import engineering, ratio
+from reports.format.ranges import error_range, factor_range
 from reports.page.joint import JointPart, joint_part
 from reports.page.loads import loads_at
 from reports.page.places import PlacesPart, places_part
 from reports.page.second_opinion import OpinionPart, opinion_part
+from reports.page.stress_along import governing_rows
 from reports.page.viewer import PinView, pin_views
-from reports.tables.column import Grid, grid_of
+from reports.tables.column import Column, Grid, Table, grid_of, read_only
 from reports.tables.strength.hand_checks import pin_checks
 from reports.tables.strength.margins import pin_margins
 from reports.tables.stress.singular_zones import pin_zones, shown_zones
-from reports.text.pin_sentence import drawing_caption, pin_sentence
+from reports.text.pin_sentence import material_words, pin_sentence
 
 
 @dataclass(frozen=True)
 class PinCase:
     """A pin in one case on the page.
 
+    governs: whether it is the worst case of the pin, or of one of its checks.
     checks: hand checks. margins: of safety. places: where stress is read. joint: contact with lugs.
     opinion: of CalculiX. ratio: computed maximum over the published one.
     """
 
     result: PinResult
     outcome: str
+    governs: bool
     sentence: str
     zones: Grid | None
     checks: Grid | None
@@ -43,13 +49,18 @@ class PinCase:
 class PinPart:
     """One pin on the page.
 
-    anchor: on the page. drawing, caption: of the pin. moving: cases with a motion. views: in 3D.
+    anchor: on the page. outcome: of its worst case. material: in words. drawing: of the pin.
+    table: a line for every case, the worst first; outcomes: of its lines.
+    cases: the worst first. moving: cases with a motion. views: in 3D.
     """
 
     pin: str
     anchor: str
-    caption: str
+    outcome: str
+    material: str
     drawing: str
+    table: Grid | None
+    outcomes: tuple[str, ...]
     cases: tuple[PinCase, ...]
     moving: tuple[str, ...]
     views: list[PinView]
@@ -59,36 +70,83 @@ def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
     """Return the pins in the order of the results, then those that were not solved."""
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
-    zones = {name: pin_zones(results, name) for name in names}
     return [
-        PinPart(
-            pin=name,
-            anchor=f"pin-{number}",
-            caption=drawing_caption(shapes[name], results.units, any(zones[name].values()))
-            if name in shapes
-            else "",
-            drawing=drawings.get(name, ""),
-            cases=tuple(
-                PinCase(
-                    p,
-                    p.outcome,
-                    pin_sentence(p, results.units),
-                    grid_of(shown_zones(p, zones[name][p.case], results.units), results.units),
-                    pin_checks(p, results.units).grid(results.units) if p.hand_checks else None,
-                    grid_of(pin_margins(results, p), results.units),
-                    loads_at(p, results.units),
-                    places_part(p, results.units),
-                    joint_part(p, results.units),
-                    opinion_part(p.second_opinion, results.units),
-                    ratio(p.max_von_mises, p.published_max_von_mises),
-                )
-                for p in results.pins
-                if p.pin == name
-            ),
-            moving=tuple(
-                t.case for t in results.reactions if t.times is not None and name in t.pins
-            ),
-            views=pin_views(results, name),
-        )
+        _pin(results, name, f"pin-{number}", drawings.get(name, ""))
         for number, name in enumerate(names, start=1)
     ]
+
+
+def _pin(results: Results, name: str, anchor: str, drawing: str) -> PinPart:
+    shape = next((s for s in results.shapes if s.pin == name), None)
+    rows = [row for row in worst_first(results) if row.pin == name]
+    governs = governing_names(results, name)
+    return PinPart(
+        pin=name,
+        anchor=anchor,
+        outcome=rows[0].outcome if rows else "",
+        material="" if shape is None else material_words(shape, results.units),
+        drawing=drawing,
+        table=grid_of(Table("cases", CASE_COLUMNS, rows), results.units),
+        outcomes=tuple(row.outcome for row in rows),
+        cases=tuple(_case(results, row, row.case in governs) for row in rows),
+        moving=tuple(t.case for t in results.reactions if t.times is not None and name in t.pins),
+        views=pin_views(results, name),
+    )
+
+
+def _case(results: Results, row: PinResult, governs: bool) -> PinCase:
+    units, zones = results.units, pin_zones(results, row.pin)
+    return PinCase(
+        row,
+        row.outcome,
+        governs,
+        pin_sentence(row, units),
+        grid_of(shown_zones(row, zones[row.case], units), units),
+        pin_checks(row, units).grid(units) if row.hand_checks else None,
+        grid_of(pin_margins(results, row), units),
+        loads_at(row, units),
+        places_part(row, units),
+        joint_part(row, units),
+        opinion_part(row.second_opinion, units),
+        ratio(row.max_von_mises, row.published_max_von_mises),
+    )
+
+
+def governing_names(results: Results, pin: str) -> set[str]:
+    """Return the cases that govern a pin: by its stress, and by another check."""
+    rows = governing_rows(results)
+    by_check = [margin.case for margin in governing(results) if margin.pin == pin]
+    return {*([rows[pin].case] if pin in rows else []), *by_check[:1]}
+
+
+def _error(row: PinResult) -> str:
+    """Return the error in per cent, or the interval of a singular row."""
+    if row.max_von_mises_interval is not None or not row.max_von_mises:
+        return error_range(row, "–")
+    return f"{engineering(100.0 * (row.error_estimate or 0.0) / row.max_von_mises, 2)} %"
+
+
+def _time(row: PinResult) -> str:
+    return engineering(row.time)
+
+
+def _place(row: PinResult) -> str | None:
+    return row.places.governs if row.places else None
+
+
+CASE_COLUMNS: list[Column[PinResult]] = [
+    read_only("case", lambda row: row.case, numeric=False),
+    read_only("factor", lambda row: factor_range(row, "–")),
+    read_only("stress", lambda row: row.max_von_mises, "stress"),
+    read_only("±", _error),
+    read_only("place", _place, numeric=False, drop_if_empty=True),
+    read_only("z", lambda row: row.location and row.location[2], "length", drop_if_empty=True),
+    Column(
+        "",
+        lambda row: row.time,
+        "time",
+        "time",
+        lambda row: engineering(row.time),
+        drop_if_empty=True,
+    ),
+]

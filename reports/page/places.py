@@ -13,8 +13,9 @@ from reports.tables.stress.places import PlaceRow, place_rows
 
 MIN_RELATIVE_DISTANCE = 1e-6  # of the place of the largest stress: no distance is smaller
 PLACE_NAMES = {"beneath": "beneath contact"}
+SECTION_NOTE = "The row's stress is the larger of surface and section."
 PLACES_NOTE = (
-    "The row's stress is the larger of surface and section. Beneath contact: the largest von Mises "
+    f"{SECTION_NOTE} Beneath contact: the largest von Mises "
     f"stress of the pin, inside or on its surface, farther than {BENEATH_DISTANCE:g} diameters "
     f"from where "
     "lugs press on it; the pin is safe only if that meets the required factor, too."
@@ -35,10 +36,8 @@ class PlacesPart:
     """
 
     grid: Grid
-    introduction: str
     notes: tuple[str, ...]
     edges: Grid | None
-    on_edges: str = CONTACT_EDGES_NOTE
 
 
 def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
@@ -49,10 +48,8 @@ def places_part(pin: PinResult, units: Units) -> PlacesPart | None:
     section, contact = places.section, places.contact
     notes = (_acting(section, units), _reach(pin, contact, units))
     size = max(abs(x) for x in places.surface.location)
-    first, _, _ = PLACES_NOTE.partition(". ")
     return PlacesPart(
         _grid(pin, units),
-        PLACES_NOTE if contact else f"{first}.",
         tuple(note for note in notes if note),
         _edges(contact.edges, units, MIN_RELATIVE_DISTANCE * size)
         if contact and contact.edges

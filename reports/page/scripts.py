@@ -69,7 +69,12 @@ def document_of(page: str) -> dict[str, Any] | None:
     content: dict[str, Any] | None = _read(page, "paper")
     if content is None:
         return None
-    for k, pin in enumerate(validated(_Paper, content, f"{REPORT_PAGE}, paper").pins):
+    checked = validated(_Paper, content, f"{REPORT_PAGE}, paper")
+    if checked.overview and checked.overview.linkage:
+        require_self_contained(
+            checked.overview.linkage, f"{REPORT_PAGE} is damaged: its drawing of the linkage"
+        )
+    for k, pin in enumerate(checked.pins):
         require_self_contained(pin.drawing, f"{REPORT_PAGE} is damaged: its drawing of pin {k + 1}")
     return content
 
@@ -116,8 +121,15 @@ class _Pin(JsonPart):
     cases: list[_Case]
 
 
+class _Overview(JsonPart):
+    """The part of the first screen that typst reads as a picture."""
+
+    linkage: str | None = None
+
+
 class _Paper(JsonPart):
     """The part of the PDF's content that is checked before typst reads all of it."""
 
     block: _Block
     pins: list[_Pin]
+    overview: _Overview | None = None

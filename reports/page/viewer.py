@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
+from reports.data.decision import common_factor
 from reports.data.results import Floats, PinResult, PinShape, Results
 from reports.data.surface import SURFACE_SECTORS, HalfSection, LoadCourse, Surface, SurfaceCase
 from reports.format.drawing.camera import View
@@ -69,7 +70,7 @@ def pin_views(results: Results, pin: str) -> list[PinView]:
     data = {
         "units": vars(results.units),
         "strength": surfaces[0].yield_strength,
-        "required": results.required_safety_factor,
+        "required": common_factor(results_by_case.values()),
         "surfaces": [_surface(s) for s in surfaces],
         "cases": [
             _case(c, results_by_case[c.case], k, s) | _row(results_by_case[c.case], results)

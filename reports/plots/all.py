@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from reports.data.decision import common_factor
 from reports.data.results import PinResult, ReactionTable, Results
 from reports.plots.loads.drive import drive_plot
 from reports.plots.loads.drop import drop_plots
@@ -57,7 +58,8 @@ def _pins(results: Results) -> Iterator[Plot]:
         yield from beam_plots(results.beam_check, units)
     for case in dict.fromkeys(r.case for r in results.landing):
         members = [r for r in results.landing if r.case == case]
-        plot = landing_plot(case, members, results.required_safety_factor, units)
+        required = common_factor(pin for pin in results.pins if pin.case == case)
+        plot = landing_plot(case, members, required, units)
         if plot is not None:
             yield plot
     for case in dict.fromkeys(pin.case for pin in results.pins):

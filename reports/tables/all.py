@@ -24,6 +24,7 @@ from reports.tables.strength.hand_checks import hand_checks_table
 from reports.tables.strength.landing import landing_table
 from reports.tables.strength.limit_load import limit_load_table
 from reports.tables.strength.margins import arms_table, margins_table
+from reports.tables.strength.requirements import requirements_table
 from reports.tables.strength.safety_factors import safety_factors_table
 from reports.tables.strength.sensitivities import sensitivities_table
 from reports.tables.stress.calculix import opinion_tables
@@ -57,6 +58,7 @@ def stress_tables(results: Results) -> list[Table[Any]]:
     check = results.beam_check
     rest: list[Table[Any]] = [
         envelope_table(results),
+        requirements_table(results),
         margins_table(results),
         arms_table(results),
         hand_checks_table(results),

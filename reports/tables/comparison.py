@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from reports.data.comparison import NOT_SOLVED, UNCHANGED, RowPair, RunComparison, Side, ValuePair
-from reports.format.numbers import DASH, engineering
+from reports.data.requirement_pairs import REQUIREMENT_CHANGES, RequirementPair
+from reports.data.requirements import RequirementRow
+from reports.format.numbers import DASH, engineering, short
+from reports.format.ranges import factor_text
 from reports.tables.column import Column, Table, read_only, texts
 
 MAX_SHOWN_FORCES = 30  # forces shown
@@ -28,6 +31,27 @@ def rows_table(comparison: RunComparison) -> Table[RowPair]:
         read_only("change is", lambda row: row.kind, numeric=False),
     ]
     return Table("rows", columns, changed_rows(comparison))
+
+
+def requirements_table(comparison: RunComparison) -> Table[RequirementPair]:
+    """Return the requirements that changed, those that were lost first."""
+
+    def both(text: Callable[[RequirementRow], str]) -> Callable[[RequirementPair], str]:
+        return lambda x: _from_to(*(DASH if s is None else text(s) for s in (x.first, x.second)))
+
+    columns: list[Column[RequirementPair]] = [
+        read_only("pin", lambda pair: pair.row.pin, numeric=False),
+        read_only("case", lambda pair: pair.row.case or DASH, numeric=False),
+        read_only("requirement", lambda pair: pair.row.title, numeric=False),
+        read_only("required A → B", both(lambda row: short(row.required))),
+        read_only(
+            "reached A → B", both(lambda row: factor_text(row.reached, row.required)), rank=1
+        ),
+        read_only("outcome A → B", both(lambda row: row.outcome), numeric=False),
+        read_only("change", lambda pair: pair.change, numeric=False),
+    ]
+    changes = [x for x in REQUIREMENT_CHANGES if x != UNCHANGED]
+    return Table("requirements", columns, comparison.requirements_that(*changes))
 
 
 def _sides(row: RowPair) -> tuple[Side | None, Side | None]:

@@ -23,6 +23,7 @@ from reports.tables.column import Column, Table, fields, json_of
 from reports.tables.strength.fatigue import fatigue_json
 from reports.tables.strength.limit_load import limit_load_json
 from reports.tables.strength.margins import margins_table
+from reports.tables.strength.requirements import requirements_table
 from reports.tables.strength.safety_factors import FactorRow, safety_factors_table
 from reports.tables.strength.sensitivities import sensitivities_json
 from reports.tables.stress.calculix import opinion_json
@@ -81,6 +82,7 @@ def to_json(results: Results) -> dict[str, Any]:
         "versions": {name: results.versions[name] for name in sorted(results.versions)},
         "headline": _headline(results),
         "pins": [_pin(row, factors) for row in factors.rows],
+        "requirements": requirements_table(results).records(),
         "margins": margins_table(results).records(),
         "changes": [asdict(change) for change in results.changes],
         "sensitivities": sensitivities_json(results),

@@ -8,6 +8,7 @@
     centres: all("[data-centre]"), arrows: all("[data-arrow]"), rows: all("[data-row]"),
     curves: all("[data-curve]"), strips: all("[data-strip]"), cursors: all(".cursor"),
     positions: all("[data-position]"), forces: all("output[data-force]"),
+    applied: all("[data-applied]"), sizes: all("[data-size-of]"),
     names: all("[data-between]"), pitch: all("[data-pitch]"),
   };
   const time = data.time, last = time.length - 1, span = time[last] - time[0];
@@ -107,6 +108,18 @@
       cells[2].textContent = written(fx, data.fixed.force);
       cells[3].textContent = written(fy, data.fixed.force);
       cells[4].textContent = written(force, data.fixed.force);
+    });
+    data.applied.forEach((a, n) => {
+      // It ends just before its point; its size is written beyond its tail.
+      const x = at(a.xy, f, 2, 0), y = at(a.xy, f, 2, 1), fx = at(a.fx, f), fy = at(a.fy, f);
+      const force = Math.hypot(fx, fy), long = length(force), back = long + data.arrow.gap, size = parts.sizes[n];
+      const [u, v] = force > 0 ? [fx / force, -fy / force] : [0, 0];
+      const angle = (Math.atan2(v, u) * 180) / Math.PI;
+      parts.applied[n].setAttribute("transform", `${place(x - back * u, y - back * v)} rotate(${angle.toFixed(2)})`);
+      stretch(parts.applied[n], long);
+      size.setAttribute("transform", place(x - (back + 12) * u, y - (back + 12) * v + 4));
+      size.style.textAnchor = u > 0.4 ? "end" : u < -0.4 ? "start" : "middle";
+      size.textContent = force > 0 ? `${written(force, data.fixed.force)} ${data.fixed.force.unit}` : "";
     });
     data.drives.forEach((d, n) => {
       if (!parts.positions[n]) return;

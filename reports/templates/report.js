@@ -80,10 +80,32 @@ folds.forEach((part) => part.addEventListener("toggle", () => {
   if (part.open) fill(part);
   named();
 }));
+// A pin takes the whole width while a part of it is open: what was clicked stays where it was.
+for (const part of document.querySelectorAll(".pins details.fold")) {
+  part.querySelector("summary").addEventListener("click", () => {
+    const { top } = part.getBoundingClientRect();
+    requestAnimationFrame(() => scrollBy(0, part.getBoundingClientRect().top - top));
+  });
+}
 addEventListener("hashchange", reveal);
 document.querySelector(".tools").hidden = false;
 named();
 reveal();
+
+// A table that is wider than its place scrolls by keyboard, too.
+const sized = new ResizeObserver((seen) => {
+  for (const { target } of seen) {
+    if (target.scrollWidth <= target.clientWidth) {
+      for (const name of ["tabindex", "role", "aria-label"]) target.removeAttribute(name);
+      continue;
+    }
+    const heading = target.closest("details, section")?.querySelector("h2, h3, summary");
+    target.tabIndex = 0;
+    target.setAttribute("role", "region");
+    target.setAttribute("aria-label", `Table: ${heading?.textContent.trim() ?? ""}`);
+  }
+});
+start((root) => root.querySelectorAll(".wide:not([tabindex])").forEach((box) => sized.observe(box)));
 
 const shade = document.getElementById("shade");
 const dark = () => (document.documentElement.style.colorScheme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";

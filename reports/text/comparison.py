@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from reports.data.comparison import CHANGE_KINDS, UNCHANGED, RunComparison
+from reports.data.requirement_pairs import GONE, LOST, LOWERED, NEWLY_MET
 from reports.format.files import markdown
+from reports.format.ranges import factor_text
 from reports.tables.column import Table
 from reports.tables.comparison import (
     forces_table,
@@ -15,6 +17,7 @@ from reports.tables.comparison import (
     left_out,
     margins_table,
     per_cent,
+    requirements_table,
     rows_table,
     versions_table,
 )
@@ -29,7 +32,74 @@ COMPARISON_NOTE = (
     "change within the errors may still be real."
 )
 NO_INPUTS_NOTE = "One of the runs is of an earlier version, which did not keep the inputs."
+NO_REQUIREMENTS_NOTE = "One of the runs is of an earlier version, which lists no requirements."
+MAX_NAMED_PINS = 6  # in a sentence
+NUMBER_WORDS = (
+    *("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
+)
 SAME_INPUTS_NOTE = "The inputs are the same."
+
+
+def review(comparison: RunComparison) -> str:
+    """Return what a review would say: how the lowest factor of each pin changed, and which
+    requirements are met or lost.
+
+    Example: "Pin E: 1.21 to 1.54; two requirements newly met, none lost."
+    """
+    changes = _factor_changes(comparison)
+    shown = changes[:MAX_NAMED_PINS]
+    shown += [f"{len(changes) - len(shown)} more pins"] * (len(changes) > len(shown))
+    factors = ", ".join(shown) or "no factor of a pin changed"
+    parts = [factors, _requirement_changes(comparison)]
+    text = "; ".join(part for part in parts if part)
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _factor_changes(comparison: RunComparison) -> list[str]:
+    """Return the pins whose lowest factor changed, in words."""
+    factors: dict[str, tuple[list[float], list[float]]] = {}
+    runs: dict[str, set[int]] = {}
+    for row in comparison.rows:
+        known = factors.setdefault(row.pin, ([], []))
+        for k, side in enumerate((row.first, row.second)):
+            if side is not None:
+                runs.setdefault(row.pin, set()).add(k)
+                known[k].extend([] if side.factor is None else [side.factor])
+    words = []
+    for pin in sorted(factors):
+        if len(runs[pin]) == 1:
+            words.append(f"pin {pin} {'is gone' if 0 in runs[pin] else 'is new'}")
+            continue
+        first, second = (min(side, default=None) for side in factors[pin])
+        before, after = (_factor(x, y) for x, y in ((first, second), (second, first)))
+        if before != after:
+            words.append(f"pin {pin}: {before} to {after}")
+    return words
+
+
+def _factor(factor: float | None, other: float | None) -> str:
+    return "none" if factor is None else factor_text(factor, other or 0.0)
+
+
+def _requirement_changes(comparison: RunComparison) -> str:
+    """Return the numbers of requirements that were met or lost, in words."""
+    if comparison.requirements is None:
+        return ""
+    counts = {
+        change: len(comparison.requirements_that(change))
+        for change in (NEWLY_MET, LOST, GONE, LOWERED)
+    }
+    many = "s" * (counts[NEWLY_MET] != 1)
+    words = [f"{_number(counts[NEWLY_MET])} requirement{many} newly met"]
+    words += [f"{_number(counts[LOST])} lost" if counts[LOST] else "none lost"]
+    words += [f"{_number(counts[GONE])} gone"] * bool(counts[GONE])
+    lowered = counts[LOWERED]
+    words += [f"{_number(lowered)} asking for less"] * bool(lowered)
+    return ", ".join(words)
+
+
+def _number(count: int) -> str:
+    return NUMBER_WORDS[count] if count < len(NUMBER_WORDS) else f"{count:,}"
 
 
 def headline(comparison: RunComparison) -> str:
@@ -53,6 +123,8 @@ def sections(comparison: RunComparison) -> Iterator[tuple[str, Table[Any], str]]
     if comparison.inputs is None:
         remark = NO_INPUTS_NOTE
     yield "Inputs that differ", inputs_table(comparison), remark
+    without = "" if comparison.requirements is not None else NO_REQUIREMENTS_NOTE
+    yield "Requirements that changed", requirements_table(comparison), without
     yield "Safety factors", rows_table(comparison), COMPARISON_NOTE
     yield "Margins of safety that differ", margins_table(comparison), ""
     yield "Forces that differ", forces_table(comparison), left_out(comparison)
@@ -63,6 +135,7 @@ def print_comparison(comparison: RunComparison, console: Console) -> None:
     """Print the differences, the inputs first."""
     from rich.text import Text
 
+    console.print(Text(review(comparison), "bold"))
     for letter, folder, title in zip("AB", comparison.folders, comparison.titles, strict=True):
         console.print(Text(f"{letter}: {folder}, {title}"))
     for title, table, remark in sections(comparison):
@@ -79,7 +152,7 @@ def write_markdown(comparison: RunComparison, path: Path) -> None:
     parts = ["# Two runs compared"]
     for letter, folder, title in zip("AB", comparison.folders, comparison.titles, strict=True):
         parts.append(f"{letter}: {markdown.escaped(folder)}, {markdown.escaped(title)}")
-    parts.append(headline(comparison))
+    parts += [markdown.escaped(review(comparison)), headline(comparison)]
     for title, table, remark in sections(comparison):
         if table.rows or remark:
             parts.append(f"## {title}")

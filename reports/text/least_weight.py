@@ -18,7 +18,7 @@ RESIDUAL_ROUND_OFF = 1e-6  # a residual that is round-off
 
 @dataclass(frozen=True)
 class ChangedDimension:
-    """A changed dimension: its key in the pin's table, its value before and after."""
+    """A changed dimension: its key in the study, its value before and after."""
 
     key: str
     before: float
@@ -138,7 +138,7 @@ def _details(rows: Sequence[LightRow], length: str) -> Iterator[str]:
     for row in rows:
         if row.dimensions:
             entries = (f"{d.key} {short(d.before)} → {short(d.after)}" for d in row.dimensions)
-            yield f"Pin {row.pin} [{length}]: {', '.join(entries)}."
+            yield f"Changed [{length}]: {', '.join(entries)}."
         if row.binding:
             entries = (f"{text} ({multiplier:.2g})" for text, multiplier in row.binding)
             yield f"  binding, with multipliers: {'; '.join(entries)}."

@@ -49,10 +49,19 @@ def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
     )
     solids = " Dashed green boxes: local solids about cuts."
     cuts = " Cuts in the view with x upwards, from which their angles count; dashed: hidden edges."
-    weight = "" if shape.weight is None else f", weight {engineering(shape.weight)} {units.force}"
+    stress = (
+        " Arrows and curves: forces of the links, and stress along the pin, in its worst case; "
+        "dotted: the stress that the required factor permits."
+    )
     more = zones * zoned + cuts * bool(shape.cuts) + solids * bool(shape.solids)
     return (
         f"Profile, lengths and diameters (⌀ outer / bore) in {units.length}. Blue: bearing bands; "
         f"hatched: clamped; grey: free. Red dots: the surface's largest stress; a red line across: "
-        f"the section that governs instead.{more} Material {shape.material}{weight}."
+        f"the section that governs instead.{stress}{more} {material_words(shape, units)}."
     )
+
+
+def material_words(shape: PinShape, units: Units) -> str:
+    """Return the material and the weight of a pin."""
+    weight = "" if shape.weight is None else f", weight {engineering(shape.weight)} {units.force}"
+    return f"Material {shape.material}{weight}"

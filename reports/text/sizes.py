@@ -54,8 +54,13 @@ class SizeRow:
         return "not decided" if self.why else "safe"
 
 
-def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console: Console) -> None:
-    """Print a row per pin and the number of pins that reach the factor."""
+def print_sizes(
+    rows: Sequence[SizeRow], required: float | None, units: Units, console: Console
+) -> None:
+    """Print a row per pin and the number of pins that reach the factor.
+
+    required: None where it is not the same for all.
+    """
     from rich.text import Text
 
     tints = {"Result": ["yellow" if row.why else "green" for row in rows]}
@@ -63,10 +68,13 @@ def print_sizes(rows: Sequence[SizeRow], required: float, units: Units, console:
     everywhere = sum(not row.why for row in rows)
     as_described = everywhere + sum(row.depends for row in rows)
     ranges = "" if as_described == everywhere else f" as described, {everywhere} over its ranges"
+    factor = "their required factors"
+    if required is not None:
+        factor = f"the safety factor {short(required)}"
     console.print(
         Text(
             f"{as_described} of {len(rows)} pin{'s' if len(rows) != 1 else ''} "
-            f"reach{'es' if len(rows) == 1 else ''} the safety factor {short(required)} in the "
+            f"reach{'es' if len(rows) == 1 else ''} {factor} in the "
             f"new study{ranges}. Lengths and the weights of links are unchanged; check that the "
             "links have room for the new diameters."
         )

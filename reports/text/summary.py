@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
+from reports.data.decision import common_factor, largest_factor
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
 from reports.format.numbers import short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
+ALL_CONVERGED = "All maxima have converged"
 MAX_LISTED_CASES = 4  # cases of a pin; of more, their number is given
 
 
@@ -18,17 +20,21 @@ def summary(results: Results) -> str:
     """Return sentences on pins that are safe, those that are not, and rows without a maximum."""
     if not results.pins:
         return "No pin was solved."
-    ways = (
-        _against_required, _depending, _without_range, _at_edges, _yielding, _negative, _unknown,
-    )  # fmt: skip
-    return " ".join(part for part in (way(results) for way in ways) if part)
+    decided = [_against_required(results), _depending(results)]
+    return " ".join(part for part in (*decided, *caveats(results)) if part)
+
+
+def caveats(results: Results) -> list[str]:
+    """Return sentences on what the maxima leave out, and on rows without one."""
+    ways = (_yielding, _unknown)
+    return [part for part in (way(results) for way in ways) if part] if results.pins else []
 
 
 def _against_required(results: Results) -> str:
     """Return a sentence on the outcome of every pin by the worst of its checks."""
-    required = results.required_safety_factor
+    required = common_factor(results.pins)
     worst = list(worst_checks(results).values())
-    good = SAFE if required is not None else BELOW_YIELD
+    good = BELOW_YIELD if largest_factor(results.pins) is None else SAFE
     safe = pins_with(worst, SAFE, BELOW_YIELD)
     factor = "" if required is None else f" (required factor {short(required)})"
     text = (
@@ -152,7 +158,7 @@ def _unknown(results: Results) -> str:
         text += f" {_of(decided, total)} {_is(decided)} decided with an error above {tolerance}."
     if unsolved:
         text += f" {_of(unsolved, total)} could not be solved."
-    return text.strip() or f"All maxima have converged to {short(100.0 * results.tolerance)} %."
+    return text.strip() or f"{ALL_CONVERGED} to {short(100.0 * results.tolerance)} %."
 
 
 def _count(number: int, noun: str) -> str:

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -57,6 +58,14 @@ def gear_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def shipped_loads(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of the excavator's loads, as the command writes it."""
+    study = STUDIES / "excavator.toml"
+    command = partial(run, study, command="loads")
+    return once(tmp_path_factory, "loads", lambda folder: command(folder / "out")) / "out"
+
+
+@pytest.fixture(scope="session")
 def odd_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a study whose names and texts are not to be taken for markup."""
     directory = tmp_path_factory.mktemp("odd")
@@ -102,10 +111,10 @@ def _quoted(text: str) -> str:
     return '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
 
 
-def run(study: Path, out: Path, *options: str) -> Path:
+def run(study: Path, out: Path, *options: str, command: str = "run") -> Path:
     """The folder of a study's run, as the command writes it."""
-    command = [sys.executable, "-m", "pinstress", "run", str(study), "--out", str(out), *options]
+    words = [sys.executable, "-m", "pinstress", command, str(study), "--out", str(out), *options]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    done = subprocess.run(words, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert done.returncode in (0, 1), done.stderr
     return out

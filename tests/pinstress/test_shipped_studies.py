@@ -30,6 +30,7 @@ NO_COUPLER = ("crane", "hood", "scissor_lift", "planetary")  # no moving link wi
         ("matrix_four_bar", "C", "converged"),
         ("slider_crank", "A", "converged"),
         ("clevis", "P", "converged"),
+        ("pin_in_lugs", "P", "converged"),
         ("fatigue", "P", "converged"),
         ("lifting_arm", "O", "converged"),
         ("kuleuven2014", "trunnion", "singular"),

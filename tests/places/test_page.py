@@ -21,6 +21,7 @@ from reports.page.drawing_places import place_marks
 from reports.page.joint import joint_part
 from reports.page.paper import document
 from reports.page.pin_drawing import draw_pin
+from reports.page.pins_reading import reading_parts
 from reports.page.places import places_part
 from reports.page.viewer import pin_views
 from tests.support.results.html_page import parse
@@ -116,10 +117,12 @@ def test_without_a_yield_strength_there_is_no_depth(results: Results) -> None:
 
 
 def test_prescribed_loads_have_no_contact(results: Results) -> None:
-    part = places_part(first(row(results, Places("surface", SURFACE, SECTION))), UNITS)
+    prescribed = row(results, Places("surface", SURFACE, SECTION))
+    part = places_part(first(prescribed), UNITS)
     assert part is not None
     assert [cells[0] for cells in part.grid.body] == ["surface", "section"]
-    assert "contact" not in part.introduction
+    assert "contact" not in reading_parts(prescribed)["Places"]
+    assert "contact" in reading_parts(row(results, BOTH))["Places"]
     assert places_part(first(row(results, Places("surface", SURFACE))), UNITS) is None
 
 

@@ -16,7 +16,7 @@ from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.changes import change
 from pinstress.analysis.results import run
 from pinstress.analysis.solve import solutions
-from pinstress.explore.size.counted import beneath, low_factor, surface_and_section
+from pinstress.explore.size.counted import beneath, surface_and_section
 from pinstress.explore.size.lightest_pin import WeightGoal, problem_of
 from pinstress.explore.size.pin_answers import design_stresses
 from pinstress.explore.size.pin_stress import PinStress
@@ -25,6 +25,7 @@ from pinstress.explore.size.size_pin import SizingGoal, size_pin
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.tasks import tasks
 from pinstress.study.reading.file import Study, parse_study
+from reports.data.decision import low_factor
 from reports.tables.strength.changes import change_notes
 from tests.conftest import ROOT
 

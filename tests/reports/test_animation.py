@@ -17,6 +17,7 @@ from reports.animation.frames import MAX_FRAMES, frames, nice
 from reports.animation.page import render_animation, write_animations
 from reports.animation.player_data import speeds
 from reports.animation.strip_chart import ticks
+from reports.data.mechanics import AppliedForce
 from reports.data.results import Results, Units
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.fixed_decimals import Fixed
@@ -106,6 +107,58 @@ def test_the_script_finds_an_element_for_every_number(moving: Results) -> None:
         assert [int(a[attribute]) for a in page.having(attribute)] == list(range(len(values)))
     ids = {attrs["id"] for attrs in page.having("id")}
     assert set(re.findall(r'one\("#(\w+)"\)', page.scripts[1])) <= ids
+
+
+@pytest.fixture(scope="module")
+def pushed(moving: Results) -> Results:
+    """The four-bar under a force on its second joint that grows and turns."""
+    motion = moving.motion[0]
+    count = len(motion.joint_position)
+    turn = np.linspace(0.0, 3.0, count)
+    force = (50.0 + 10.0 * turn)[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    load = AppliedForce(motion.bodies[0], motion.joint_position[:, 1], force)
+    return replace(moving, motion=(replace(motion, applied=(load,)),))
+
+
+def test_an_applied_load_ends_before_its_point_and_says_its_size(pushed: Results) -> None:
+    page = Reader(render(pushed))
+    (applied,) = page.data["applied"]
+    load = pushed.motion[0].applied[0]
+    assert applied["xy"] == page.data["xy"][1]
+    assert np.abs(np.array(applied["fx"]) - load.force[:, 0]).max() < 0.01
+    assert np.abs(np.array(applied["fy"]) - load.force[:, 1]).max() < 0.01
+    (arrow,) = page.having("data-applied")
+    x, y, angle = map(float, re.findall(r"-?[\d.]+", arrow["transform"]))
+    tag = [("data-applied" in a) for _, a in page.tags].index(True)
+    (length,) = re.findall(r"translate\(([\d.]+)\)", page.tags[tag + 2][1]["transform"])
+    reach = float(length) + page.data["arrow"]["gap"]
+    tip = x + reach * np.cos(np.radians(angle)), y + reach * np.sin(np.radians(angle))
+    assert tip == pytest.approx(applied["xy"][:2], abs=0.05)
+    scale = page.data["arrow"]["longest"] / page.data["arrow"]["largest"]
+    assert float(length) == pytest.approx(50.0 * scale, abs=0.01)
+    fixed = page.data["fixed"]["force"]
+    assert f"{50.0:.{fixed['decimals']}f} {fixed['unit']}" in page.text
+    assert 'data-show="applied"' in render(pushed)
+
+
+def test_all_of_an_applied_load_is_on_the_picture(pushed: Results) -> None:
+    """At every instant, with its size, also where arrows are square roots."""
+    page = Reader(render(pushed))
+    (applied,), arrow = page.data["applied"], page.data["arrow"]
+    at = np.array(applied["xy"]).reshape(-1, 2)
+    force = np.stack([applied["fx"], applied["fy"]], axis=1)
+    size = np.linalg.norm(force, axis=1, keepdims=True)
+    reach = arrow["gap"] + arrow["longest"] * np.sqrt(size / arrow["largest"]) + 12.0
+    tail = at - reach * force / size * np.array([1.0, -1.0])
+    width, height = map(float, page.having("viewbox")[0]["viewbox"].split()[2:])
+    assert tail.min() > 0.0
+    assert (tail.max(axis=0) < [width, height]).all()
+
+
+def test_without_applied_loads_there_is_no_choice_of_them(moving: Results) -> None:
+    page = Reader(render(moving))
+    assert page.data["applied"] == []
+    assert "applied loads" not in page.text
 
 
 def test_the_picture_stands_without_the_script(moving: Results) -> None:

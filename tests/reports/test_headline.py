@@ -23,8 +23,12 @@ def row(results: Results, pin: str, case: str) -> PinResult:
 def test_a_row_that_was_not_solved_is_no_worse_than_one_that_fails(results: Results) -> None:
     known = [p for p in results.pins if p.meets_required is False]
     least = min(known, key=lambda p: p.safety_factor or 0.0)
-    assert headline(results).startswith(f"Pin {least.pin} fails: FoS ")
-    assert f"< 1.5 required ({least.case})" in headline(results)
+    text = headline(results)
+    assert text.startswith("5 of 9 pins miss the required factor 1.5: ")
+    assert text.partition(": ")[2].startswith(f"{least.pin} ({least.case}), ")
+    of_one = replace(results, pins=(least,))
+    assert headline(of_one).startswith(f"Pin {least.pin} fails: FoS ")
+    assert f"< 1.5 required ({least.case})" in headline(of_one)
     order = [pin.outcome for pin in worst_first(results)]
     assert order == sorted(order, key=["fails", "not decided", "safe"].index)
 

@@ -65,6 +65,7 @@ joints = "prescribed"
 required_safety_factor = 5
 [case.one]
 kind = "given"
+distribution = "uniform"
 {pin}
 """
 

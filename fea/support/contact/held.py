@@ -215,7 +215,7 @@ class HeldContact:
         known = self.compared.get(case)
         if known is None:
             return False
-        return self.finest or known.fine(self.problem.material, requirement)
+        return self.finest or known.fine(self.problem.material, requirement.of_case(case))
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
         """The requirement on the meshes, with a smaller tolerance since cells use a part of it.
@@ -259,11 +259,12 @@ class HeldContact:
             surface = with_neglected(surface, cuts, answer, variations)
             error += cuts.error(surface.value, False, variations) / (surface.value or 1.0)
         peak = row_of(surface, section, material, requirement.tolerance, links)
+        required = requirement.of_case(case.case).required
         solution = self._at_row(reading, peak, case)
         contact = self.contact.joined(solution.loads.links, solution.instant)
         row = peak.max_von_mises or 0.0
         place = contact_place(
-            contact, material, answer, reading.loads, requirement.required, error, row,
+            contact, material, answer, reading.loads, required, error, row,
             deep=not self.alone,
         )  # fmt: skip
         over = known.row.range(row, place.beneath)

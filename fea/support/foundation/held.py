@@ -77,7 +77,8 @@ class FoundationSupport:
         pin = body_of_revolution(problem.pin)
         if pin is None:
             return False
-        known = problem.material.yield_strength is not None and requirement.required is not None
+        required = requirement.required is not None or bool(requirement.factors)
+        known = problem.material.yield_strength is not None and required
         may = requirement.tolerance >= PLAIN_SECTION_ERROR + PLAIN_MOMENT_ERROR or (
             requirement.goal == "decide" and known
         )

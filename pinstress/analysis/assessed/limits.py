@@ -1,7 +1,8 @@
 """Limit loads of the rows of a task that the study or `--limit-load` requests.
 
-The limit load of a row that yields is also computed without a request if that takes seconds of
-processor time. Whether it is computed may depend on the computer; its value never does.
+A requirement on it is a request, too, unless the elastic stress meets that already. The limit load
+of a row that yields is also computed without a request if that takes seconds of processor time.
+Whether it is computed may depend on the computer; its value never does.
 """
 
 from __future__ import annotations
@@ -11,9 +12,11 @@ from math import inf
 from typing import TYPE_CHECKING
 
 from assess.plastic.records import LimitLoad
-from fea.core.peak import Maximum
+from assess.requirement import LEVELS_OF_CHECK
+from fea.core.peak import Maximum, meets_limit
 from pinbase.processes.pool import Tell
 from pinstress.analysis.plan import Plan
+from pinstress.study.model.requirements import stated_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 
@@ -59,10 +62,27 @@ def limit_loads(
     return tuple(_limit_load(plan, task, solved, rung, tell) for solved in solutions)
 
 
+def collapse_factors(study: Study, task: Task) -> dict[str, float]:
+    """Return the largest factor on collapse that [[require]] states, by case."""
+    factors = {}
+    for loads in task.loads:
+        stated = (
+            stated_factor(study, task.pin.name, loads.case, "limit load", level)
+            for level in LEVELS_OF_CHECK["limit load"]
+        )
+        if largest := max(filter(None, stated), default=None):
+            factors[loads.case] = largest
+    return factors
+
+
 def _limit_load(
     plan: Plan, task: Task, solved: Solution, rung: Rung | None, tell: Tell
 ) -> LimitLoad | None:
-    peak = solved.peak
+    peak, seconds = solved.peak, limit_seconds(plan)
+    required = collapse_factors(plan.study, task).get(peak.case)
+    strength = task.material.yield_strength
+    if rung and required and strength and not meets_limit(peak, strength / required):
+        rung, seconds = "solid", inf  # it decides, and was asked for
     if rung is None or not limit_asked(peak, task, rung):
         return None
     from assess.plastic.solve import limit_load  # imports a model
@@ -75,7 +95,6 @@ def _limit_load(
             return LimitLoad("none", note=NOT_ON_FOUNDATIONS_NOTE)
         pin, loads = solved.rings, solved.pressed(loads)
     clamps = tuple(pin.surface(name) for name in task.clamps)
-    seconds = limit_seconds(plan)
     try:
         return limit_load(pin, task.material, clamps, loads, rung, plan.requirement.memory, seconds)
     except ArithmeticError as error:  # the elastic answer stands

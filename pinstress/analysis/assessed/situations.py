@@ -9,17 +9,17 @@ import numpy as np
 
 from assess.checks import margins_of
 from assess.judgement import against_yield
-from assess.margin import Margin, skipped, worst_places
+from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Margin, skipped, worst_places
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.fit import on_structure
 from fea.support.records import JointResult
+from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 from reports.data.results import PinResult
 
-FORMULA_CHECKS = "checks by formula"
 FORMULA_KINDS = "hand", "clause"
 FORCE_OF_CLAMP = (
     "the force that a clamp takes, which contact with the lug instead of the clamp gives"
@@ -33,7 +33,7 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
     A pin with cuts is checked as if it had none.
     """
     loads = next(x for x in task.loads if x.case == row.case)
-    required = study.table.analysis.required_safety_factor
+    required = required_factor(study, row.pin, row.case)
     s, why = _situation(study, task, loads, row.joint)
     s = replace(s, row=SolvedRow(row.maximum, row.limit_load, required))
     rigid = row.verdict == "rigid"
@@ -113,7 +113,7 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
     if s.profile is not None:
         clamped = {s.profile.surface(name) for name in s.clamps}
         lacking |= {
-            f"lug of {lug.connection}: net section, shear-out, bearing": FORCE_OF_CLAMP
+            f"{CLAMPED_LUG_PREFIX}{lug.connection}: net section, shear-out, bearing": FORCE_OF_CLAMP
             for lug in s.sized
             if lug.connection in clamped
         }

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, replace
 from importlib.metadata import version
 
+from assess.diameter_law import section_exponent
 from assess.margin import PinMargin
 from fea.core.peak import Maximum
 from fea.support.records import JointResult
@@ -21,9 +22,10 @@ from pinstress.analysis.plan import Plan, all_loads
 from pinstress.analysis.stored import PinOutcome
 from pinstress.study.model.cases import CaseLoads, at_time
 from pinstress.study.model.pins import far_ends, outline, weight
+from pinstress.study.model.requirements import stated_requirements
 from pinstress.study.model.sequence import chosen_cases
-from pinstress.study.model.tasks import Task
-from pinstress.study.reading.file import Study
+from pinstress.study.model.tasks import Task, assumed_distribution
+from pinstress.study.reading.file import Study, named_materials
 from pinstress.study.reading.inputs import inputs
 from pinstress.study.reading.published_tables import Published, read_published
 from pinstress.study.schema.tables import ReportTable
@@ -44,6 +46,13 @@ def _in_lugs(study: Study) -> bool:
     joints = study.table.analysis.joints
     return joints in ("contact", "foundation") or (
         joints == "auto" and any(pin.lug for pin in study.table.pin.values())
+    )
+
+
+def materials_assumption(study: Study) -> tuple[str, ...]:
+    """Return a sentence for each material that the study only names."""
+    return tuple(
+        f"Material {x.name} is that of {x.file}: {x.source}." for x in named_materials(study)
     )
 
 
@@ -70,6 +79,9 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
         fatigue, fatigue_margins = fatigue_of(plan, outcomes)
     results = replace(
         results,
+        stated=stated_requirements(
+            study, [(row.pin, row.case) for _, row in rows], plan.pins, list(plan.loads)
+        ),
         beam_check=next((x.beam_check for x in outcomes if x.beam_check is not None), None),
         surfaces=tuple(surface for outcome in outcomes for surface in outcome.surfaces),
         changes=_worst_changes(outcomes),
@@ -83,14 +95,14 @@ def results_of(plan: Plan, outcomes: list[PinOutcome]) -> plain.Results:
 
 def rows_of(plan: Plan, outcomes: list[PinOutcome]) -> dict[tuple[str, str], plain.PinResult]:
     """Return the rows of a plan, as `results_of` has them, by pin and case."""
-    study = plan.study
-    return {
-        (row.pin, row.case): in_units(
-            _completed(study, plan.loads[row.case], task, row, plan.published), study.system.factor
-        )
-        for task, outcome in zip(plan.tasks, outcomes, strict=True)
-        for row in outcome.rows
-    }
+    study, s = plan.study, plan.study.system
+    units = plain.Units(s.length, s.force, s.stress, s.time)
+    rows: dict[tuple[str, str], plain.PinResult] = {}
+    for task, outcome in zip(plan.tasks, outcomes, strict=True):
+        for row in outcome.rows:
+            whole = _completed(study, plan.loads[row.case], task, row, plan.published)
+            rows[row.pin, row.case] = in_units(replace(whole, units=units), s.factor)
+    return rows
 
 
 def _worst_changes(outcomes: list[PinOutcome]) -> tuple[Remedy, ...]:
@@ -152,7 +164,7 @@ def _results(
         tolerance=tolerance,
         pins=tuple(_completed(study, loads[row.case], task, row, published) for task, row in rows),
         shapes=tuple(
-            _shape(tasks[name], [row.maximum for _, row in rows if row.pin == name])
+            shape_of_task(tasks[name], [row.maximum for _, row in rows if row.pin == name])
             for name in table.pin
             if name in tasks
         ),
@@ -161,7 +173,9 @@ def _results(
         published_source=table.published.source if table.published else "",
         assumptions=(
             *table.assumptions,
+            *materials_assumption(study),
             *factor_assumption(study, (row for _, row in rows)),
+            *filter(None, [assumed_distribution(study, (task for task, _ in rows))]),
             *((WITHOUT_FRICTION_NOTE,) if _in_lugs(study) else ()),
             *(f"Possible mistake: {q}" for q in study.questions),
         ),
@@ -193,6 +207,7 @@ def _completed(
         position=None if positions is None else float(positions[0]),
         position_unit=position_unit(study, here),
         loads=_governing_loads(task, here),
+        exponent=section_exponent(task.pin, row.places.section if row.places else None),
         depends_on=depends_on(row),
         published_max_von_mises=published_stress,
         published_safety_factor=published_factor,
@@ -214,7 +229,11 @@ def _governing_loads(task: Task, here: CaseLoads) -> tuple[plain.GoverningLoad, 
     )
 
 
-def _shape(task: Task, peaks: list[Maximum]) -> plain.PinShape:
+def shape_of_task(task: Task, peaks: Sequence[Maximum]) -> plain.PinShape:
+    """Return the pin of a task as it is drawn, SI.
+
+    peaks: its maxima, of which local solids are drawn.
+    """
     pin, density = task.pin, task.material.density
     held = {pin.surface(c) for c in task.clamps}
     segments = tuple(

@@ -12,7 +12,7 @@ from assess.fatigue.fkm import FkmMaterial
 from assess.fatigue.proportional import SIGNED_SHEAR_RULE
 from assess.fatigue.records import PointFatigue, PointHistory
 from assess.fatigue.sn_curve import SnCurve
-from assess.margin import PinMargin, worst_places
+from assess.margin import PinMargin, material_key, worst_places
 from assess.situation import PinFatigue, Situation
 from fea.core.peak import meets_limit
 from fea.support.lugs.lug import Lug
@@ -81,7 +81,7 @@ def fatigue_of(plan: Plan, outcomes: list[PinOutcome]) -> tuple[Fatigue | None, 
     )
     needs = {pin: open_.needs for pin, open_ in opens.items() if pin not in failing}
     key = "fkm" if table.method == "fkm-p-ram" else "fatigue"
-    needs |= {pin: f"material.{plan.study.table.pin[pin].material}.{key}" for pin in without}
+    needs |= {pin: material_key(plan.study.table.pin[pin].material, key) for pin in without}
     return fatigue, _margins(plan, fatigue, needs)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from loads import (
     GROUND,
+    Applied,
     Dynamics,
     Effort,
     Gear,
@@ -36,7 +37,7 @@ from pinstress.study.model.mechanism.linkage import ground_joint
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.published_tables import Published
 from reports.data import results as plain
-from reports.data.mechanics import PitchCurve
+from reports.data.mechanics import AppliedForce, PitchCurve
 
 LEG_VECTORS = {  # of loads.LegDynamics, and what they are
     "wheel_omega": "omega",
@@ -78,7 +79,7 @@ def mechanics(study: Study, loads: dict[str, CaseLoads], published: Published) -
     parts = {
         "reactions": tuple(_reactions(study, n, c, published) for n, c in loads.items()),
         "drive": tuple(t for n, d in dynamics.items() for t in _drives(study, n, d, loads[n])),
-        "motion": tuple(_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
+        "motion": tuple(linkage_motion(study, n, d, loads[n].over) for n, d in dynamics.items()),
         "motion_check": motion_check(study, loads, published),
         "published": published_values(study, loads, published),
         "drops": tuple(drop_record(study, n, c) for n, c in loads.items() if c.landing),
@@ -216,9 +217,13 @@ def _extremes(over: OverTime) -> plain.Extremes:
     )
 
 
-def _motion(
+def linkage_motion(
     study: Study, name: str, dynamics: Dynamics, over: OverTime | None
 ) -> plain.LinkageMotion:
+    """Return the motion of the linkage in a case, SI.
+
+    over: results of the whole motion, if they are known.
+    """
     motion, linkage = dynamics.motion, dynamics.motion.linkage
     timed = dynamics.reactions.times is not None
     bodies = [b.name for b in linkage.bodies]
@@ -271,7 +276,22 @@ def _motion(
         slider_forces=_slider_forces(dynamics),
         paths=_paths(study, dynamics),
         pitch=_pitch_curves(motion),
+        applied=_applied(dynamics),
     )
+
+
+def _applied(dynamics: Dynamics) -> tuple[AppliedForce, ...]:
+    """Return the forces that the case applies, without springs and loads that are couples alone."""
+    loads = [load for load in dynamics.applied if isinstance(load, Applied)]
+    forces = (
+        AppliedForce(
+            load.body,
+            dynamics.motion.point(load.body, load.at)[0],
+            pairs(load.along(dynamics.motion)[:, None])[:, 0],
+        )
+        for load in loads
+    )
+    return tuple(force for force in forces if force.force.any())
 
 
 def _paths(study: Study, dynamics: Dynamics) -> dict[str, plain.PointPath]:

@@ -50,9 +50,16 @@ def change(requirement: Requirement, task: Task, solutions: tuple[Solution, ...]
     None where no case is below the required factor (yield where none is required), with its error
     and beneath contact.
     """
-    strength, required = task.material.yield_strength, requirement.required or 1.0
-    worst = max(solutions, key=lambda s: max(s.peak.max_von_mises or 0.0, _beneath(s)))
-    peak = worst.peak
+    strength = task.material.yield_strength
+
+    def required_of(solution: Solution) -> float:
+        return requirement.of_case(solution.peak.case).required or 1.0
+
+    worst = max(
+        solutions,
+        key=lambda s: max(s.peak.max_von_mises or 0.0, _beneath(s)) * required_of(s),
+    )
+    peak, required = worst.peak, required_of(worst)
     if strength is None or not peak.max_von_mises:
         return None
     stress = peak.max_von_mises if peak.verdict == "singular" else peak.upper_end

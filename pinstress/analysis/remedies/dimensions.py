@@ -7,9 +7,10 @@ from functools import partial
 from itertools import groupby
 
 from geometry import Pin, PinLike, body_of_revolution
-from geometry.shape.dimensions import Dimension, dimensions
+from geometry.shape.dimensions import KEY_JOINT, Dimension, dimensions
 from pinstress.study.model.pins import by_corners
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import key_part
 from pinstress.study.schema.pins import PinTable
 
 TableChange = Callable[[PinTable, float], PinTable]
@@ -69,11 +70,12 @@ def _along(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:
             coordinates.append((corner[Z_INDEX], f"{line}[{k + 1}][1]", _corner(line, k, Z_INDEX)))
     for name, band in table.band.items():
         for end, z in enumerate(band.z or ()):
-            coordinates.append((z, f"band.{name}.z[{end + 1}]", _band(name, end)))
+            coordinates.append((z, f"band.{key_part(name)}.z[{end + 1}]", _band(name, end)))
     for z, run in groupby(sorted(coordinates, key=lambda one: one[0]), lambda one: one[0]):
         some = list(run)
         if z:
-            yield some[0][1], z, [change for _, __, change in some]
+            keys = KEY_JOINT.join(key for _, key, __ in some)
+            yield keys, z, [change for _, __, change in some]
 
 
 def _across(table: PinTable) -> Iterator[tuple[str, float, list[TableChange]]]:

@@ -17,7 +17,8 @@ from pinstress.study.model.lugs import known_lugs
 from pinstress.study.model.pins import material
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.pins import LugTable
+from pinstress.study.reading.in_python import key_part
+from pinstress.study.schema.lugs import LugTable
 
 # Of the pin's radius: what steps of a clearance are parts of, as it may be none
 CLEARANCE_SCALE = 1e-3
@@ -51,8 +52,8 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
         ):
             if scale or value:
                 changed = partial(_with_lug, study, task, name, key)
-                number = value or 0.0
-                one = JointParameter(f"lug.{name}.{key}", number, scale or number, changed)
+                number, full_key = value or 0.0, f"lug.{key_part(name)}.{key}"
+                one = JointParameter(full_key, number, scale or number, changed)
                 yield StudyParameter("length", one)
     made_of = [task.material, *(m for x in task.lugs for m in (x.material, x.bearing))]
     for part in dict.fromkeys(made_of):
@@ -65,13 +66,19 @@ def joint_parameters(study: Study, task: Task) -> Iterator[StudyParameter]:
             value = getattr(part, key)
             if value:
                 changed = partial(_with_material, study, task, part.name, key)
-                full = f"material.{part.name}.{key}"
-                yield StudyParameter(kind, JointParameter(full, value, value, changed))
+                full_key = f"material.{key_part(part.name)}.{key}"
+                yield StudyParameter(kind, JointParameter(full_key, value, value, changed))
 
 
 def _with_dimension(study: Study, task: Task, dimension: Dimension, value: float) -> Joint:
     pin = dimension.changed(value)
-    return pin, task.material, known_lugs(study, pin)
+    old = {lug.connection: lug for lug in task.lugs}
+    # A fit has another clearance in the next step of sizes; the derivative is within one.
+    lugs = tuple(
+        replace(lug, clearance=old[lug.connection].clearance, range=old[lug.connection].range)
+        for lug in known_lugs(study, pin)
+    )
+    return pin, task.material, lugs
 
 
 def _with_lug(study: Study, task: Task, name: str, key: str, value: float) -> Joint:

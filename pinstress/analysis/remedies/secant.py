@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-# The factor grows with the cube of the diameter in bending, its square in tension
-BENDING_EXPONENT = 3.0
+from assess.diameter_law import BENDING_EXPONENT
+
 MIN_SLOPE, MAX_SLOPE = 0.5, 6.0  # slopes that are believed
 MIN_SCALE_RATIO = 1.2  # ratio of scales from which a slope says that larger pins hardly help
 MAX_SCALE_STEP = 3.0  # from one trial to the next at most

@@ -36,6 +36,7 @@ from pinbase.arrays import Floats
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.in_python import key_part
 from reports.data.sensitivities import PinSensitivities, Sensitivity
 
 if TYPE_CHECKING:
@@ -204,11 +205,17 @@ def _with_rows(
 ) -> PinSensitivities:
     return replace(
         out,
-        rows=_sorted(rows, out.factor),
+        rows=_sorted((replace(x, key=_study_key(out.pin, x.key)) for x in rows), out.factor),
         tied_places=gradient.tied_places,
         tied_times=gradient.tied_times,
-        without=tuple(gradient.without.items()),
+        without=tuple((_study_key(out.pin, key), why) for key, why in gradient.without.items()),
     )
+
+
+def _study_key(pin: str, key: str) -> str:
+    """Return the key in the study of a parameter that may be of the pin's own table."""
+    others = "force ", "moment ", "material."
+    return key if key.startswith(others) else f"pin.{key_part(pin)}.{key}"
 
 
 def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> PinSensitivities:
@@ -238,7 +245,8 @@ def _of_lugs(study: Study, task: Task, joined: Solution, step: float | None) -> 
         *_of_joint(joint_parameters(study, task), gradient.by_parameter, maximum, step),
     ]
     if strength is not None:
-        key, more = f"material.{task.material.name}.yield_strength", STEP_FRACTION * strength
+        key = f"material.{key_part(task.material.name)}.yield_strength"
+        more = STEP_FRACTION * strength
         rows.append(_Parameter(key, "stress", strength, more, 0.0, 1.0 / strength))
     return _with_rows(replace(out, changing=gradient.changing), gradient, rows)
 
@@ -345,5 +353,5 @@ def _of_material(gradient: Derivatives, material: Material) -> Iterator[_Paramet
             relative = 1.0 / value if name == "yield_strength" else 0.0 - stress / gradient.maximum
             more = STEP_FRACTION * value if step is None else step
             yield _Parameter(
-                f"material.{material.name}.{name}", kind, value, more, stress, relative
+                f"material.{key_part(material.name)}.{name}", kind, value, more, stress, relative
             )

@@ -34,6 +34,7 @@ from pinstress.explore.chart.mesh_sequences import (
 )
 from pinstress.explore.chart.single_joint import JointProblem, JointRung
 from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.requirements import required_factor
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.choices import require_tolerance, select
 from pinstress.study.reading.file import Study
@@ -78,7 +79,7 @@ def plan_chart(study: Study, pin: str, case: str, tolerance: float | None = None
     requirement = Requirement(
         require_tolerance(tolerance) or table.tolerance,
         goal=table.goal,
-        required=table.required_safety_factor,
+        required=required_factor(study, pin, case),
         distance=table.excluded_distance,
     )
     if task.lugs:

@@ -24,13 +24,13 @@ from pinstress.explore.reliability.form import (
     Array,
     form_quantile,
 )
-from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import WeightGoal
 from pinstress.explore.size.pin_shape import kind_of
 from pinstress.explore.sweep.batches import shapes
 from pinstress.explore.sweep.evaluate import Evaluator
 from pinstress.study.reading.file import Study
+from reports.data.decision import low_factor
 
 MAX_ROUNDS = 5
 MAX_FACTOR_EXCESS = 2.0 * FACTOR_TOLERANCE  # over the factor, with which a search ends

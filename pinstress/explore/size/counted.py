@@ -8,8 +8,6 @@ from collections.abc import Iterator
 
 from fea.core.peak import Maximum
 from fea.core.places import Place
-from reports.data.decision import factor_ends
-from reports.data.results import PinResult
 
 
 def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
@@ -30,18 +28,3 @@ def beneath(peak: Maximum) -> float:
     """Return the stress beneath contact with its error, Pa; 0 without any."""
     contact = peak.places and peak.places.contact
     return contact.upper_end if contact else 0.0
-
-
-def low_factor(pin: PinResult) -> float | None:
-    """Return the factor of a row by the largest of these stresses; None without one."""
-    if pin.safety_factor is None or not pin.max_von_mises:
-        return None
-    return min(factor_ends(pin)[0], beneath_factor(pin))
-
-
-def beneath_factor(pin: PinResult) -> float:
-    """Return the factor by the stress beneath contact with its error; inf without any."""
-    contact = pin.places and pin.places.contact
-    if not contact or not contact.upper_end or pin.yield_strength is None:
-        return float("inf")
-    return pin.yield_strength / contact.upper_end

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
-from pinstress.explore.size.counted import beneath_factor, low_factor
+from reports.data.decision import beneath_factor, low_factor
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.results import PinResult, Results
@@ -104,6 +104,9 @@ def why_missed(results: Results, pin: str) -> str:
         return f"in {', '.join(loose)} the error of the stress leaves it open"
     if check := _strict_check(results, pin):
         return f"{check.check} has a margin of safety of {1.0 / check.used - 1.0:.3g}"
+    worst = worst_checks(results)[pin]
+    if worst.stated and worst.outcome == NOT_DECIDED:
+        return f"{worst.check} was not checked: {worst.reason}"
     if depends:
         every = [d for p in rows if p.outcome == DEPENDS for d in p.depends_on]
         ranges = over_words([d for d in every if d.over != BENEATH_CONTACT])

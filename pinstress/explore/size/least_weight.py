@@ -13,13 +13,13 @@ from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, prel
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import run
-from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.lightest_pin import Lightest, Start, WeightGoal, as_it_is, lightest_pin
 from pinstress.explore.size.other_dimensions import written_study
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
+from reports.data.decision import low_factor
 from reports.data.results import Results
 
 MAX_PASSES = 5

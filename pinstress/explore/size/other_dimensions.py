@@ -80,6 +80,8 @@ def _as_written(table: Any, path: Path) -> Path:
         here = value_of(here)
         if not isinstance(here, dict | list):
             return path[:k]
+        if isinstance(here, dict) and part not in here:
+            return path  # of a lug that is only in lug_defaults
         here = here[part]  # type: ignore[index]
     return path
 

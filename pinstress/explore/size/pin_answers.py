@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from assess.diameter_law import section_exponent
 from fea.core.peak import Maximum
 from pinbase.memo import Memo
 from pinstress.analysis.engine import QUICK_TOLERANCE
@@ -14,7 +15,7 @@ from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.solve import judged, solutions
 from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.scaled_study import resized_study
-from pinstress.explore.size.section_law import Accuracy, PinTrial, section_exponent
+from pinstress.explore.size.section_law import Accuracy, PinTrial
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
@@ -50,6 +51,7 @@ class SizedStudy:
     others: scales of the pins so far.
     required: the factor to reach.
     memo: of flexibilities and meshes that trials have in common.
+    more: by case, times the factor that requirements demand there, as SizingGoal has it.
     """
 
     plan: Plan
@@ -58,6 +60,7 @@ class SizedStudy:
     others: Mapping[str, float]
     standard: StandardDiameters | None = None
     memo: Memo = field(default_factory=Memo)
+    more: Mapping[str, float] = field(default_factory=dict)
 
     def at(self, scale: float, rounded: bool = False) -> Study:
         """Return the study with the pin at a scale.
@@ -68,7 +71,8 @@ class SizedStudy:
         """
         standard = self.standard if rounded else None
         scales = {**self.others, self.pin: scale}
-        return resized_study(self.plan.study, scales, standard, self.required)
+        required = None if self.more else self.required
+        return resized_study(self.plan.study, scales, standard, required)
 
     @property
     def in_lugs(self) -> bool:
@@ -100,7 +104,7 @@ class SizedStudy:
             for task in plan.tasks
             for solution in solutions(trial, task, requirement, tell, self.memo)
         ]
-        return _answer(scale, accuracy, peaks, plan.tasks, tolerance)
+        return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.more)
 
     def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
         """Solve a pin as a run does, with standard diameters.
@@ -115,7 +119,7 @@ class SizedStudy:
             judged(_with_goal(plan, task, counting), task, tell, self.memo) for task in plan.tasks
         ]
         peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
-        answer = _answer(scale, "full", peaks, plan.tasks, None)
+        answer = _answer(scale, "full", peaks, plan.tasks, None, self.more)
         return replace(answer, results=results_of(plan, outcomes))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
@@ -143,10 +147,12 @@ def _answer(
     peaks: list[Maximum],
     todo: list[Task],
     tolerance: float | None,
+    more: Mapping[str, float],
 ) -> PinAnswer:
     """Return what the maxima of a pin in all cases say.
 
     tolerance: largest error that counts, relative; None for the error as it is.
+    more: by case, times the factor that is demanded there; stress counts as often.
 
     Raises: NoSizeError for a pin that is not solved.
     """
@@ -160,12 +166,16 @@ def _answer(
         raise NoSizeError("no case loads it")
     strength = todo[0].material.yield_strength
     assert strength is not None  # a pin without strength is refused before
-    stresses = [design_stresses(peak, tolerance) for peak in acting]
+    stresses = []
+    for peak in acting:
+        times = more.get(peak.case, 1.0)
+        of_row, below = design_stresses(peak, tolerance)
+        stresses.append((times * of_row, times * below))
     row, below = (max(each) for each in zip(*stresses, strict=True))
     largest = max(row, below)
     worst = next(p for p, s in zip(acting, stresses, strict=True) if max(s) == largest)
-    of_row = next(p for p, s in zip(acting, stresses, strict=True) if s[0] == row)
-    section = of_row.places.section if of_row.places else None
+    highest = next(p for p, s in zip(acting, stresses, strict=True) if s[0] == row)
+    section = highest.places.section if highest.places else None
     exponent = section_exponent(todo[0].pin, section)
     beneath_factor = strength / below if below else float("inf")
     trial = PinTrial(scale, strength / row, beneath_factor, exponent, accuracy)

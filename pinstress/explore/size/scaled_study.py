@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 import os
 import re
@@ -14,6 +15,7 @@ import tomlkit
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import Study, parse_study
+from pinstress.study.reading.in_python import write_lug
 from pinstress.study.schema.units import UnitSystem, to_si
 
 LENGTH_DIGITS = 4  # of a length that is not rounded to a step
@@ -131,6 +133,8 @@ def moved(text: str, old: Path, new: Path) -> str:
 
 def _files(document: Any) -> Iterator[tuple[Any, str]]:
     """Return the tables that name a file, each with the key that does."""
+    if "materials" in document:
+        yield document, "materials"
     yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
     published = document.get("published", {})
     yield from ((published, key) for key in PUBLISHED_TABLE_KEYS if key in published)
@@ -175,7 +179,11 @@ def _density(study: Study, name: str) -> float | None:
 
 def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
     for at, least in wider_eyes(old, new, name).items():
-        _write(document["pin"][name]["lug"][at], "outer_diameter", least, "length", new.system)
+        write_lug(document, new, name, at)
+        lug = document["pin"][name]["lug"][at]
+        if "outer_diameter" not in lug:
+            lug["outer_diameter"] = copy.deepcopy(document["lug_defaults"]["outer_diameter"])
+        _write(lug, "outer_diameter", least, "length", new.system)
 
 
 def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:

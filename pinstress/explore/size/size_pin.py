@@ -83,10 +83,24 @@ class SizingResult:
 
 @dataclass(frozen=True)
 class SizingGoal:
-    """The factor to reach, and the diameters that pins may have, if not any."""
+    """The factor to reach, and the diameters that pins may have, if not any.
+
+    more: by pin and case, times the factor that requirements of the study demand there, 0 for no
+    factor; empty where the factor is that of all.
+    """
 
     required: float
     standard: StandardDiameters | None = None
+    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
+
+    @property
+    def written(self) -> float | None:
+        """The required factor of the new study; None where that keeps its own requirements."""
+        return None if self.more else self.required
+
+    def of_pin(self, pin: str) -> dict[str, float]:
+        """Return the multiples of the factor that a pin needs, by case."""
+        return {case: x for (name, case), x in self.more.items() if name == pin}
 
 
 @dataclass
@@ -139,9 +153,13 @@ def size_pin(
 
     Failures are reported in the answer.
     """
-    if problem := _problem(plan.study, pin):
+    more = goal.of_pin(pin)
+    problem = _problem(plan.study, pin)
+    if more and not any(more.values()):
+        problem = "no factor is required of it"
+    if problem:
         return SizingResult(pin, None, None, None, None, problem)
-    sized = SizedStudy(plan, pin, goal.required, others, goal.standard)
+    sized = SizedStudy(plan, pin, goal.required, others, goal.standard, more=more)
     search = _Search(sized, tell, label or f"pin {pin}")
     result = SizingResult(pin, None, None, None, None)
     try:

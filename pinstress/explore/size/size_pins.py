@@ -54,7 +54,7 @@ def size_pins(
 def new_study(study: Study, goal: SizingGoal, sized: Sequence[SizingResult]) -> Study:
     """Return the study with the sizes of pins."""
     scales = {result.pin: result.scale for result in sized if result.scale is not None}
-    return resized_study(study, scales, goal.standard, goal.required)
+    return resized_study(study, scales, goal.standard, goal.written)
 
 
 def _size(
@@ -114,14 +114,15 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
             plan.study,
             {**dict(result.others), result.pin: result.scale},
             goal.standard,
-            goal.required,
+            goal.written,
         )
         if solved.table.mechanism == new.table.mechanism:
             continue
         after = after or all_loads(new, cases)
+        more = goal.of_pin(result.pin)
         change = changes_of_load(new, result.pin, all_loads(solved, cases), after)
         if any(
-            factor / (1.0 + change.get(case, 0.0)) < goal.required
+            factor / (1.0 + change.get(case, 0.0)) < goal.required * more.get(case, 1.0)
             for case, factor in result.judged.cases
         ):
             out.append(result.pin)

@@ -36,6 +36,7 @@ from pinstress.study.model.cases import CaseLoads, case_loads
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.mechanism.linkage import determined, linkage
 from pinstress.study.model.pins import pin as pin_of
+from pinstress.study.model.requirements import required_factor, required_factors
 from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw, with_value
@@ -43,7 +44,8 @@ from reports.data.results import PinResult
 
 MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes
 MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # that are remembered, loads of each case
-TABLES_WITHOUT_LOADS = ("pin", "material", "analysis")  # tables of which loads do not depend
+# Of which loads do not depend
+TABLES_WITHOUT_LOADS = ("pin", "lug_defaults", "material", "analysis")
 IGNORED_TABLES = ("vary", "published", "beam_check", "motion_check", "report")
 
 K = TypeVar("K")
@@ -201,7 +203,7 @@ class Evaluator:
         if table not in TABLES_WITHOUT_LOADS:
             return True
         study, mechanism = self.study.table, self.study.table.mechanism
-        if mechanism is None or table == "analysis":
+        if mechanism is None or table in ("lug_defaults", "analysis"):
             return False
         free = [
             name
@@ -266,8 +268,8 @@ class Evaluator:
             names = [loads.case for loads in task.loads]
             yield from ((c, _failed(study, task.pin.name, c, error)) for c in names)
             return
-        required = study.table.analysis.required_safety_factor
-        for row in (judged_row(row, task, required) for row in rows):
+        pin = task.pin.name
+        for row in (judged_row(x, task, required_factor(study, pin, x.case)) for x in rows):
             peak, good = row.maximum, row.verdict == "converged"
             yield (
                 row.case,
@@ -343,6 +345,7 @@ def _question(
         ranges,
         task.material if decides else elastic(task.material),
         replace(requirement, memory=None),
+        required_factors(study, task.pin.name, (loads.case for loads in task.loads)),
     )
     return hashlib.sha256(pack(asks)).hexdigest()
 

@@ -6,14 +6,16 @@ Any number of a study has a key, as messages spell it; the schema gives its dime
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from pinbase.errors import ArgumentError
+from pinstress.study.model.lugs import known_lugs
+from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study, raw_study, with_value
-from pinstress.study.reading.in_python import key_parts
+from pinstress.study.reading.in_python import PAIR_KEYS, key_parts, single_keys
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text, nearest
 from pinstress.study.schema.types import Probe
 from pinstress.study.schema.units import (
@@ -26,7 +28,6 @@ from pinstress.study.schema.units import (
 )
 
 ANGLE_UNITS = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
-INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
 RADIAN_UNITS = {"angular velocity": "rad/s", "angular acceleration": "rad/s^2"}
 
 Path = tuple[str | int, ...]
@@ -42,7 +43,7 @@ class Number:
     nominal: its value in SI.
     unit: unit of a design's values in tables, `factor` its SI value.
     written: whether the study must give it as a text with that unit.
-    others: paths of numbers that are always the same: those of a key with a range, as
+    others: paths of numbers that are always the same: those of a key that stands for several, as
     "profile[1-3].diameter".
     """
 
@@ -71,25 +72,26 @@ def number_at(study: Study, key: str) -> Number:
     Raises: ArgumentError for a key that names no number, or different ones; InputError for a text
     that is not a key.
     """
-    match = INDEX_RANGE_PATTERN.search(key)
-    if match is None:
-        return _single(study, key)
-    first, last = (int(end) for end in match.groups())
-    if not 0 < first < last:
-        raise _no_number(f"[{first}-{last}] is no range; the smaller element first")
-    keys = [key[: match.start()] + f"[{i}]" + key[match.end() :] for i in range(first, last + 1)]
-    numbers = [number_at(study, one) for one in keys]
-    for one, number in zip(keys, numbers, strict=True):
+    numbers = [_single(study, single) for single in single_keys(key)]
+    for number in numbers[1:]:
         if (number.nominal, number.dimension) != (numbers[0].nominal, numbers[0].dimension):
-            raise _no_number(f"{keys[0]} and {one} differ; only equal ones vary as one")
-    paths = tuple(dict.fromkeys(path for number in numbers for path in number.paths))
+            differ = f"{numbers[0].key} and {number.key} differ"
+            raise _no_number(f"{differ}; only equal ones vary as one")
+    paths = tuple(dict.fromkeys(number.path for number in numbers))
     return replace(numbers[0], key=key, path=paths[0], others=paths[1:])
 
 
 def _single(study: Study, key: str) -> Number:
     raw = raw_study(study)
-    path = _path(study, raw, key)
-    value = _at(raw, path)
+    complete = with_lug_defaults(raw)
+    try:
+        path = _path(study, complete, key)
+    except ArgumentError:
+        clearance = _clearance(study, raw, key)
+        if clearance is None:
+            raise
+        return clearance
+    value = _at(complete, path)
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = "a table" if isinstance(value, Mapping) else "a list"
         what = "true or false" if isinstance(value, bool) else what
@@ -110,6 +112,22 @@ def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
             "not-a-number",
         )
     return float(value)
+
+
+def _clearance(study: Study, raw: dict[str, Any], key: str) -> Number | None:
+    """Return the clearance of a lug that the study leaves to its fit or default; None of any other
+    key.
+    """
+    match key_parts(study, key):
+        case ["pin", str() as pin, "lug", str() as lug, "clearance"] if pin in study.table.pin:
+            profile = pin_of(study, pin).profile
+        case _:
+            return None
+    for known in () if profile is None else known_lugs(study, profile):
+        if known.connection == lug:
+            path = "pin", pin, "lug", lug, "clearance"
+            return replace(_number(study, raw, key, path, 0.0), nominal=known.clearance)
+    return None
 
 
 def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any) -> Number:
@@ -182,8 +200,8 @@ def _dimension_of_unit(unit: str) -> str:
 def _path(study: Study, raw: Any, key: str) -> Path:
     """Return the path of a key in the raw content.
 
-    A list of one element may be meant without its index, and a table where there may be a list with
-    [1].
+    A list of one element may be meant without its index, a table where there may be a list with
+    [1], and one number for both ends with [1] or [2].
     """
     path: list[str | int] = []
     here = raw
@@ -193,6 +211,8 @@ def _path(study: Study, raw: Any, key: str) -> Path:
             here = here[0]
         if part == 0 and isinstance(here, Mapping):
             continue
+        if part in (0, 1) and path[-1] in PAIR_KEYS and isinstance(here, int | float | str):
+            here = [here, here]
         value = here[part] if _has(here, part) else None
         if value is None or (not path and part == "vary"):
             if part == -1:
@@ -214,7 +234,8 @@ def _has(here: Any, part: str | int) -> bool:
 
 def _at(raw: Any, path: Path) -> Any:
     for part in path:
-        raw = raw[part]
+        if not isinstance(raw, int | float | str):
+            raw = raw[part]  # else one number stands for both ends
     return raw
 
 

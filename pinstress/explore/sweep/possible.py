@@ -10,7 +10,7 @@ import numpy as np
 
 from pinstress.explore.sweep.correlations import correlations_of, root_of
 from pinstress.explore.sweep.evaluate import Evaluator
-from pinstress.explore.sweep.laws import Floats
+from pinstress.explore.sweep.laws import Floats, Triangular, Uniform
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.model.balance import unheld
 from pinstress.study.model.cases import CaseLoads
@@ -23,6 +23,7 @@ from pinstress.study.schema.cases import GivenCase
 # Where a tenth is impossible, 97 % of 32 designs find one; they take a millisecond each, with a
 # mechanism a tenth of a second.
 TRIED_DESIGNS, TRIED_MECHANISMS = 32, 8
+MAX_TRIED_RANGES = 20  # each end takes as long as a design
 
 
 @dataclass(frozen=True)
@@ -83,6 +84,28 @@ def tried(study: Study, evaluator: Evaluator, values: Floats) -> TriedDesigns:
                 code="unbalanced-designs",
             )
     return TriedDesigns(len(rows), dict(impossible))
+
+
+def impossible_ends(evaluator: Evaluator, parameters: Sequence[Parameter]) -> list[str]:
+    """Return a warning for each end of a range at which the design cannot be built, with all other
+    numbers as in the study.
+
+    Only uniform and triangular laws have ends.
+    """
+    nominal = [number.nominal for number in evaluator.numbers]
+    warnings = []
+    for k, parameter in enumerate(parameters[:MAX_TRIED_RANGES]):
+        if not isinstance(parameter.law, Uniform | Triangular):
+            continue
+        for end in dict.fromkeys(parameter.quantile(np.array([0.0, 1.0])).tolist()):
+            values = [*nominal[:k], end, *nominal[k + 1 :]]
+            try:
+                _unheld_rows(evaluator.changed(values), evaluator, values)
+            except (InputError, ArithmeticError) as error:
+                shown = f"{end / parameter.number.factor:.6g} {parameter.number.unit}".rstrip()
+                reason = str(error).partition("\n")[0]
+                warnings.append(f"vary.parameters.{parameter.key}: impossible at {shown}: {reason}")
+    return warnings
 
 
 def require_balance(study: Study, evaluator: Evaluator, values: Floats) -> None:

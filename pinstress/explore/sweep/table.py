@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from pinstress.explore.sweep.evaluate import DesignRow
 from pinstress.explore.sweep.number import unit_of
 from pinstress.explore.sweep.parameters import Parameter
+from pinstress.study.model.requirements import common_required_factor
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from reports.folder.inside import write_inside
@@ -141,7 +142,7 @@ def _schema(study: Study, parameters: Sequence[Parameter]) -> pa.Schema:
         "hash": study.sha256,
         "units": study.system.name,
         "parameters": {p.key: {"unit": p.number.unit, "law": p.law_text} for p in parameters},
-        "required_safety_factor": study.table.analysis.required_safety_factor,
+        "required_safety_factor": common_required_factor(study),
     }
     return pa.schema(
         schema_fields, metadata={METADATA_KEY: json.dumps(stated, ensure_ascii=False).encode()}

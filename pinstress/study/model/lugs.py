@@ -10,9 +10,11 @@ from fea.cut.inside import crosses_end
 from fea.support.lugs.fit import beyond_foundations, fitted, on_structure
 from fea.support.lugs.lug import Bushing, Lug, LugRange
 from geometry import ArgumentError, Band, Cut, Hole, Pin, PinLike, body_of_revolution
+from pinstress.study.model.iso286 import fit_of
 from pinstress.study.model.pins import material
 from pinstress.study.reading.file import Study
-from pinstress.study.schema.pins import LugRangeTable, LugTable, PinTable
+from pinstress.study.schema.lugs import LugRangeTable, LugTable
+from pinstress.study.schema.pins import PinTable
 
 EYE_DIAMETER_RATIO = 2.5  # outer diameter over the band's
 # Of the outer diameter: distance from the bore's centre to where the link clamps the eye
@@ -221,23 +223,33 @@ def _lug(study: Study, pin: Pin, connection: str, given: LugTable, of_pin: Mater
     outer = given.outer_diameter or EYE_DIAMETER_RATIO * 2.0 * band.radius
     made_of = of_pin if given.material is None else material(study, given.material)
     tilt = _bending(made_of, outer, band.length) if given.tilt is None else _stiffness(given.tilt)
+    fit = None if given.fit is None else _fit(connection, given.fit, 2.0 * band.radius)
+    middle = 0.0 if fit is None else sum(fit) / 2.0
     ring = given.bushing
     bushing = None if ring is None else Bushing(ring.thickness, material(study, ring.material))
     return Lug(
         connection,
         outer,
         made_of,
-        given.clearance,
+        middle if given.clearance is None else given.clearance,
         given.edge_radius,
         tilt,
         bushing,
-        _range(given.range),
+        _range(given.range, fit),
     )
 
 
-def _range(given: LugRangeTable) -> LugRange:
+def _fit(connection: str, classes: str, diameter: float) -> tuple[float, float]:
+    """Return the least and the largest clearance (m) of a fit at a diameter (m)."""
+    try:
+        return fit_of(classes, diameter).clearance
+    except ArgumentError as error:
+        raise ArgumentError(f"lug {connection}: fit: {error}", error.code) from None
+
+
+def _range(given: LugRangeTable, fit: tuple[float, float] | None) -> LugRange:
     tilt = None if given.tilt is None else (_stiffness(given.tilt[0]), _stiffness(given.tilt[1]))
-    return LugRange(given.clearance, given.stiffness, tilt)
+    return LugRange(given.clearance or fit, given.stiffness, tilt)
 
 
 def _stiffness(tilt: str | float) -> float:

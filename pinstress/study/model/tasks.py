@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -18,7 +18,9 @@ from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.lugs import AssumedLugs, assumed_lugs, given_lugs, lugs
 from pinstress.study.model.moving_loads import MovingLoads
 from pinstress.study.model.pins import material
+from pinstress.study.reading.errors import Errors
 from pinstress.study.reading.file import Study
+from pinstress.study.schema.shown import listed
 
 
 @dataclass(frozen=True)
@@ -124,6 +126,59 @@ def _task(study: Study, pin: PinLike, clamps: tuple[str, ...], loads: dict[str, 
         pin, made_of, clamps, tuple(cases), left_out, ranges, between, in_lugs, around, impulses,
         given_ones,
     )  # fmt: skip
+
+
+def assumed_distribution(study: Study, todo: Iterable[Task]) -> str:
+    """Return a sentence on the load distribution of the cases that state none; empty where every
+    case states it, or lugs carry the loads.
+
+    todo: the tasks of an analysis.
+    """
+    applied = (loads for task in todo if not task.lugs for loads in task.loads)
+    prescribed = {loads.case for loads in applied if loads.forces[..., :2].any()}
+    assumed = [
+        name
+        for name, case in study.table.case.items()
+        if name in prescribed and "distribution" not in case.model_fields_set
+    ]
+    if not assumed:
+        return ""
+    many = len(assumed) > 1
+    return (
+        f"Case{'s' * many} {listed(assumed)} state{'s' * (not many)} no distribution: forces act "
+        'as bearing pressure on the loaded half of their bands ("cosine").'
+    )
+
+
+def require_models(study: Study, todo: Iterable[Task], model: str) -> None:
+    """Raise InputError, with all such tasks, for a model that cannot solve some."""
+    wrong = Errors(study.path)
+    for task in todo:
+        wrong.attempt(partial(_require_model, study, model, task))
+    wrong.tell()
+
+
+def _require_model(study: Study, model: str, task: Task) -> None:
+    """Raise InputError for a model that cannot solve a task."""
+    pin = task.pin.name
+    if model in ("beam", "harmonic") and not task.pin.revolved:
+        raise study.error(
+            f"pin {pin} is not a body of revolution, which the {model} model needs: use auto or "
+            "solid",
+            at=f"pin.{pin}",
+            code="not-of-revolution",
+        )
+    if not task.lugs:
+        return
+    beam = study.table.analysis.joints == "foundation"
+    how, fits = ("on foundations in", "beam") if beam else ("in contact with", "harmonic")
+    if model not in ("auto", fits):
+        raise study.error(
+            f"pin {pin} is {how} its lugs, which requires the {fits} model: use auto or {fits}, "
+            f'or analysis.joints = "prescribed" for the {model} model',
+            at=f"pin.{pin}",
+            code="model-without-contact",
+        )
 
 
 def _at(build: Callable[..., PinLoads], moving: MovingLoads, times: Floats) -> PinLoads:

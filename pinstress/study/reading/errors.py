@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pinstress.study.schema.shown import ELLIPSIS
 
@@ -21,7 +21,10 @@ class InputError(Exception):
     code: short and stable, for programs.
     lines: the errors, one by one, by their codes in `codes`.
     more: the number of further errors.
+    remainder: of a study with errors (file.py: Remainder), where anything of it is valid.
     """
+
+    remainder: Any = None
 
     def __init__(
         self, message: str, listed: Iterable[tuple[str, str]] = (), more: int = 0, code: str = ""
@@ -51,12 +54,14 @@ class Wrong:
     """An error: a message that begins with its key, or with the key `at` to point at.
 
     hint: gives a likely intended name; called only for errors that are printed, as it takes time.
+    name: what the message says does not exist.
     """
 
     message: str
     hint: Callable[[], str] = str
     at: str = ""
     code: str = ""
+    name: str = ""
 
 
 def study_error(path: Path, text: str, wrong: Sequence[Wrong]) -> InputError:
@@ -99,13 +104,22 @@ class Errors:
         try:
             return make()
         except InputError as error:
-            self.lines |= dict(zip(error.lines, error.codes, strict=True))
-            self.more += error.more
+            self.add(error)
             return None
+
+    def add(self, error: InputError) -> None:
+        """Add errors."""
+        self.lines |= dict(zip(error.lines, error.codes, strict=True))
+        self.more += error.more
 
     def tell(self) -> None:
         """Raise InputError with all errors, if there are any."""
         if self.lines:
-            listed = list(self.lines.items())
+            listed = sorted(self.lines.items(), key=self._line_number)
             beyond = max(len(listed) - MAX_LISTED_ERRORS, 0)
             raise _listed(self.path, listed[:MAX_LISTED_ERRORS], self.more + beyond) from None
+
+    def _line_number(self, item: tuple[str, str]) -> int:
+        """Return the line of the study that an error names; 0 for none."""
+        number, colon, _ = item[0].removeprefix(f"{self.path}:").partition(":")
+        return int(number) if colon and number.isdecimal() else 0

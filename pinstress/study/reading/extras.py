@@ -10,6 +10,7 @@ from pinstress.study.reading.file import Study
 EXTRAS = {  # by their package
     "cryptography": "cluster",
     "distributed": "cluster",
+    "pandas": "fatigue",  # which pylife needs
     "pylife": "fatigue",
     "typst": "pdf",
 }

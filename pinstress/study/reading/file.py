@@ -5,27 +5,26 @@ from __future__ import annotations
 import copy
 import hashlib
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from html import escape
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from loads import MB, FileError, TableError, read_regular, table_cases
+from loads import MB, FileError, TableError, read_regular
+from pinstress.study.reading.content import system_of, table_of
 from pinstress.study.reading.counted_twice import counted_twice
+from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import InputError, Wrong, study_error
 from pinstress.study.reading.file_names import same_files
-from pinstress.study.reading.limits import control_characters, texts, too_many
+from pinstress.study.reading.limits import control_characters, texts
+from pinstress.study.reading.materials import StoredMaterial, looked_up, with_materials
 from pinstress.study.reading.plausible import questions
-from pinstress.study.reading.references import cross_references
 from pinstress.study.reading.toml_text import read_toml
-from pinstress.study.reading.validation import explain
-from pinstress.study.schema.cases import GivenCase
 from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
 from pinstress.study.schema.tables import StudyTable
-from pinstress.study.schema.types import ANY_CASE, PROVENANCE_KINDS, usable_name
+from pinstress.study.schema.types import PROVENANCE_KINDS
 from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
 
 MAX_STUDY_SIZE = 16 * MB
@@ -48,6 +47,14 @@ class Sourced:
 
 
 @dataclass(frozen=True)
+class Remainder:
+    """What is valid of a study with errors, and what was removed from it."""
+
+    study: Study
+    damage: Damage
+
+
+@dataclass(frozen=True, repr=False)
 class Study:
     """A valid study.
 
@@ -63,6 +70,24 @@ class Study:
     provenance: tuple[Sourced, ...]
     questions: tuple[str, ...] = ()
     located: bool = True
+
+    def __repr__(self) -> str:
+        parts = f"pins: {len(self.table.pin)}, cases: {len(self.table.case)}, {self.table.units}"
+        return f"<Study {self.table.title!r} ({self.path}): {parts}>"
+
+    def _repr_html_(self) -> str:
+        """Return the pins with their connections, clamps and material as an HTML table."""
+        lines = [("pin", "connections", "clamps", "material")]
+        for name, pin in self.table.pin.items():
+            lines.append(
+                (name, ", ".join(self.connections(name)), ", ".join(pin.clamp), pin.material)
+            )
+        body = "".join(
+            f"<tr>{''.join(f'<td>{escape(x)}</td>' for x in line)}</tr>" for line in lines
+        )
+        cases = f"cases: {', '.join(self.table.case)}; units: {self.table.units}"
+        title = f"<p><b>{escape(self.table.title)}</b> ({escape(str(self.path))})</p>"
+        return f"{title}<p>{escape(cases)}</p><table>{body}</table>"
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -164,7 +189,7 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
     lines = text if located else ""
     provenance: list[Sourced] = []
     long: list[Wrong] = []
-    raw = unwrapped(read_toml(path, text), "", provenance, long)
+    raw = unwrapped(with_materials(path, read_toml(path, text)), "", provenance, long)
     if long:
         raise study_error(path, lines, long)
     wrong = [
@@ -175,36 +200,63 @@ def parse_study(path: Path, text: str, located: bool = True) -> Study:
         for s in provenance
         if s.kind not in PROVENANCE_KINDS
     ]
-    table = _table(path, lines, raw, wrong)
+    damage = Damage(raw)
+    table = table_of(path, raw, damage, wrong)
     wrong += control_characters([*texts(raw), *((s.key, s.note) for s in provenance)])
     notes = {s.key: s.note for s in provenance}
-    doubtful = questions(table, raw, _system(raw)) + counted_twice(table.analysis, notes)
-    if beyond := list(too_many(table)):
-        wrong += [Wrong(text, code="too-large") for text in beyond]
+    beyond = any(w.code == "too-large" for w in wrong)
+    doubtful: tuple[str, ...] = ()
+    if table is not None and not damage:
+        doubtful = questions(table, raw, system_of(raw)) + counted_twice(table.analysis, notes)
+    if beyond:
         wrong += [Wrong(text, code="doubtful") for text in doubtful]  # a wrong unit may be why
-    if not wrong:
+    if table is not None and not wrong:
         same = same_files(table.pin, table.case)
         wrong += [Wrong(text, code="same-file-names") for text in same]
-    if wrong:
-        raise study_error(path, lines, wrong)
+    if table is None or wrong:
+        error = study_error(path, lines, wrong)
+        if table is not None and not beyond:
+            remainder = Study(path, text, table, (), located=located)
+            error.remainder = Remainder(remainder, damage)
+        raise error
     return Study(path, text, table, tuple(provenance), doubtful, located)
 
 
 def raw_study(study: Study) -> dict[str, Any]:
-    """Return the content of the study's file, without provenance and notes."""
-    raw: dict[str, Any] = unwrapped(read_toml(study.path, study.text), "", [], [])
-    return raw
+    """Return the content of the study's file, without provenance and notes, with the materials
+    that it only names.
+    """
+    raw = with_materials(study.path, read_toml(study.path, study.text))
+    plain: dict[str, Any] = unwrapped(raw, "", [], [])
+    return plain
+
+
+def named_materials(study: Study) -> tuple[StoredMaterial, ...]:
+    """Return the materials that a study names and does not define."""
+    return tuple(looked_up(study.path, read_toml(study.path, study.text)).values())
 
 
 def with_value(raw: Mapping[str, Any], path: Sequence[str | int], value: Any) -> dict[str, Any]:
-    """Return a copy of a study's raw content with another value at a path; the rest is shared."""
+    """Return a copy of a study's raw content with another value at a path; the rest is shared.
+
+    Tables of lugs that are not in it are added; one number for both ends is made two.
+    """
     content: dict[str, Any] = dict(raw)
     here: Any = content
     for part in path[:-1]:
-        here[part] = copy.copy(here[part])
+        missing = isinstance(here, dict) and part not in here
+        inner = {} if missing else here[part]
+        here[part] = copy.copy(inner) if isinstance(inner, dict | list) else [inner, inner]
         here = here[part]
+    if replaces_fit(path):
+        here.pop("fit", None)
     here[path[-1]] = value
     return content
+
+
+def replaces_fit(path: Sequence[str | int]) -> bool:
+    """Return whether a value is the clearance of a lug, which its fit gives otherwise."""
+    return path[0] == "pin" and "lug" in path and path[-1] == "clearance"
 
 
 def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
@@ -216,32 +268,10 @@ def with_raw(study: Study, raw: Mapping[str, Any]) -> Study:
     """
     lines = study.text if study.located else ""
     wrong: list[Wrong] = []
-    table = _table(study.path, lines, raw, wrong)
-    wrong += [Wrong(text, code="too-large") for text in too_many(table)]
-    if wrong:
+    table = table_of(study.path, raw, Damage(raw), wrong)
+    if table is None or wrong:
         raise study_error(study.path, lines, wrong)
     return replace(study, table=table, questions=())
-
-
-def _system(raw: Mapping[str, Any]) -> UnitSystem:
-    units = raw.get("units")
-    return UNIT_SYSTEMS.get(units if isinstance(units, str) else "", UNIT_SYSTEMS["m-N-s"])
-
-
-def _table(path: Path, lines: str, raw: Mapping[str, Any], wrong: list[Wrong]) -> StudyTable:
-    """Return the content in SI.
-
-    wrong: earlier errors, to which those of references are added.
-
-    Raises: InputError for content of the wrong form.
-    """
-    try:
-        table = StudyTable.model_validate(raw, context={"system": _system(raw)})
-    except ValidationError as error:
-        raise study_error(path, lines, wrong + explain(error)) from None
-    table = _with_cases_of_tables(table, path.parent, wrong)
-    wrong += cross_references(table)
-    return table
 
 
 def _written(value: Any) -> str:
@@ -289,53 +319,3 @@ def unwrapped(node: Any, key: str, sourced: list[Sourced], long: list[Wrong]) ->
     ]  # fmt: skip
     inner = {k: f"{key}.{k}" if key else k for k in node if len(k) <= MAX_KEY_LENGTH}
     return {k: unwrapped(node[k], place, sourced, long) for k, place in inner.items()}
-
-
-def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:
-    """Return the study with the cases of tables: sections whose name has a *.
-
-    Such a section gives a case for every name in the column `case` of its table, which replaces the
-    *.
-
-    folder: of the tables.
-    wrong: receives the errors.
-
-    Raises: InputError for an unusable table.
-    """
-    if not any(ANY_CASE in name for name in table.case):
-        return table
-    cases = {name: case for name, case in table.case.items() if ANY_CASE not in name}
-    for section, case in table.case.items():
-        if ANY_CASE not in section:
-            continue
-        key = f"case.{section}"
-        assert isinstance(case, GivenCase)
-        assert case.table is not None
-        if section.count(ANY_CASE) > 1:
-            wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
-        elif case.table_case is not None:
-            text = f"{key}.table_case: the name with a * already stands for every case of the table"
-            wrong.append(Wrong(text, code="give-one"))
-        else:
-            for name in _table_case_names(folder / case.table, case):
-                ours = section.replace(ANY_CASE, name)
-                wrong += _table_case_mistakes(key, ours, case.table, ours in cases)
-                cases[ours] = case.model_copy(update={"table_case": name})
-    return table.model_copy(update={"case": cases})
-
-
-def _table_case_names(path: Path, case: GivenCase) -> list[str]:
-    try:
-        return table_cases(path, case.columns)
-    except TableError as error:
-        raise InputError(str(error), code=error.code) from None
-
-
-def _table_case_mistakes(key: str, name: str, table: str, known: bool) -> Iterator[Wrong]:
-    if known:
-        text = f"{key}: case {name!r} of {table} exists already; rename one, or this section"
-        yield Wrong(text, code="duplicate-case")
-    try:
-        usable_name(name)
-    except ValueError as error:
-        yield Wrong(f"{key}: case {name!r} of {table}: {error}", code=getattr(error, "code", ""))

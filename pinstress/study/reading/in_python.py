@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.file import Study, parse_study, unwrapped, with_value
+from pinstress.study.reading.file import Study, parse_study, replaces_fit, unwrapped, with_value
+from pinstress.study.reading.materials import looked_up, with_materials
+from pinstress.study.schema.lugs import with_lug_defaults
 from pinstress.study.schema.shown import as_text
 
 KEY_PART_PATTERN = re.compile(r'(?:"([^"]*)"|([^.\["]+))((?:\[\d+\])*)(?:\.|$)')
 INDEX_PATTERN = re.compile(r"\[(\d+)\]")
+INDEX_RANGE_PATTERN = re.compile(r"\[(\d+)-(\d+)\]")  # neighbours that have a number in common
+PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
+# Between keys of one dimension (geometry.shape.dimensions.KEY_JOINT), not within a name
+JOINT_PATTERN = re.compile(r" & (?=profile\[|meridian\[|bore_meridian\[|band\.)")
+PIN_PATTERN = re.compile(r'pin\.(?:"[^"]*"|[^.\["]+)\.')
+PAIR_KEYS = "edge_radius", "bore_radius"  # of both ends, also where one number stands for both
 
 
 def study_from(
@@ -45,8 +54,8 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
     """Return the study with other values.
 
     changes: values by key as in messages: {"pin.E.profile[2].diameter": "1.5 in",
-    "analysis.tolerance": 0.01}. Missing keys are added. The provenance of replaced values is
-    removed; comments are kept.
+    "analysis.tolerance": 0.01}; for one that stands for several, see `single_keys`. Missing keys
+    are added, and tables of lugs. The provenance of replaced values is removed; comments are kept.
 
     Raises: InputError as load_study, and for a key that does not exist in the study.
     """
@@ -54,9 +63,85 @@ def changed_study(study: Study, changes: Mapping[str, Any]) -> Study:
 
     document: Any = tomlkit.parse(study.text)
     for key, value in changes.items():
-        parts = key_parts(study, key)
-        _place(study, document, parts, key)[parts[-1]] = _plain(value, key)
+        for single in _singles(study, key):
+            _change(study, document, single, value)
     return parse_study(study.path, tomlkit.dumps(document), study.located)
+
+
+def single_keys(key: str) -> Iterator[str]:
+    """Yield the keys that a key stands for.
+
+    "pin.E.profile[1-3].diameter" stands for three, and "pin.E.meridian[2][1] & band.B.z[1]" for two
+    of pin E.
+
+    Raises: ArgumentError for a range that does not count upwards.
+    """
+    pin, (first_key, *others) = PIN_PATTERN.match(key), JOINT_PATTERN.split(key)
+    if pin is not None and others:
+        for part in (first_key, *(pin[0] + other for other in others)):
+            yield from single_keys(part)
+        return
+    match = INDEX_RANGE_PATTERN.search(key)
+    if match is None:
+        yield key
+        return
+    first, last = (int(end) for end in match.groups())
+    if not 0 < first < last:
+        raise ArgumentError(
+            f"[{first}-{last}] is no range; the smaller element first", "not-a-range"
+        )
+    for index in range(first, last + 1):
+        yield from single_keys(f"{key[: match.start()]}[{index}]{key[match.end() :]}")
+
+
+def key_part(name: str) -> str:
+    """Return a name as a key has it: in quotes where TOML needs them."""
+    return name if PLAIN_NAME_PATTERN.fullmatch(name) else f'"{name}"'
+
+
+def _singles(study: Study, key: str) -> Iterator[str]:
+    """Yield the keys that a key stands for.
+
+    Raises: InputError.
+    """
+    try:
+        yield from single_keys(key)
+    except ArgumentError as error:
+        raise study.error(f"{key}: {error}", code=error.code) from None
+
+
+def _change(study: Study, document: Any, key: str, value: Any) -> None:
+    """Set the value at a key of a document of tomlkit."""
+    parts = key_parts(study, key)
+    match parts:
+        case ["pin", str(pin), "lug", str(connection), *inner]:
+            write_lug(document, study, pin, connection, inner[:-1])
+        case ["material", str(name), _, *_]:
+            _write_material(document, study, name)
+    table = _place(study, document, parts, key, split=True)
+    if replaces_fit(parts):
+        table.pop("fit", None)
+    table[parts[-1]] = _plain(value, key)
+
+
+def write_lug(
+    document: Any, study: Study, pin: str, connection: str, inner: Iterable[str | int] = ()
+) -> None:
+    """Write the empty table of a lug that is in a study only by its lug_defaults or connection.
+
+    document: the study as tomlkit has it.
+    inner: names of tables in that of the lug, to be written, too.
+    """
+    import tomlkit
+
+    known = study.table.pin.get(pin)
+    if known is None or connection not in (*known.lug, *study.connections(pin)):
+        return
+    table = document["pin"][pin]
+    for name in ("lug", connection, *inner):
+        if name not in table:
+            table[name] = tomlkit.inline_table()
+        table = table[name]
 
 
 def changed_raw(
@@ -68,19 +153,40 @@ def changed_raw(
     Raises: InputError for a key that does not exist in the study.
     """
     for key, value in changes.items():
-        parts = key_parts(study, key)
-        _place(study, raw, parts, key)
-        raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
+        for single in _singles(study, key):
+            parts = key_parts(study, single)
+            complete = with_lug_defaults(dict(raw))
+            _place(study, _with_lug(complete, study, parts), parts, single)
+            raw = with_value(raw, parts, unwrapped(_plain(value, key), key, [], []))
+    named = with_materials(study.path, dict(raw)) if changes else raw
+    unchanged = named.get("material") == raw.get("material")
+    return raw if unchanged else unwrapped(named, "", [], [])
+
+
+def _with_lug(raw: dict[str, Any], study: Study, parts: list[str | int]) -> dict[str, Any]:
+    """Return a study's content with the table of a lug that it has only by its connection."""
+    match parts:
+        case ["pin", str(pin), "lug", str(connection), *_] if pin in study.table.pin:
+            if connection in study.connections(pin):
+                lugs = raw["pin"][pin].get("lug", {})
+                return with_value(raw, ["pin", pin, "lug"], {connection: {}, **lugs})
     return raw
 
 
-def _place(study: Study, table: Any, parts: list[str | int], key: str) -> Any:
+def _place(study: Study, table: Any, parts: list[str | int], key: str, split: bool = False) -> Any:
     """Return the table or list that has the last part of a key.
+
+    split: whether one number for both ends is made two in the table.
 
     Raises: InputError for a key that does not exist; a table may lack its last part.
     """
     for part in parts[:-1]:
-        table = _inside(study, table, part, key)
+        owner, table = table, _inside(study, table, part, key)
+        if part in PAIR_KEYS and isinstance(table, int | float | str):
+            table = [table, table]
+            if split:
+                _unwrapped(owner)[part] = table
+                table = _unwrapped(owner)[part]
     if isinstance(parts[-1], int):
         table = _unwrapped(table)
         _inside(study, table, parts[-1], key)  # an item that is there
@@ -91,6 +197,15 @@ def _unwrapped(table: Any) -> Any:
     """Return the value of { value, provenance }."""
     wrapped = isinstance(table, Mapping) and "value" in table and "provenance" in table
     return table["value"] if wrapped else table
+
+
+def _write_material(document: Any, study: Study, name: str) -> None:
+    """Write the table of a material that a study only names, with its source."""
+    import tomlkit
+
+    stored = looked_up(study.path, document.unwrap()).get(name)
+    if stored is not None:
+        document.setdefault("material", tomlkit.table())[name] = stored.table
 
 
 def key_parts(study: Study, key: str) -> list[str | int]:

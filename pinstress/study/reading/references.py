@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import partial
 
 from assess.fatigue.flight import flight
+from assess.requirement import LEVELS_OF_CHECK
 from pinbase.errors import ArgumentError
 from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.materials import library
 from pinstress.study.schema.cases import (
     ApplyTable,
     GivenCase,
@@ -18,6 +20,7 @@ from pinstress.study.schema.cases import (
 )
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import AtWheel, DropCase, GroundCase
+from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.mechanism import (
     MechanismTable,
     RotaryDrive,
@@ -25,13 +28,17 @@ from pinstress.study.schema.mechanism import (
     drive_name,
 )
 from pinstress.study.schema.pins import MaterialTable
-from pinstress.study.schema.shown import as_text, near
+from pinstress.study.schema.require import level_of
+from pinstress.study.schema.shown import as_text, in_toml, near
 from pinstress.study.schema.tables import StudyTable
 
 
 def cross_references(table: StudyTable) -> Iterator[Wrong]:
     """Yield the references to things that do not exist."""
     bears: dict[str, str] = {}
+    common = _materials(table.lug_defaults or LugTable())
+    for at, made_of in common.items():
+        yield from _known(f"lug_defaults.{at}", "material", made_of, table.material)
     for name, pin in table.pin.items():
         yield from _known(f"pin.{name}.material", "material", pin.material, table.material)
         surfaces = dict.fromkeys(connection for _, connection in pin.connections)
@@ -40,11 +47,8 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
         for connection, lug in pin.lug.items():
             key = f"pin.{name}.lug.{connection}"
             yield from _known(key, "connection or segment", connection, surfaces)
-            for at, made_of in (
-                ("material", lug.material),
-                ("bushing.material", None if lug.bushing is None else lug.bushing.material),
-            ):
-                if made_of is not None:
+            for at, made_of in _materials(lug).items():
+                if made_of not in common.values():
                     yield from _known(f"{key}.{at}", "material", made_of, table.material)
         for key, connection in pin.connections:
             if connection in bears:
@@ -62,6 +66,7 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
     for pin_name in limited if isinstance(limited, list) else ():
         yield from _known("analysis.limit_load", "pin", pin_name, table.pin)
     yield from _of_cases(table, bears)
+    yield from _of_requirements(table)
     yield from _of_sequences(table)
     if table.mechanism is not None:
         yield from _of_pins(table, table.mechanism, bears)
@@ -78,16 +83,21 @@ def cross_references(table: StudyTable) -> Iterator[Wrong]:
                 yield from _known(f"{key}.{field}", field, getattr(check, field), pool)
 
 
+def _materials(lug: LugTable) -> dict[str, str]:
+    """Return the materials that a lug names, by their keys."""
+    bushing = {} if lug.bushing is None else {"bushing.material": lug.bushing.material}
+    return bushing if lug.material is None else {"material": lug.material, **bushing}
+
+
 def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
     """Yield errors for bearing strengths with which no pressure is compared.
 
     They belong to materials of no pin on which a link bears, and of no lug or bushing.
     """
-    bears: set[str | None] = set()
+    bears: set[str] = set()
     for pin in table.pin.values():
         lugs = pin.lug.values()
-        bears |= {lug.material for lug in lugs}
-        bears |= {lug.bushing.material for lug in lugs if lug.bushing is not None}
+        bears |= {made_of for lug in lugs for made_of in _materials(lug).values()}
         if pin.connections or lugs:
             bears.add(pin.material)
     for name, material in table.material.items():
@@ -102,8 +112,11 @@ def _of_bearing(table: StudyTable) -> Iterator[Wrong]:
 
 def _known(where: str, what: str, name: str, names: Collection[str]) -> Iterator[Wrong]:
     if name not in names:
+        if what == "material":
+            names = [*names, *library()]
         code = f"unknown-{what.split()[-1]}"
-        yield Wrong(f"{where}: no {what} {as_text(name)}; ", partial(near, name, names), code=code)
+        hint = partial(near, name, names)
+        yield Wrong(f"{where}: no {what} {as_text(name)}; ", hint, code=code, name=name)
 
 
 def _of_cases(table: StudyTable, bears: dict[str, str]) -> Iterator[Wrong]:
@@ -149,6 +162,42 @@ def _of_sequences(table: StudyTable) -> Iterator[Wrong]:
             elif isinstance(case, StaticCase | GroundCase) and step.duration is None:
                 text = f"{where}: {as_text(step.case)} is at rest; give its duration"
                 yield Wrong(text, code="missing-key")
+
+
+def _of_requirements(table: StudyTable) -> Iterator[Wrong]:
+    """Yield errors unless pins and cases exist, the level fits the check, and there is one factor
+    for each pin, case, check and level.
+    """
+    known: dict[tuple[str, str, str, str], int] = {}
+    for i, require in enumerate(table.require, 1):
+        where, level = f"require[{i}]", level_of(require)
+        for what, names, pool in (
+            ("pin", require.pins, table.pin),
+            ("case", require.cases, table.case),
+        ):
+            for name in names or ():
+                yield from _known(f"{where}.{what}s", what, name, pool)
+        if level not in LEVELS_OF_CHECK[require.check]:
+            fitting = " or ".join(map(in_toml, LEVELS_OF_CHECK[require.check]))
+            text = f"{where}.level: {require.check} is not required at {level} load; use {fitting}"
+            yield Wrong(text, code="level-without-check")
+        cases: Iterable[str] = require.cases or table.case
+        if require.check == "fatigue":
+            cases = ("",)
+            if require.cases:
+                text = "fatigue is over all cases of the spectrum; remove this"
+                yield Wrong(f"{where}.cases: {text}", code="key-not-applicable")
+        keys = [(p, c, require.check, level) for p in require.pins or table.pin for c in cases]
+        again = next((key for key in keys if known.get(key, i) != i), None)
+        if again is not None:
+            pin, case, check, _ = again
+            yield Wrong(
+                f"{where}: {check} of pin {pin}{f' in case {case}' if case else ''} is required at "
+                f"{level} load by require[{known[again]}], too; name other pins or cases in one of "
+                "them",
+                code="duplicate-requirement",
+            )
+        known |= {key: i for key in keys if key not in known}
 
 
 MATERIAL_TABLE_OF_METHOD = {
@@ -215,7 +264,8 @@ def _of_pins(
     for connection, pin in bears.items():
         if connection not in have:
             text = f"pin.{pin}: connection {as_text(connection)} is not in the mechanism; "
-            yield Wrong(text, partial(near, connection, have), code="unknown-connection")
+            hint = partial(near, connection, have)
+            yield Wrong(text, hint, code="unknown-connection", name=connection)
 
 
 def named_joints(mechanism: MechanismTable) -> Iterator[tuple[str, str]]:
@@ -252,6 +302,8 @@ def _of_mechanism(mechanism: MechanismTable) -> Iterator[Wrong]:
     bodies = dict.fromkeys(["ground", *mechanism.body])
     for name, joint in mechanism.joint.items():
         where = f"mechanism.joint.{name}"
+        for origin in joint.origins:
+            yield from _known(f"{where}.at", "joint", origin, mechanism.joint)
         if joint.fixed_in is not None:
             yield from _known(f"{where}.fixed_in", "body", joint.fixed_in, bodies)
         for connection, body in joint.connections.items():

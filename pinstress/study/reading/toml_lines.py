@@ -83,7 +83,7 @@ def lines_of(text: str, messages: Iterable[str]) -> list[int | None]:
     # Messages leave out the `value` of { value, provenance }, and the index of an only table.
     for unsaid in ((), ("value",), ("value", 0)):
         for place, line in everywhere.items():
-            known.setdefault(_said([part for part in place if part not in unsaid]), line)
+            known.setdefault(said([part for part in place if part not in unsaid]), line)
     longest = max(map(len, known), default=0)
     return [_line(known, longest, message) for message in messages]
 
@@ -109,7 +109,7 @@ def _keys(known: dict[str, int], message: str) -> Iterator[str]:
             yield message[:end]
 
 
-def _said(place: Sequence[str | int]) -> str:
+def said(place: Sequence[str | int]) -> str:
     """Return a place as messages spell it, which count from 1."""
     return "".join(f"[{p + 1}]" if isinstance(p, int) else f".{p}" for p in place)[1:]
 

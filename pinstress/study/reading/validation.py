@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from pydantic import ValidationError
 
+from pinstress.study.reading.damage import Damage, stand_in
 from pinstress.study.reading.errors import Wrong
-from pinstress.study.schema.shown import in_toml
+from pinstress.study.reading.toml_lines import Place
+from pinstress.study.schema.shown import in_toml, nearest
 from pinstress.study.schema.types import UNKNOWN_KEY_ERROR, hint_for_key
 
 # By pydantic's type of error: our code, and what would be right. Its other types need a field of a
@@ -45,6 +48,66 @@ OTHER_MISTAKE = ("not-valid", "cannot have this value")
 def explain(error: ValidationError) -> list[Wrong]:
     """Return all errors, each with its key."""
     return [_explained(dict(item)) for item in error.errors(include_url=False)]
+
+
+def remove_wrong(error: ValidationError, tree: Any, damage: Damage) -> list[Wrong]:
+    """Remove from a study what is wrong in its remainder, and return the errors that do not follow
+    from what was removed before.
+
+    tree: the remainder of the study.
+    """
+    wrong, removals = [], []
+    for item in error.errors(include_url=False):
+        place = _place(item["loc"], tree)
+        there = damage.original(place)
+        if not _follows(dict(item), there, damage):
+            wrong.append(damage.renumbered(_explained(dict(item)), place))
+        if item["type"] == UNKNOWN_KEY_ERROR:
+            there = (*there, item["ctx"]["key"])
+        elif item["type"] == "missing" and stand_in(there) is None:
+            there = there[:-1]  # the table or list is useless without it
+        removals.append(there)
+    for there in removals:
+        damage.remove(there)
+    return wrong
+
+
+def _place(loc: tuple[int | str, ...], tree: Any) -> Place:
+    """Return the place of an error, without the tags that pydantic adds for unions."""
+    place: Place = ()
+    node = tree
+    for i, part in enumerate(loc):
+        if str(part).startswith(("<", "[key]")) or (i == 2 and loc[0] == "case"):
+            continue
+        if isinstance(part, int) and not isinstance(node, list):
+            continue  # of the one table that may be written without a list
+        place += (part,)
+        try:
+            node = node[part]
+        except (KeyError, IndexError, TypeError):
+            node = None
+    return place
+
+
+def _follows(item: dict[str, Any], place: Place, damage: Damage) -> bool:
+    """Return whether an error may follow from parts that were removed from the same table or
+    list.
+
+    place: of the error, in the study.
+    """
+    table = place[:-1] if item["type"] == "missing" else place
+    removed = damage.children(table)
+    if place in damage.places or any(isinstance(child, int) for child in removed):
+        return True
+    if not removed:
+        return False
+    if item["type"] == "missing":
+        return any(nearest(child, [str(place[-1])], cutoff=0.5) for child in removed)
+    if item["type"] == "value_error":
+        message = str(item["ctx"]["error"])
+        words = re.findall(r"\w+", message)
+        return any(child in words or nearest(child, words) for child in removed)
+    return item["type"] in ("too_short", "too_long")
 
 
 def _explained(item: dict[str, Any]) -> Wrong:

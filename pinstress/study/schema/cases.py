@@ -29,9 +29,10 @@ from pinstress.study.schema.types import (
 class CaseTable(StrictTable):
     """Keys of all cases."""
 
-    distribution: Literal["uniform", "cosine"] = "uniform"
-    """Distribution of a transverse force over its band: "uniform", a traction of constant
-    direction, or "cosine", a bearing pressure on the loaded half."""
+    distribution: Literal["uniform", "cosine"] = "cosine"
+    """Distribution of a transverse force over its band, where no lug carries it: "cosine", a
+    bearing pressure on the loaded half, or "uniform", a traction of constant direction, under whose
+    edge stress is unbounded."""
     clamp: dict[str, list[str]] = {}
     """Pins that are clamped differently in this case, each with its clamped surfaces."""
 

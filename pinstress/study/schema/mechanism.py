@@ -92,6 +92,13 @@ class JointTable(StrictTable):
             raise ArgumentError("friction and diameter must be given together", "give-both")
         return self
 
+    @property
+    def origins(self) -> tuple[str, ...]:
+        """The joints from which its position is measured."""
+        if isinstance(self.at, Polar):
+            return (self.at.origin,)
+        return self.at.origins if isinstance(self.at, Dyad) else ()
+
 
 class BarTable(StrictTable):
     """A uniform straight bar between two joints, round or rectangular."""

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.fatigue import FkmTable, SnTable
+from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.types import (
     Angle,
     Density,
@@ -19,7 +20,6 @@ from pinstress.study.schema.types import (
     StrictTable,
     Switch,
     Tapered,
-    Tilt,
 )
 
 
@@ -206,52 +206,6 @@ class BandTable(StrictTable):
         return self
 
 
-class BushingTable(StrictTable):
-    """A ring of another material bonded in the bore of a lug."""
-
-    thickness: PositiveLength
-    """Wall thickness."""
-    material: str
-    """Name of a `[material]`."""
-
-
-Times = Annotated[Number, Field(gt=0.0)]
-
-
-class LugRangeTable(StrictTable):
-    """Between what values something of a lug may lie: [lower, upper]."""
-
-    clearance: tuple[Length, Length] | None = None
-    """Default: none, and twice the given (0.002 of the diameter where none is given)."""
-    stiffness: tuple[Times, Times] | None = None
-    """Times that of the lug as described. Default: [0.5, 2]."""
-    tilt: tuple[Tilt, Tilt] | None = None
-    """Default: ["free", "guided"]."""
-
-
-class LugTable(StrictTable):
-    """The eye in which a band of the pin sits: of the link at the connection of this name, or of
-    the surrounding structure, which does not move, at the segment of this name.
-    """
-
-    outer_diameter: PositiveLength | None = None
-    """Outer diameter of the eye. Default: 2.5 times the diameter of the band."""
-    material: str | None = None
-    """Name of a `[material]`. Default: the pin's material."""
-    clearance: Length = 0.0
-    """Diameter of the bore minus that of the pin; negative for interference."""
-    edge_radius: NotNegativeLength = 0.0
-    """Radius of the edges of the bore. 0 is sharp, where pressure has no bound: then
-    results have no peak of pressure there."""
-    tilt: Tilt | None = None
-    """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
-    Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
-    bushing: BushingTable | None = None
-    """A bushing bonded in the eye."""
-    range: LugRangeTable = LugRangeTable()
-    """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
-
-
 SHAPE_KEYS = "profile", "meridian", "geometry"
 SHAPES_OF_KEY = {
     "fillet": ("profile",),
@@ -298,6 +252,9 @@ class PinTable(StrictTable):
     lug: dict[str, LugTable] = {}
     """Lugs, by connection or by the name of a segment; an empty table takes all defaults. With any,
     the pin is supported by its lugs (see `analysis.joints`). Not with `geometry`."""
+    lugs: Switch = True
+    """Whether `lug_defaults` gives this pin a lug at every connection; it does so for no pin that
+    is clamped, in a case or in all."""
     balance: str | None = None
     """Connection whose force in cases of given forces is minus the sum of the others, and whose
     torque about the axis likewise; such cases do not state it. For forces that scatter
@@ -324,6 +281,8 @@ class PinTable(StrictTable):
                     f"{key} can only be used with {' or '.join(shapes)}; remove it",
                     "key-not-applicable",
                 )
+        if self.lug and not self.lugs:
+            raise ArgumentError("lugs = false, but lugs are given; remove either", "give-one")
         for name, band in self.band.items():
             if self.meridian is not None and band.z is None:
                 raise ArgumentError(

@@ -3,15 +3,17 @@
 import datetime
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, ValidationError, ValidationInfo, field_validator, model_validator
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import GivenCase, InstantCase, LegCase, MotionCase, StaticCase
 from pinstress.study.schema.fatigue import FatigueTable
 from pinstress.study.schema.landing import DropCase, GroundCase
 from pinstress.study.schema.leg import SpatialLegTable
+from pinstress.study.schema.lugs import LugTable, with_lug_defaults
 from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import MaterialTable, PinTable
+from pinstress.study.schema.require import RequireTable
 from pinstress.study.schema.sequence import SequenceTable
 from pinstress.study.schema.shown import as_text
 from pinstress.study.schema.size import SizeTable
@@ -53,7 +55,8 @@ class AnalysisTable(StrictTable):
     ("never")."""
     required_safety_factor: Annotated[Number, Field(gt=0.0)] | None = None
     """Safety factor that every pin must reach: yield strength over stress under the loads of the
-    study, without the factors below. Default: no comparison."""
+    study, without the factors below. A [[require]] on yield at limit load replaces it for its pins
+    and cases. Default: no comparison."""
     limit_factor: Annotated[Number, Field(gt=0.0)] = 1.0
     """Factor on the loads of the study for checks at limit load, against yield."""
     ultimate_factor: Annotated[Number, Field(gt=0.0)] = 1.5
@@ -145,7 +148,14 @@ class StudyTable(StrictTable):
     units: Literal["in-lbf-s", "mm-N-s", "m-N-s"]
     """The unit system of numbers without a unit, and of the results."""
     material: dict[str, MaterialTable] = {}
-    """Materials by name."""
+    """Materials by name. Others that are named are those of `materials` or of the library (see
+    `pinstress materials`)."""
+    materials: str | None = None
+    """A TOML file with further `[material.NAME]`, in the study's folder; its quantities have
+    units."""
+    lug_defaults: LugTable | None = None
+    """What every lug has unless its own table says otherwise. With it, pins that are not clamped
+    have a lug at every connection (see `pin.NAME.lugs`)."""
     pin: dict[Name, PinTable] = {}
     """Pins by name; without pins only `pinstress loads` can be used."""
     case: Annotated[
@@ -168,6 +178,8 @@ class StudyTable(StrictTable):
     """The leg, for cases of kind "spatial_leg"."""
     analysis: AnalysisTable = AnalysisTable()
     """Requirements on the analysis."""
+    require: list[RequireTable] = []
+    """Requirements on checks, besides the required safety factor."""
     fatigue: FatigueTable | None = None
     """How often cases occur, for damage and life. Default: fatigue is not assessed."""
     beam_check: BeamCheckTable | None = None
@@ -186,6 +198,17 @@ class StudyTable(StrictTable):
     """The title block of the report."""
     assumptions: list[str] = []
     """Assumptions, as sentences for the report."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _complete_lugs(cls, data: Any, info: ValidationInfo) -> Any:
+        if not isinstance(data, dict) or "lug_defaults" not in data:
+            return data
+        try:
+            LugTable.model_validate(data["lug_defaults"], context=info.context)
+        except ValidationError:
+            return data  # its mistakes are reported there, once
+        return with_lug_defaults(data)
 
     @field_validator("case", mode="before")
     @classmethod

@@ -27,13 +27,13 @@ class View:
 
     @staticmethod
     def of(points: Floats, peak: Floats) -> View:
-        """Return the view from the side of the maximum, slightly from one end, the axis level."""
+        """Return the view from the side of the maximum, slightly from one end, z to the right."""
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         angle = np.arctan2(peak[1] - centre[1], peak[0] - centre[0]) + VIEW_TURN_ANGLE
         end = _seen_from(points, peak)
         towards = np.array([np.cos(angle), np.sin(angle), VIEW_AXIAL_LEAN * end])
         towards /= np.linalg.norm(towards)
-        up = np.cross(np.array([0.0, 0.0, 1.0]), towards)
+        up = np.cross(towards, np.array([0.0, 0.0, 1.0]))
         up /= np.linalg.norm(up)
         basis = np.stack([np.cross(up, towards), up, towards])
         return View(centre + _distance((points - centre) @ basis.T) * towards, centre, up)

@@ -15,14 +15,14 @@ def line(x1: float, y1: float, x2: float, y2: float, more: str = "", ink: str = 
     )
 
 
-def text(x: float, y: float, words: str, halo: bool = False) -> str:
-    """Return an SVG text centred at x.
+def text(x: float, y: float, words: str, halo: bool = False, anchor: str = "middle") -> str:
+    """Return an SVG text at x: centred, or what else `anchor` is.
 
     halo: whether it has a white rim, so that it is legible over lines.
     """
     behind = ' stroke="#fff" stroke-width="3" paint-order="stroke"' if halo else ""
     return (
-        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="middle" fill="{INK_COLOUR}"{behind}>'
+        f'<text x="{x:.2f}" y="{y:.2f}" text-anchor="{anchor}" fill="{INK_COLOUR}"{behind}>'
         f"{escape(words)}</text>"
     )
 

@@ -35,12 +35,12 @@ def surface_plot(
     shape: for the strip with the bands.
     """
     z = surface.points[:, 2]
-    lugs = _unread(case)
+    lugs = unread_points(case)
     read = np.where(case.excluded | lugs, np.nan, case.largest)
     name = f"Pin {clipped(pin.pin)}, {clipped(pin.case)}"
     across = {"field": "x", "type": "quantitative", "title": f"z [{units.length}]", "sort": None,
               "scale": {"domain": [float(z.min()), float(z.max())], "nice": False}}  # fmt: skip
-    sides = _sides(z)
+    sides = outline_sides(z)
     spec = {
         "title": headed(f"{name}: maximum over the circumference"),
         "usermeta": {"columns": [f"z [{units.length}]", f"von Mises [{units.stress}]"]},
@@ -87,7 +87,7 @@ def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> 
     }  # fmt: skip
 
 
-def _sides(z: Floats) -> dict[str, slice]:
+def outline_sides(z: Floats) -> dict[str, slice]:
     """Return the points of the outer surface and of the bore, with shoulders, without end faces.
 
     The meridian runs up the outer surface, then down the bore.
@@ -101,7 +101,7 @@ def _sides(z: Floats) -> dict[str, slice]:
     return sides
 
 
-def _unread(case: SurfaceCase) -> Mask:
+def unread_points(case: SurfaceCase) -> Mask:
     """Return the points (P,) whose stress is nowhere read, since lugs press on them or beside."""
     if case.unread is None:
         return np.zeros(len(case.largest), dtype=bool)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
+from fea.core.peak import SingularZone
 from reports.data.changes import Remedy
 from reports.data.results import Results
 from reports.format.numbers import DASH, engineering, short
@@ -20,10 +23,10 @@ ROUND_OFF_FACTOR = 1.0 - 1e-9
 SINGULAR_ROWS_NOTE = (
     "Of singular rows the factor is reached only outside the excluded zones: first {}."
 )
+SPREAD_REMEDY = 'spread the load by distribution = "cosine", a pressure without such an edge'
 SINGULARITY_REMEDIES = {
     "sharp corner": "give the sharp corner a radius",
     "edge of a clamp": "replace the clamp by its hub, or by loads in equilibrium",
-    "edge of a load": 'spread the load by distribution = "cosine", a pressure without such an edge',
 }
 
 
@@ -67,11 +70,20 @@ def _remedies(results: Results) -> list[str]:
     """Return the remedy of each singularity that governs one of the rows."""
     rows = {(c.pin, c.case) for c in results.changes if c.singular}
     zones = [z for p in results.pins if (p.pin, p.case) in rows for z in p.singular_at if z.governs]
-    return [
+    return singularity_remedies(zones)
+
+
+def singularity_remedies(zones: Iterable[SingularZone]) -> list[str]:
+    """Return the remedy of each kind of singularity; at the edges of loads, by what acts there."""
+    zones = list(zones)
+    remedies = [
         text
         for kind, text in SINGULARITY_REMEDIES.items()
         if any(z.kind.endswith(kind) for z in zones)
     ]
+    of_loads = [z.advice for z in zones if z.kind.endswith("edge of a load")]
+    spread = [SPREAD_REMEDY if text.startswith("use distribution") else text for text in of_loads]
+    return [*remedies, *dict.fromkeys(spread)]
 
 
 def _loads(change: Remedy) -> str:

@@ -64,8 +64,12 @@ COLUMNS: list[Column[LandingPoint]] = [
 
 def landing_table(results: Results) -> Table[LandingPoint]:
     """Return every pin at every combination of impulse time, velocity change and pulse."""
-    required = results.required_safety_factor
-    rows = [LandingPoint(r, k, required) for r in results.landing for k in range(len(r.force))]
+    rows = [
+        LandingPoint(pin.landing, k, pin.required)
+        for pin in results.pins
+        if pin.landing
+        for k in range(len(pin.landing.force))
+    ]
     return Table("landing_range", COLUMNS, rows)
 
 

@@ -159,11 +159,18 @@ def not_made_words(results: Results) -> list[str]:
 
 
 def not_made_briefly(results: Results) -> str:
-    """Return the missing data in a sentence without the checks; empty where all were made."""
+    """Return the missing data as a clause without the checks; empty if all were made.
+
+    If a single material lacks strengths, it is named.
+    """
     every = skipped(results)
     alone = [x for x in every if x.count(", ") == 0 or not all(p in every for p in x.split(", "))]
-    needs = ", ".join(alone)
-    return f"Checks skipped, missing: {needs}." if needs else ""
+    owners = {x.rpartition(".")[0] for x in alone}
+    owner = owners.pop() if len(owners) == 1 else ""
+    if owner.startswith("material."):
+        lacks = ", ".join(x.rpartition(".")[2] for x in alone)
+        return f"{owner.removeprefix('material.').strip(chr(34))} lacks {lacks}"
+    return f"missing {', '.join(alone)}" if alone else ""
 
 
 def arms_table(results: Results) -> Table[ArmsRow]:

@@ -9,7 +9,7 @@ from typing import Any
 
 from assess.judgement import DEPENDS
 from fea.support.records import JointRange
-from reports.data.decision import limit, worst_first
+from reports.data.decision import common_factor, limit, worst_first
 from reports.data.dependence import BENEATH_CONTACT
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.results import PinResult, Results, Units
@@ -51,7 +51,7 @@ class FactorRow:
     @property
     def required(self) -> float | None:
         """The factor that is required."""
-        return finite(self.results.required_safety_factor)
+        return finite(self.pin.required)
 
     @property
     def units(self) -> Units:
@@ -133,7 +133,7 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
     Column("outcome", lambda row: row.pin.outcome, "", "result",
            lambda row: result_words(row.pin), numeric=False, in_json=True),
     Column("utilisation", lambda row: row.used, "", "utilisation",
-           lambda row: utilisation_range(row.pin, limit(row.results)), rank=2),
+           lambda row: utilisation_range(row.pin, limit(row.pin)), rank=2),
     Column("margin_of_safety", lambda row: row.margin),
     _error("truncation"),
     Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
@@ -171,7 +171,7 @@ def shown_factors(results: Results, without: Collection[str] = ()) -> Table[Fact
 
 
 def _required(results: Results) -> str:
-    required = results.required_safety_factor
+    required = common_factor(results.pins)
     return "" if required is None else f" (≥ {short(required)})"
 
 

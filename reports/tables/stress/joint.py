@@ -39,6 +39,18 @@ def bearing_share(row: PinRow[BandContact]) -> float | None:
     return shares.get(row.of.name)
 
 
+def carrying_share(row: PinRow[BandContact]) -> float | None:
+    """Return the part of a band's length along which the lug pushes in the direction of its force.
+
+    None where the load is not given by rings, or there is no force.
+    """
+    band = row.of
+    if not band.ends or not band.force:
+        return None
+    rings = zip(band.ends, band.ends[1:], band.line_load, strict=False)
+    return sum(b - a for a, b, (_, q) in rings if q > 0.0) / (band.ends[-1] - band.ends[0])
+
+
 def _range(row: PinRow[Variation]) -> JointRange:
     assert row.pin.joint is not None
     assert row.pin.joint.range is not None
@@ -58,6 +70,8 @@ BAND_COLUMNS: list[Column[PinRow[BandContact]]] = [
     Column("outer_diameter", lambda row: row.of.outer_diameter, "length", "outer diameter",
            lambda row: short(row.of.outer_diameter)),
     *unit_columns("length force stress"),
+    Column("carrying_share", carrying_share, "", "carries over",
+           lambda row: _per_cent(carrying_share(row)), drop_if_empty=True),
     Column("bearing_share", bearing_share, "", "of bearing strength",
            lambda row: _per_cent(bearing_share(row)), drop_if_empty=True),
 ]  # fmt: skip

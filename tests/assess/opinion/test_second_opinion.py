@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from assess.opinion import calculix
-from assess.opinion.calculix_compare import _outside, second_opinions
+from assess.opinion.calculix_compare import compared_nodes, second_opinions
 from assess.opinion.opinions import Opinion
 from fea.core.material import Material
 from fea.core.peak import Maximum
@@ -104,7 +104,7 @@ def test_what_no_longer_is_a_body_of_revolution_is_read_on_its_surface(steel: Ma
     pin = CutPin(plain, (), (Flat(0.004, 0.01, 0.008),))
     solution = solid_solution(pin, steel, ("start",), (UP,), (), MeshSize(2.0), 0.1)
     surface = set(solution.fields.surface.nodes.tolist())
-    read = set(_outside(solution).tolist())
+    read = set(compared_nodes(solution).tolist())
     excluded = surface - read
     assert read < surface
     x = solution.fields.space.nodes[list(excluded)]

@@ -10,11 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fea.core.material import Material
-from fea.core.pin_loads import PinLoads
-from fea.singular.singularities import find_singularities
+from fea.core.pin_loads import Distribution, PinLoads
+from fea.singular.singularities import find_singularities, singularities_of
 from fea.singular.williams import antiplane_exponent, plane_exponent
 from fea.solve.solve import solve_pin
 from geometry import GeometryError, Pin, Segment
+from tests.support.each import each
 from tests.support.errors import raises
 
 NU = 0.3
@@ -127,6 +128,34 @@ def test_edges_of_uniform_tractions_are_logarithms() -> None:
         assert singularity.radius == pytest.approx(0.02)
         assert 'distribution = "cosine"' in singularity.advice
     assert find_singularities(pin, (), ("A",), NU)[0].z == 1.0  # and not the rim at z = 0
+
+
+@each(
+    ("force", "moment", "distribution", "told"),
+    [
+        ((0, 9, 0), (0, 0, 0), "uniform", ["transverse"]),
+        ((0, 9, 9), (0, 0, 0), "uniform", ["transverse", "axial"]),
+        ((0, 9, 9), (0, 0, 0), "cosine", ["axial"]),
+        ((0, 9, 0), (0, 0, 9), "cosine", ["axial"]),
+        ((0, 9, 0), (9, 0, 0), "cosine", ["moment"]),
+    ],
+)
+def test_the_remedy_at_the_edge_of_a_load_is_that_of_what_acts(
+    force: tuple[float, ...], moment: tuple[float, ...], distribution: Distribution,
+    told: list[str], steel: Material,
+) -> None:  # fmt: skip
+    """Only a uniform transverse traction is cured by a bearing pressure."""
+    pin = Pin("P", (Segment(1, 2), Segment(1, 2, connection="B"), Segment(1, 2)))
+    loads = PinLoads(
+        "c", ("B",), np.array([[force]], float), np.array([[moment]], float), distribution
+    )
+    remedies = {"transverse": "a bearing pressure has no jump", "axial": "along the axis acts",
+                "moment": "a moment across the axis"}  # fmt: skip
+    zones = singularities_of(pin, steel, ("end",), (loads,))
+    edges = [zone for zone in zones if zone.kind == "edge of a load"]
+    assert [zone.z for zone in edges] == [1, 2]
+    for zone in edges:
+        assert [name for name, words in remedies.items() if words in zone.advice] == told
 
 
 def test_a_load_up_to_a_fillet_jumps_at_its_tangent_point() -> None:

@@ -30,9 +30,11 @@ profile = [{ length = 20, diameter = 20, name = "root" },
            { length = 60, diameter = 20, connection = "L" }]
 [case.up]
 kind = "given"
+distribution = "uniform"
 forces = { L = [6000, 0] }
 [case.down]
 kind = "given"
+distribution = "uniform"
 table = "down.csv"
 [analysis]
 model = "beam"

@@ -16,6 +16,7 @@ from geometry import Pin
 from pinstress.cli.commands import commands, run_command_line
 from pinstress.cli.output_folder import replacing
 from pinstress.study.reading.errors import InputError
+from pinstress.study.reading.shipped import shipped
 from tests.conftest import ROOT
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN, QUICK, pinstress
@@ -50,7 +51,7 @@ def two_pins(text: str) -> str:
         (["study.toml"], ("-988.86", "nan"), "must be finite, not nan"),
         (["study.toml"], ('["start"]', '["B"]'), "no load acts on it"),
         (["study.toml"], ("forces = { B = [0.0, -988.86] }", 'table = "t.csv"'), "t.csv"),
-        (["study.toml"], ('kind = "given"', 'kind = "given"\ndistribution = "sine"'), "cosine"),
+        (["study.toml"], ('distribution = "uniform"', 'distribution = "sine"'), "cosine"),
     ],
 )
 def test_bad_input_is_one_message_and_nothing_written(
@@ -92,11 +93,16 @@ def test_init_follows_no_link(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert run_command_line(["init", str(tmp_path)]) == 2
     assert "one_pin.toml exists already" in capsys.readouterr().err
     assert not (tmp_path / "home.toml").exists()
+    assert not (tmp_path / "pin_in_lugs.toml").exists()
 
 
-def test_init_writes_a_study_and_does_not_overwrite_it(tmp_path: Path) -> None:
-    assert pinstress("init", "new", cwd=tmp_path).returncode == 0
+def test_init_writes_studies_and_does_not_overwrite_them(tmp_path: Path) -> None:
+    done = pinstress("init", "new", cwd=tmp_path)
+    assert done.returncode == 0
+    assert [Path(line).name for line in done.stdout.split()] == ["pin_in_lugs.toml", "one_pin.toml"]
     assert (tmp_path / "new" / "one_pin.toml").read_text() == ONE_PIN
+    first = tmp_path / "new" / "pin_in_lugs.toml"
+    assert first.read_bytes() == shipped("pin_in_lugs.toml").read_bytes()
     again = pinstress("init", "new", cwd=tmp_path)
     assert again.returncode == 2
     assert "exists already" in again.stderr
@@ -157,7 +163,19 @@ def test_without_a_command_the_help_is_whole(capsys: pytest.CaptureFixture[str])
 
 @each(
     "command",
-    ["run", "loads", "chart", "check", "import", "init", "schema", "size", "view", "completion"],
+    [
+        "run",
+        "loads",
+        "chart",
+        "check",
+        "export",
+        "import",
+        "init",
+        "schema",
+        "size",
+        "view",
+        "completion",
+    ],
 )
 def test_help_begins_with_an_example(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command_line([command, "--help"]) == 0

@@ -11,6 +11,7 @@ import pytest
 from reports.data.results import PinShape, Results, Units
 from reports.files import write_reports
 from reports.format.file_names import animation_name, plot_name
+from reports.format.numbers import engineering
 from reports.page.page import MAX_PINS_AT_ONCE, render, write_page
 from reports.page.pin_drawing import draw_pin
 from reports.page.scripts import plots_of
@@ -100,7 +101,7 @@ def test_title_block_and_what_to_do_without_scripts(written: Path) -> None:
 
 def test_page_says_the_outcome(written: Path) -> None:
     text = parse(written).text
-    assert "fails: " in text
+    assert "pins miss the required factor 1.5" in text
     assert "not decided" in text
     assert "0.9346" in text
     assert "ab" * 32 in text
@@ -181,6 +182,22 @@ def test_animation_is_in_the_page_where_there_is_one(
     (found,) = parse(moving).within
     assert found == ANIMATION
     assert not parse(write_page(small, tmp_path)).within
+
+
+def test_a_page_of_loads_opens_with_the_motion(results: Results, tmp_path: Path) -> None:
+    cases = tuple(replace(results.motion[0], case=case) for case in ("first", "second"))
+    (tmp_path / animation_name("first")).write_text(ANIMATION, encoding="utf-8")
+    alone = replace(results, pins=(), shapes=(), surfaces=(), motion=cases)
+    path = write_page(alone, tmp_path)
+    text, page = path.read_text(encoding="utf-8"), parse(path)
+    assert "No pin was solved" not in page.text
+    assert page.within == [ANIMATION]
+    before, _, after = text.partition("<iframe")
+    assert "<details" not in before.split("<main")[1]  # nothing is to be opened first
+    assert 'id="motion"' in before
+    assert "<summary><h2>second</h2></summary>" in after
+    largest = max(p.force for table in results.reactions for p in table.largest)
+    assert f"Largest force: {engineering(largest)} lbf of strut on the pin at strut J" in page.text
 
 
 def test_published_values_stand_beside_ours(moving: Path) -> None:

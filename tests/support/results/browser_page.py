@@ -39,11 +39,11 @@ def views(browser: Any, pin: str) -> list[Any]:
     unfold(browser)
 
     def headed() -> list[Any]:
-        headings = browser.find_elements("css selector", "section.viewed > h2")
+        headings = browser.find_elements("css selector", "section.viewed h2")
         return [h for h in headings if h.get_attribute("textContent").strip() == f"Pin {pin}"]
 
     (heading,) = wait(browser, headed)
-    return list(heading.find_elements("xpath", "..//*[@data-view]"))
+    return list(heading.find_elements("xpath", "ancestor::section[1]//*[@data-view]"))
 
 
 def view(browser: Any, pin: str) -> Any:

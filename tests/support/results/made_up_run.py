@@ -66,7 +66,7 @@ def pin(name: str, case: str) -> PinResult:
     i = PINS.index(name)
     if (name, case) == ("J", "landing"):
         note = "nothing holds the pin and its loads are not in balance"
-        return row_with(name, case, verdict="rigid", note=note, held="nothing")
+        return row_with(name, case, verdict="rigid", note=note, held="nothing", required=1.5)
     largest = 1234.5678901234567 * (i + 1) ** 1.9 * (5.0 if case == "landing" else 1.0)
     loose = name == "D"
     factor = 118000.0 / largest

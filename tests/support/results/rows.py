@@ -49,6 +49,7 @@ def with_landing(results: Results, *ranges: LandingRange) -> Results:
     """
     rows = {(p.pin, p.case): p for p in results.pins}
     for r in ranges:
-        row = rows.get((r.pin, r.case)) or row_with(r.pin, r.case)
+        required = results.required_safety_factor
+        row = rows.get((r.pin, r.case)) or row_with(r.pin, r.case, required=required)
         rows[r.pin, r.case] = replace(row, landing=r)
     return replace(results, pins=tuple(rows.values()))

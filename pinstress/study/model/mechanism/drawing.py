@@ -39,3 +39,9 @@ class Drawing:
                 "joint-not-on-body",
                 at,
             )
+
+
+def joints_on(mechanism: MechanismTable, body: str) -> list[str]:
+    """Return the joints at which a body turns or of which it carries the pin."""
+    joints = mechanism.joint.items()
+    return [name for name, j in joints if body in (j.fixed_in, *j.connections.values())]

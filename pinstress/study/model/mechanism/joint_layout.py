@@ -16,34 +16,32 @@ class LayoutError(CodedError, ValueError):
     """A joint cannot be positioned; the message begins with its key."""
 
 
-def places(mechanism: MechanismTable, show: Show) -> dict[str, Point]:
-    """Return every joint's position as drawn, m.
+def places(mechanism: MechanismTable, show: Show) -> tuple[dict[str, Point], list[LayoutError]]:
+    """Return the position of every joint as drawn, m, and why joints have none.
+
+    Joints without a position are left out, as are those that are measured from them.
 
     show: formats a length.
-
-    Raises: LayoutError.
     """
     positions: dict[str, Point] = {}
+    errors: list[LayoutError] = []
     waiting = dict(mechanism.joint)
-    while waiting:
-        ready = [name for name, j in waiting.items() if set(_origins(j)) <= set(positions)]
-        if not ready:
-            name = next(iter(waiting))
-            unknown = [o for o in _origins(waiting[name]) if o not in mechanism.joint]
-            key = f"mechanism.joint.{name}.at"
-            if unknown:
-                raise LayoutError(f"{key}: there is no joint {unknown[0]!r}", "unknown-joint")
-            circle = f"{key}: the positions of {', '.join(waiting)} depend on each other"
-            raise LayoutError(f"{circle}; give one of them as [x, y]", "circular-positions")
+    while ready := [name for name, j in waiting.items() if set(j.origins) <= set(positions)]:
         for name in ready:
-            positions[name] = _placed(name, waiting.pop(name), positions, show)
-    return {name: positions[name] for name in mechanism.joint}
-
-
-def _origins(joint: JointTable) -> tuple[str, ...]:
-    if isinstance(joint.at, Polar):
-        return (joint.at.origin,)
-    return joint.at.origins if isinstance(joint.at, Dyad) else ()
+            try:
+                positions[name] = _placed(name, waiting.pop(name), positions, show)
+            except LayoutError as error:
+                errors.append(error)
+    lost = set(mechanism.joint) - set(positions) - set(waiting)
+    while behind := {name for name, j in waiting.items() if lost & set(j.origins)}:
+        lost |= behind
+        waiting = {name: j for name, j in waiting.items() if name not in behind}
+    if waiting:
+        circle = f"the positions of {', '.join(waiting)} depend on each other"
+        key = f"mechanism.joint.{next(iter(waiting))}.at"
+        text = f"{key}: {circle}; give one of them as [x, y]"
+        errors.append(LayoutError(text, "circular-positions"))
+    return {name: positions[name] for name in mechanism.joint if name in positions}, errors
 
 
 def _placed(name: str, joint: JointTable, positions: Mapping[str, Point], show: Show) -> Point:

@@ -18,20 +18,23 @@ from loads import (
     Parallel,
     Sharing,
     Slider,
+    Teeth,
     Turn,
 )
 from loads.linkage.mass_properties import flat_bar, round_bar
 from loads.motion.mobility import Mobility, require_determined
-from pinstress.study.model.mechanism.drawing import Drawing
+from pinstress.study.model.mechanism.drawing import Drawing, joints_on
 from pinstress.study.model.mechanism.drives import drive_table, mechanism_of
 from pinstress.study.model.mechanism.gears import gears, rack
-from pinstress.study.model.mechanism.joint_layout import LayoutError, Point, places
+from pinstress.study.model.mechanism.joint_layout import Point, places
 from pinstress.study.model.pins import pin
+from pinstress.study.reading.damage import Damage
 from pinstress.study.reading.errors import Wrong
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.mechanism import (
     BodyTable,
     JointTable,
+    MechanismTable,
     RotaryDrive,
     SharingTable,
     SliderTable,
@@ -49,30 +52,73 @@ def linkage(study: Study) -> Linkage:
 
     Raises: InputError with all its contradictions.
     """
+    drawn, wrong = contradictions(study)
+    if drawn is None:
+        raise study.errors(wrong)
+    return drawn
+
+
+def contradictions(
+    study: Study, damage: Damage | None = None
+) -> tuple[Linkage | None, list[Wrong]]:
+    """Return the linkage of the study's mechanism, or None and all its contradictions.
+
+    damage: what the study lacks; contradictions that may follow from it are left out.
+    """
     mechanism = mechanism_of(study)
     g = float(np.hypot(*mechanism.gravity)) or STANDARD_GRAVITY
-    try:
-        unit, factor = study.system.length, study.system.factor("length")
+    unit, factor = study.system.length, study.system.factor("length")
 
-        def shown(length: float) -> str:
-            return f"{length / factor:.6g} {unit}"
+    def shown(length: float) -> str:
+        return f"{length / factor:.6g} {unit}"
 
-        drawing = Drawing(mechanism, places(mechanism, shown), shown)
-        return _assembled(study, drawing, g)
-    except LayoutError as error:
-        raise study.error(str(error), code=error.code) from None
-    except LinkageError as error:
-        raise study.errors(_wrong(error)) from None
+    at, errors = places(mechanism, shown)
+    damage = Damage({}) if damage is None else damage
+    wrong = [Wrong(str(error), code=error.code) for error in errors if not damage]
+    for name in mechanism.joint.keys() - at.keys():
+        damage.remove(("mechanism", "joint", name, "at"))
+    anywhere = dict.fromkeys(mechanism.joint, (0.0, 0.0))
+    drawing = Drawing(mechanism, anywhere | at, shown)
+    assembled = _assembled(study, drawing, g)
+    if isinstance(assembled, Linkage) and not errors:
+        return assembled, []
+    if not isinstance(assembled, Linkage):
+        wrong += _wrong([error for error in assembled if _certain(error, mechanism, damage)])
+    return None, wrong
 
 
-def _wrong(error: LinkageError) -> list[Wrong]:
+# Codes of contradictions of a part that hold whatever else is missing of the mechanism; of bodies,
+# where it has that many joints, as more would not help
+OF_A_PART = {
+    "duplicate-name", "reserved-name", "fixed-and-turning", "friction-floats", "same-body",
+    "same-joint", "missing-inertia",
+}  # fmt: skip
+OF_A_BODY = {"missing-centre": 3, "particle": 2}
+
+
+def _certain(error: LinkageError, mechanism: MechanismTable, damage: Damage) -> bool:
+    """Return whether an error cannot follow from what is missing of the mechanism."""
+    part = ("mechanism", *error.at[:2])
+    if not damage.touches(("mechanism",)):
+        return True
+    if error.code == "too-few-connections":
+        return part not in damage.places and damage.children(part) in ([], ["at"])
+    if damage.touches(part):
+        return False
+    if error.code in OF_A_BODY and str(error.at[1]) not in damage.names:
+        joints = joints_on(mechanism, str(error.at[1]))
+        return len(joints) >= OF_A_BODY[error.code] or not damage.touches(("mechanism", "joint"))
+    return error.code in OF_A_PART
+
+
+def _wrong(errors: Iterable[LinkageError]) -> list[Wrong]:
     return [
         Wrong(
             f"mechanism: {problem}",
             at=".".join(map(str, ("mechanism", *problem.at))),
             code=problem.code,
         )
-        for problem in error.each
+        for problem in errors
     ]
 
 
@@ -84,30 +130,62 @@ def determined(study: Study, mechanism: Linkage) -> Mobility:
     try:
         return require_determined(mechanism)
     except LinkageError as error:
-        raise study.errors(_wrong(error)) from None
+        raise study.errors(_wrong(error.each)) from None
 
 
-def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage:
+def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage | list[LinkageError]:
+    """Return the linkage, or all its contradictions."""
     mechanism = drawing.mechanism
     wrong: list[LinkageError] = []
 
-    def each(make: Callable[[A], B], of: Iterable[A]) -> tuple[B, ...]:
+    def each(
+        make: Callable[[A], B], of: Iterable[A], instead: Callable[[A], B] | None = None
+    ) -> tuple[B, ...]:
+        """Return the parts; `instead` stands for one with an error, so that others are found."""
         parts = []
         for one in of:
             try:
                 parts.append(make(one))
             except LinkageError as error:
                 wrong.extend(error.each)
+                parts += [] if instead is None else [instead(one)]
         return tuple(parts)
 
-    bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items())
-    sliders = each(lambda s: _slider(drawing, *s), mechanism.slider.items())
+    bodies = each(lambda b: _body(drawing, *b, g), mechanism.body.items(), _body_anywhere)
+    jointless = {error.at[1] for error in wrong if not joints_on(mechanism, str(error.at[1]))}
+    each(lambda s: _require_on_slider(drawing, *s), mechanism.slider.items())
+    sliders = tuple(_slider(drawing, *s) for s in mechanism.slider.items())
     turning = [d for d in mechanism.drive if isinstance(d, RotaryDrive)]
-    turns = each(lambda d: _turn(study, drawing, d), turning)
+    turns = each(lambda d: _turn(study, drawing, d), turning, _turn_by_any_angle)
     meshing = each(lambda g: gears(*g, drawing), mechanism.gear.items())
     meshing += each(lambda r: rack(*r, drawing, sliders), mechanism.rack.items())
-    if wrong:
-        raise LinkageError.all(wrong)
+    all_mesh = len(meshing) == len(mechanism.gear) + len(mechanism.rack)
+    try:
+        drawn = _linkage(study, drawing, g, bodies, sliders, turns, meshing)
+    except LinkageError as error:
+        return wrong + [
+            e
+            for e in error.each
+            if (all_mesh or e.code != "unknown-connection")
+            and not (e.code == "particle" and e.at[1] in jointless)
+        ]
+    return wrong or drawn
+
+
+def _linkage(
+    study: Study,
+    drawing: Drawing,
+    g: float,
+    bodies: tuple[Body, ...],
+    sliders: tuple[Slider, ...],
+    turns: tuple[Turn, ...],
+    teeth: tuple[Teeth, ...],
+) -> Linkage:
+    """Return the linkage of these parts.
+
+    Raises: LinkageError where they contradict each other.
+    """
+    mechanism = drawing.mechanism
     return Linkage(
         bodies=bodies,
         joints=tuple(
@@ -130,8 +208,18 @@ def _assembled(study: Study, drawing: Drawing, g: float) -> Linkage:
             if s.connections is not None
         ),
         parallel=tuple(_parallel(s) for s in mechanism.sharing if s.parallel is not None),
-        teeth=meshing,
+        teeth=teeth,
     )
+
+
+def _body_anywhere(item: tuple[str, BodyTable]) -> Body:
+    """Return what stands for a body whose centre is not known."""
+    return Body(item[0], 0.0, (0.0, 0.0), item[1].inertia)
+
+
+def _turn_by_any_angle(drive: RotaryDrive) -> Turn:
+    """Return what stands for a driven angle that is not known as drawn."""
+    return Turn(drive_name(drive), drive.body, 0.0, drive.against)
 
 
 def _circle(joint: JointTable) -> float:
@@ -153,11 +241,15 @@ def _parallel(rule: SharingTable) -> Parallel:
 
 def _slider(drawing: Drawing, name: str, s: SliderTable) -> Slider:
     start, end = (drawing.at[p] if isinstance(p, str) else p for p in s.joints)
+    return Slider(name, *s.bodies, start, end, s.direction, s.friction, s.bearing)
+
+
+def _require_on_slider(drawing: Drawing, name: str, s: SliderTable) -> None:
+    """Raise LinkageError unless the bodies of a slider are at its joints."""
     right = "list the bodies in the order of their joints, or give the point as [x, y]"
     for body, place in zip(s.bodies, s.joints, strict=True):
         if isinstance(place, str):
             drawing.require_on(place, body, ("slider", name), right)
-    return Slider(name, *s.bodies, start, end, s.direction, s.friction, s.bearing)
 
 
 def _turn(study: Study, drawing: Drawing, drive: RotaryDrive) -> Turn:
@@ -203,11 +295,7 @@ def _body(drawing: Drawing, name: str, b: BodyTable, g: float) -> Body:
     mass = b.mass if b.mass is not None else (b.weight or 0.0) / g
     centre = b.centre
     if centre is None:
-        on = [
-            at[key]
-            for key, j in drawing.mechanism.joint.items()
-            if j.fixed_in == name or name in j.connections.values()
-        ]
+        on = [at[key] for key in joints_on(drawing.mechanism, name)]
         if len(on) not in (1, 2):
             raise LinkageError(
                 f"body {name}: a body with {len(on)} joints needs a centre = [x, y]",

@@ -125,7 +125,7 @@ def test_nothing_changed_nothing_solved_and_the_same_bytes(
         ("110 GPa", "111 GPa", ["B"]),
         ("600 MPa", "601 MPa", ["A"]),
         ("A = [30.0, 40.0]", "A = [30.0, 40.000000001]", ["A"]),
-        ('kind = "given"', 'kind = "given"\ndistribution = "cosine"', ["A", "B"]),
+        ('kind = "given"', 'kind = "given"\ndistribution = "uniform"', ["A", "B"]),
         ("tolerance = 0.2", "tolerance = 0.21", ["A", "B"]),
         ("tolerance = 0.2", "tolerance = 0.2\nexcluded_distance = 0.11", ["A", "B"]),
         ('"harmonic"', '"beam"', ["A", "B"]),

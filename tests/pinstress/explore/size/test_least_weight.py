@@ -11,7 +11,6 @@ import pytest
 import pinstress
 from geometry import Pin
 from pinstress.analysis.plan import prepare
-from pinstress.explore.size.counted import low_factor
 from pinstress.explore.size.least_weight import LightStudy, lighten
 from pinstress.explore.size.lightest_pin import WeightGoal, problem_of
 from pinstress.explore.size.other_dimensions import paths_of, written_study
@@ -19,6 +18,7 @@ from pinstress.explore.size.pin_shape import DIMENSION_KINDS, Proportions, Varie
 from pinstress.explore.size.pin_stress import PinStress
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import load_study
+from reports.data.decision import low_factor
 from tests.conftest import ROOT
 from tests.support.each import sampled
 from tests.support.pins.clevis import CLEVIS

@@ -8,15 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from assess.diameter_law import BEARING_EXPONENT, section_exponent
 from fea.core.places import SectionPlace
 from geometry import Pin, Segment
-from pinstress.explore.size.section_law import (
-    BEARING_EXPONENT,
-    PinTrial,
-    needed_scale,
-    section_exponent,
-    slope,
-)
+from pinstress.explore.size.section_law import PinTrial, needed_scale, slope
 
 RADIUS = 0.01
 PIN = Pin("P", (Segment(0.1, 2.0 * RADIUS),))

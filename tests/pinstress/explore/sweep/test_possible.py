@@ -115,3 +115,26 @@ def test_check_tells_how_many_designs_cannot_be_built() -> None:
     text = text.replace("profile = [", "fillet = 1.0\nprofile = [")
     _, _, warnings = describe(study_from(text))
     assert any("of 8 designs tried cannot be built: " in line for line in warnings)
+
+
+@each(
+    ("key", "low", "high", "end"),
+    [
+        ("pin.P.profile[2].diameter", 22.0001, 30.0, None),  # steps of 1 mm and more
+        ("pin.P.profile[2].diameter", 21.0, 30.0, "21 mm"),  # of 0.5 mm, below the fillet of 1 mm
+        ("pin.P.fillet", 0.5, 6.0, "6 mm"),
+        ("pin.P.profile[1].length", 5.0, 20.0, None),
+    ],
+)
+def test_check_tells_which_end_of_a_range_cannot_be_built(
+    key: str, low: float, high: float, end: str | None
+) -> None:
+    """None of the eight random designs need be near it."""
+    text = clevis().replace("[vary.parameters]", "[vary.parameters]\n"
+                            f'"{key}" = {{ uniform = [{low}, {high}] }}')  # fmt: skip
+    text = text.replace("length = 20, diameter = 20", "length = 20, diameter = 24")
+    text = text.replace("profile = [", "fillet = 1.0\nprofile = [")
+    _, _, warnings = describe(study_from(text))
+    ends = [line for line in warnings if line.startswith(f"vary.parameters.{key}: impossible at")]
+    assert len(ends) == (end is not None)
+    assert all(f"impossible at {end}: " in line and "fillet" in line for line in ends)

@@ -107,10 +107,11 @@ def test_what_shows_when_parts_are_put_together_is_told_at_once(tmp_path: Path) 
     with pytest.raises(InputError) as caught:
         describe(load_study(path))
     told = str(caught.value).splitlines()
-    assert told[0] == f"{path}: 6 errors"
+    assert told[0] == f"{path}: 7 errors"
     for key, message in (
         ("[mechanism.drive]", "drive crank: "),
         ("[mechanism.slider.guide]", "slider guide: joint A is not on ground"),
+        ('connections = { C = "piston" }', "pin C is fixed in piston"),
         ('  { length = 10, diameter = 30, name = "web" }', "pin O: the fillet"),
         ('clamp = ["lift"', "pin C has no surface 'lift'"),
         ('clamp = ["lift"', "pin C has no surface 'light'"),

@@ -66,7 +66,14 @@ TOO_MANY = {
 }
 
 
-LIMITED = "provenances that are none", "pins of unknown materials", "loads on unknown bodies"
+LIMITED = (
+    "segments with one unknown key",
+    "segments with many unknown keys",
+    "segments of unknown units",
+    "provenances that are none",
+    "pins of unknown materials",
+    "loads on unknown bodies",
+)
 
 
 @pytest.mark.parametrize("count", [1_000, pytest.param(10_000, marks=pytest.mark.slow)])

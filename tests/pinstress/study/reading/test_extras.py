@@ -34,7 +34,7 @@ RUN, SWEEP = ("run", "study.toml", "--out", "out"), ("sweep", "study.toml", "--o
 USERS = [
     ("distributed", varied(LOADS), (*SWEEP, "--scheduler", "tcp://nowhere:1"), "--scheduler"),
     ("cryptography", ONE_PIN, ("cluster-keys", "keys"), "cluster-keys"),
-    ("pylife", ONE_PIN + FATIGUE, RUN, "study.toml:37: fatigue"),
+    ("pylife", ONE_PIN + FATIGUE, RUN, "study.toml:38: fatigue"),
     ("typst", ONE_PIN, (*RUN, "--pdf"), "--pdf"),
     ("typst", ONE_PIN, ("pdf", "out"), "pdf"),
 ]

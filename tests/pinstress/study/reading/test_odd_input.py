@@ -34,7 +34,7 @@ ONE_PIN = (ROOT / "studies" / "one_pin.toml").read_text()
         (
             "forces = { B = [0.0, -988.86] }",
             'table = "gone.csv"',
-            "study.toml:25: case.landing.table: ",
+            "study.toml:26: case.landing.table: ",
         ),
         ("length = 1.5", 'length = "1 m^(9^9^9^9)"', "cannot read the unit"),
         ("length = 1.5", 'length = "1 9**99999999 m"', "cannot read the unit"),

@@ -1,0 +1,147 @@
+"""Decks for a reviewer: one pin at its governing instant, for another program, in his units.
+
+They are those of the second opinion. A pin with prescribed loads has the solid model's first mesh,
+supports and nodal forces, so that what pinstress finds on this very mesh is known. A pin in lugs
+has both bodies and their contact, on CalculiX's finer mesh of `calculix_in_lugs`, at full loads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from assess.opinion.calculix_compare import compared_nodes, first_solid_solution
+from assess.opinion.calculix_deck import deck_lines
+from assess.opinion.calculix_in_lugs import PinInLugs, meshes_for, transverse
+from assess.opinion.calculix_joint import joint_deck
+from assess.opinion.calculix_joint_deck import Dialect, JointDeck, Part
+from fea.core.material import Material
+from fea.core.peak import Maximum
+from fea.core.pin_loads import PinLoads
+from fea.core.voigt import von_mises
+from fea.solid.stress_recovery import nodal_stress
+from geometry import PinLike
+from pinbase.arrays import Floats
+
+
+@dataclass(frozen=True)
+class DeckUnits:
+    """The SI values of a deck's units of length and force; stress is force over length squared."""
+
+    length: float
+    force: float
+
+    @property
+    def stress(self) -> float:
+        return self.force / self.length**2
+
+
+@dataclass(frozen=True)
+class ReviewDeck:
+    """A deck without its head.
+
+    lines: its text.
+    node, at: number and coordinates (3,), m, of the node at which stress is compared, in the deck's
+    axes.
+    von_mises: of pinstress there, Pa. same_mesh: whether it is that of this mesh.
+    unknowns: of the model.
+    angle: by which its axes are turned from the pin's about z, rad.
+    half: whether it is the half in y > 0.
+    """
+
+    lines: Iterable[str]
+    node: int
+    at: Floats
+    von_mises: float
+    same_mesh: bool
+    unknowns: int
+    angle: float = 0.0
+    half: bool = False
+
+
+def prescribed_deck(
+    pin: PinLike,
+    material: Material,
+    clamps: tuple[str, ...],
+    cases: tuple[PinLoads, ...],
+    peak: Maximum,
+    distance: float,
+    units: DeckUnits,
+) -> ReviewDeck:
+    """Return the deck of a pin under prescribed loads at the governing instant of a peak.
+
+    clamps: names of its clamped surfaces. cases: that of the peak among them. distance: as in
+    fea.core.requirement.Requirement.
+
+    Raises: MeshError, SolveError.
+    """
+    assert peak.governing is not None
+    live = tuple(case for case in cases if case.case == peak.case)
+    solution = first_solid_solution(pin, material, clamps, live, distance)
+    fields, space = solution.fields, solution.fields.space
+    c = fields.coefficients(peak.governing)[0]
+    stress = von_mises(nodal_stress(space, material, (fields.displacement @ c)[..., None])[..., 0])
+    outside = compared_nodes(solution)
+    node = int(outside[stress[outside].argmax()])
+    lines = deck_lines(
+        space.nodes / units.length, space.elements, _in_units(material, units), fields.fixed,
+        fields.forces @ c / units.force,
+    )  # fmt: skip
+    return ReviewDeck(lines, node + 1, space.nodes[node], float(stress[node]), True, space.unknowns)
+
+
+def contact_deck(
+    seated: PinInLugs, peak: Maximum, units: DeckUnits, dialect: Dialect = "calculix"
+) -> ReviewDeck:
+    """Return the deck of a pin in contact with its lugs at the governing instant of a peak.
+
+    Raises: ArgumentError for loads and joints that it lacks; SolveError for forces out of balance.
+    """
+    loads = transverse(seated, peak.governing)
+    fineness = replace(meshes_for(loads)[1], scale=1.0)
+    deck, angle = joint_deck(seated.pin, seated.material, seated.lugs, loads, fineness)
+    surface = peak.places.surface if peak.places is not None else None
+    place = peak.location if surface is None else surface.location
+    stress = peak.max_von_mises if surface is None else surface.max_von_mises
+    assert place is not None
+    assert stress is not None
+    c, s = np.cos(angle), np.sin(angle)
+    at = np.array(place) @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    at[1] = abs(at[1]) if deck.half else at[1]
+    nodes = deck.pin.mesh.nodes
+    node = int(np.linalg.norm(nodes - at, axis=1).argmin())
+    lines = replace(_joint_in_units(deck, units), dialect=dialect).lines()
+    return ReviewDeck(lines, node + 1, nodes[node], stress, False, deck.unknowns, angle, deck.half)
+
+
+def _in_units(material: Material, units: DeckUnits) -> Material:
+    """Return a material with its modulus in the units of a deck."""
+    return replace(material, youngs_modulus=material.youngs_modulus / units.stress)
+
+
+def _joint_in_units(deck: JointDeck, units: DeckUnits) -> JointDeck:
+    """Return the same deck in other units than SI."""
+
+    def part(one: Part) -> Part:
+        mesh = replace(
+            one.mesh,
+            nodes=one.mesh.nodes / units.length,
+            inner=one.mesh.inner / units.length,
+            outer=one.mesh.outer / units.length,
+        )
+        lining = one.lining and (one.lining[0] / units.length, _in_units(one.lining[1], units))
+        return replace(one, mesh=mesh, material=_in_units(one.material, units), lining=lining)
+
+    eyes = tuple(
+        replace(
+            eye,
+            part=part(eye.part),
+            force=eye.force / units.force,
+            tilt=eye.tilt / (units.force * units.length),
+        )
+        for eye in deck.eyes
+    )
+    hardness = deck.stiffness * units.length / units.stress
+    return replace(deck, pin=part(deck.pin), eyes=eyes, stiffness=hardness)

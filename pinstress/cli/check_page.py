@@ -1,0 +1,99 @@
+"""The page of a checked study: what `check --open` draws."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from fea.support.lugs.lug import Lug
+from geometry import PinLike
+from pinbase.records import in_units
+from pinstress.analysis.gather.gather import shape_of_task
+from pinstress.analysis.mechanics.gather_loads import linkage_motion
+from pinstress.cli.check import Examination, support_of
+from pinstress.study.model.balance import given_warnings
+from pinstress.study.model.tasks import Task
+from pinstress.study.reading.file import Study
+from reports.data.check import CheckedPin, CheckedStudy, LugOutline, PlannedRow
+from reports.data.results import Units
+from reports.page.check import write_check
+
+
+def write_check_page(study: Study, examination: Examination, path: Path) -> None:
+    """Write the page of a valid study.
+
+    Raises: OSError.
+    """
+    s = study.system
+    first = {task.pin.name: task for task in reversed(examination.tasks)}
+    in_si = CheckedStudy(
+        title=study.table.title,
+        study=study.path.name,
+        units=Units(s.length, s.force, s.stress, s.time),
+        summary=tuple(examination.lines[1:]),
+        problems=(
+            *examination.unheld,
+            *examination.warnings,
+            *given_warnings(study),
+            *study.warnings,
+        ),
+        motions=tuple(
+            linkage_motion(study, name, loads.dynamics, None)
+            for name, loads in examination.loads.items()
+            if loads.dynamics is not None
+        ),
+        pins=tuple(
+            CheckedPin(
+                shape_of_task(first[name], ()),
+                support_of(study, first[name].pin, first[name].clamps),
+                tuple(_lugs(first[name])),
+            )
+            for name in study.table.pin
+            if name in first
+        ),
+        rows=tuple(
+            _row(study, task, k) for task in examination.tasks for k in range(len(task.loads))
+        ),
+    )
+    write_check(in_units(in_si, s.factor), path)
+
+
+def _lugs(task: Task) -> list[LugOutline]:
+    lugs = sorted(task.lugs, key=lambda lug: task.pin.band(lug.connection).z0)
+    return [_outline(task.pin, lug) for lug in lugs]
+
+
+def _outline(pin: PinLike, lug: Lug) -> LugOutline:
+    band = pin.band(lug.connection)
+    return LugOutline(
+        lug.connection, (band.z0, band.z1), lug.outer_diameter, lug.clearance, lug.material.name
+    )
+
+
+def _row(study: Study, task: Task, k: int) -> PlannedRow:
+    """Return the row of a task's case number k."""
+    loads = task.loads[k]
+    sizes = np.linalg.norm(loads.forces, axis=2)
+    at = int(sizes.max(axis=0).argmax())
+    return PlannedRow(
+        task.pin.name,
+        loads.case,
+        support_of(study, task.pin, task.clamps),
+        _model(study, task),
+        len(loads),
+        float(sizes.max()),
+        loads.surfaces[at],
+    )
+
+
+def _model(study: Study, task: Task) -> str:
+    """Return the models that may solve a task, the quickest first."""
+    table = study.table.analysis
+    if table.model != "auto":
+        return table.model
+    if not task.pin.revolved:
+        return "harmonic+local" if task.pin.cuts else "solid"
+    if task.lugs:
+        return "beam" if table.joints == "foundation" else "beam or harmonic"
+    return "beam or harmonic"

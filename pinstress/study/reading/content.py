@@ -1,0 +1,146 @@
+"""Content of a study: its tables, in SI, and what is wrong in them, all at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from loads import TableError, table_cases
+from pinstress.study.reading.damage import Damage, place_of
+from pinstress.study.reading.errors import InputError, Wrong
+from pinstress.study.reading.limits import too_many
+from pinstress.study.reading.references import cross_references
+from pinstress.study.reading.validation import remove_wrong
+from pinstress.study.schema.cases import GivenCase
+from pinstress.study.schema.shown import nearest
+from pinstress.study.schema.tables import StudyTable
+from pinstress.study.schema.types import ANY_CASE, usable_name
+from pinstress.study.schema.units import UNIT_SYSTEMS, UnitSystem
+
+MAX_READINGS = 50  # of a study with errors, each of which removes something
+
+
+def system_of(raw: Mapping[str, Any]) -> UnitSystem:
+    """Return the unit system that a study names, or SI."""
+    units = raw.get("units")
+    return UNIT_SYSTEMS.get(units if isinstance(units, str) else "", UNIT_SYSTEMS["m-N-s"])
+
+
+def table_of(
+    path: Path, raw: Mapping[str, Any], damage: Damage, wrong: list[Wrong]
+) -> StudyTable | None:
+    """Return the content in SI of what is valid of a study; None where that cannot be found.
+
+    damage: receives what is wrong.
+    wrong: earlier errors, to which those of content and references are added.
+
+    Raises: InputError for an unusable table of cases.
+    """
+    tree = raw
+    counted = False
+    for _ in range(MAX_READINGS):
+        removed = len(damage.places)
+        try:
+            table = StudyTable.model_validate(tree, context={"system": system_of(tree)})
+        except ValidationError as error:
+            wrong += remove_wrong(error, tree, damage)
+        else:
+            table = _with_cases_of_tables(table, path.parent, wrong)
+            if not counted:
+                wrong += [Wrong(text, code="too-large") for text in too_many(table)]
+                counted = True
+            references = list(cross_references(table))
+            wrong += _remove_references(references, tree, damage)
+            if len(damage.places) == removed:
+                return table if not references else None
+        if len(damage.places) == removed:
+            return None
+        tree = damage.remainder()
+    return None
+
+
+def _remove_references(references: list[Wrong], tree: Any, damage: Damage) -> list[Wrong]:
+    """Remove references to what does not exist, and return the errors that do not follow from what
+    was removed before.
+
+    tree: the remainder of the study.
+    """
+    places = [place_of(tree, wrong.at or wrong.message) for wrong in references]
+    originals = [damage.original(place) for place in places]
+    errors = [
+        replace(damage.renumbered(wrong, place), hint=partial(_hint, wrong, set(damage.names)))
+        for wrong, place, original in zip(references, places, originals, strict=True)
+        if not damage.explains(wrong, original)
+    ]
+    for wrong, place in zip(references, originals, strict=True):
+        some = next(iter(tree.get("material", ())), None)
+        drive = ("mechanism", "drive")  # what it drives tells what kind it is
+        damage.remove(
+            drive if place[:2] == drive else place,
+            some if wrong.code == "unknown-material" else None,
+        )
+    return errors
+
+
+def _hint(wrong: Wrong, removed: set[str]) -> str:
+    """Return the hint of an error, which may also name what was removed for another error."""
+    hint = wrong.hint()
+    if not wrong.name or hint.startswith("did") or not removed:
+        return hint
+    name = nearest(wrong.name, sorted(removed))
+    return f"did you mean {name!r}?" if name else hint
+
+
+def _with_cases_of_tables(table: StudyTable, folder: Path, wrong: list[Wrong]) -> StudyTable:
+    """Return the study with the cases of tables: sections whose name has a *.
+
+    Such a section gives a case for every name in the column `case` of its table, which replaces the
+    *.
+
+    folder: of the tables.
+    wrong: receives the errors.
+
+    Raises: InputError for an unusable table.
+    """
+    if not any(ANY_CASE in name for name in table.case):
+        return table
+    cases = {name: case for name, case in table.case.items() if ANY_CASE not in name}
+    for section, case in table.case.items():
+        if ANY_CASE not in section:
+            continue
+        key = f"case.{section}"
+        assert isinstance(case, GivenCase)
+        assert case.table is not None
+        if section.count(ANY_CASE) > 1:
+            wrong.append(Wrong(f"{key}: a name needs no second *", code="unusable-name"))
+        elif case.table_case is not None:
+            text = f"{key}.table_case: the name with a * already stands for every case of the table"
+            wrong.append(Wrong(text, code="give-one"))
+        else:
+            for name in _table_case_names(folder / case.table, case):
+                ours = section.replace(ANY_CASE, name)
+                wrong += _table_case_mistakes(key, ours, case.table, ours in cases)
+                cases[ours] = case.model_copy(update={"table_case": name})
+    return table.model_copy(update={"case": cases})
+
+
+def _table_case_names(path: Path, case: GivenCase) -> list[str]:
+    try:
+        return table_cases(path, case.columns)
+    except TableError as error:
+        raise InputError(str(error), code=error.code) from None
+
+
+def _table_case_mistakes(key: str, name: str, table: str, known: bool) -> Iterator[Wrong]:
+    if known:
+        text = f"{key}: case {name!r} of {table} exists already; rename one, or this section"
+        yield Wrong(text, code="duplicate-case")
+    try:
+        usable_name(name)
+    except ValueError as error:
+        yield Wrong(f"{key}: case {name!r} of {table}: {error}", code=getattr(error, "code", ""))

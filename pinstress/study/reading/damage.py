@@ -1,0 +1,194 @@
+"""What remains of a study when its wrong parts are removed, so that one reading reports all errors.
+
+An error hides others: pydantic does not look at the rest of a table with an unknown key, references
+are checked in valid tables only, and a linkage needs both. So the part that is wrong is removed and
+the rest is read again, until it is valid. Errors that only follow from a removed part are not
+reported.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from pinstress.study.reading.errors import Wrong
+from pinstress.study.reading.toml_lines import Place, said
+
+NO_CASE = "(none)"  # name of a case that stands for removed ones
+# What stands for removed parts without which nothing else could be read; * is any name
+STAND_INS: Mapping[Place, Any] = {
+    ("title",): "",
+    ("units",): "m-N-s",
+    ("case",): {NO_CASE: {"kind": "static"}},
+    ("material", "*"): {"youngs_modulus": 1.0, "poisson_ratio": 0.0},
+    ("mechanism", "drive"): {"body": "ground"},
+    ("mechanism", "joint", "*", "at"): [0.0, 0.0],
+    ("mechanism", "joint", "*", "connections"): {},
+}
+# Parts of a study whose removal may be the only cause of an error, by its code
+CAUSES: Mapping[str, Collection[Place]] = {
+    "no-mechanism": (("mechanism",),),
+    "no-leg": (("spatial_leg",),),
+    "bearing-strength-without-lug": (("pin",),),
+    "no-fatigue-data": (("material",), ("pin",)),
+    "drive-without-motion": (("mechanism", "drive"),),
+}
+
+
+class Damage:
+    """The wrong parts of a study.
+
+    raw: the content of the study, without provenance.
+    places: of the removed parts, with what stands for them, if anything does.
+    names: all names in the removed parts; what they stood for is not known to be missing.
+    """
+
+    def __init__(self, raw: Mapping[str, Any]) -> None:
+        self.raw = raw
+        self.places: dict[Place, Any] = {}
+        self.names: set[str] = set()
+        self._indices: dict[Place, list[int]] = {}  # of the remaining elements of lists
+
+    def __bool__(self) -> bool:
+        return bool(self.places)
+
+    def remove(self, place: Place, value: Any = None) -> bool:
+        """Remove a part, and return whether it was there before.
+
+        value: what stands for it.
+        """
+        if not place or place in self.places:
+            return False
+        self.places[place] = stand_in(place) if value is None else value
+        self.names |= {str(place[-1]), *_names(self.part(place))}
+        return True
+
+    def part(self, place: Place) -> Any:
+        """The part of the study at a place; None where there is none."""
+        node: Any = self.raw
+        for key in place:
+            try:
+                node = node[key]
+            except (KeyError, IndexError, TypeError):
+                return None
+        return node
+
+    def touches(self, place: Place) -> bool:
+        """Whether a part is removed in whole or in part."""
+        return any(p[: len(place)] == place or place[: len(p)] == p for p in self.places)
+
+    def children(self, place: Place) -> list[str | int]:
+        """The removed keys or elements of a table or list."""
+        return [p[-1] for p in self.places if p[:-1] == place]
+
+    def remainder(self) -> Any:
+        """The study without the removed parts."""
+        self._indices = {}
+        tree = self._without(self.raw, ())
+        for place, value in self.places.items():
+            if value is not None and self.part(place) is None:
+                *parents, last = place
+                table = tree
+                for parent in parents:
+                    table = table.get(parent) if isinstance(table, dict) else None
+                if isinstance(table, dict):
+                    table[last] = value
+        return tree
+
+    def _without(self, node: Any, place: Place) -> Any:
+        """Return a part without the removed ones, or what stands for it; None for nothing."""
+        if place in self.places:
+            return self.places[place]
+        if isinstance(node, dict):
+            inner = {k: self._without(v, (*place, k)) for k, v in node.items()}
+            return {k: v for k, v in inner.items() if v is not None}
+        if isinstance(node, list):
+            elements = [self._without(v, (*place, i)) for i, v in enumerate(node)]
+            self._indices[place] = [i for i, v in enumerate(elements) if v is not None]
+            return [v for v in elements if v is not None]
+        return node
+
+    def original(self, place: Place) -> Place:
+        """The place in the study of a place in its remainder."""
+        out: Place = ()
+        for key in place:
+            indices = self._indices.get(out, [])
+            if isinstance(key, int) and key < len(indices):
+                out += (indices[key],)
+            elif isinstance(key, int) and indices:
+                out += (key - len(indices) + len(self.part(out)),)
+            else:
+                out += (key,)
+        return out
+
+    def renumbered(self, wrong: Wrong, place: Place) -> Wrong:
+        """Return an error of the remainder with the indices that the study has.
+
+        place: of the error, in the remainder.
+        """
+        here, there = said(place), said(self.original(place))
+        if here == there or not wrong.message.startswith(here):
+            return wrong
+        return replace(wrong, message=there + wrong.message.removeprefix(here))
+
+    def explains(self, wrong: Wrong, place: Place) -> bool:
+        """Whether an error of the remainder may only follow from what was removed.
+
+        place: of the error, in the study.
+        """
+        if any(place[: len(p)] == p for p in self.places):
+            return True
+        if wrong.name and wrong.name in self.names:
+            return True
+        return any(self.touches(cause) for cause in CAUSES.get(wrong.code, ()))
+
+
+def stand_in(place: Place) -> Any:
+    """Return what stands for a removed part; None for nothing."""
+    for pattern, value in STAND_INS.items():
+        if len(pattern) == len(place) and all(
+            a in ("*", b) for a, b in zip(pattern, place, strict=True)
+        ):
+            # each name of a connection is its own
+            return {f"({place[2]})": "ground"} if pattern[-1] == "connections" else value
+    return None
+
+
+def _names(node: Any) -> Iterator[str]:
+    """Yield all keys and texts of a part of a study."""
+    if isinstance(node, str):
+        yield node
+    elif isinstance(node, dict):
+        for key, value in node.items():
+            yield str(key)
+            yield from _names(value)
+    elif isinstance(node, list):
+        for value in node:
+            yield from _names(value)
+
+
+def place_of(tree: Any, message: str) -> Place:
+    """Return the place of the key with which a message begins, as far as the tree has it."""
+    place: Place = ()
+    node, rest = tree, message
+    while True:
+        key: str | int
+        if isinstance(node, dict):
+            rest = rest.removeprefix(".")
+            ends = (*".[: ", "")
+            names = [k for k in node if rest.startswith(k) and rest[len(k) :][:1] in ends]
+            if not names:
+                return place
+            key = name = max(names, key=len)
+            rest = rest[len(name) :]
+        elif isinstance(node, list) and (index := re.match(r"\[(\d+)\]", rest)):
+            key, rest = int(index[1]) - 1, rest[index.end() :]
+        elif isinstance(node, list) and len(node) == 1 and rest.startswith("."):
+            key = 0
+        else:
+            return place
+        if isinstance(key, int) and key >= len(node):
+            return place
+        place, node = (*place, key), node[key]

@@ -1,0 +1,133 @@
+"""The study file's form: the lugs in which pins sit, and what all of them have in common."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from pinbase.errors import ArgumentError
+from pinstress.study.schema.types import (
+    Length,
+    NotNegativeLength,
+    Number,
+    PositiveLength,
+    StrictTable,
+    Tilt,
+)
+
+
+class BushingTable(StrictTable):
+    """A ring of another material bonded in the bore of a lug."""
+
+    thickness: PositiveLength
+    """Wall thickness."""
+    material: str
+    """Name of a `[material]`."""
+
+
+Times = Annotated[Number, Field(gt=0.0)]
+
+
+class LugRangeTable(StrictTable):
+    """Between what values something of a lug may lie: [lower, upper]."""
+
+    clearance: tuple[Length, Length] | None = None
+    """Default: that of the `fit`; else none, and twice the given (0.002 of the diameter where none
+    is given)."""
+    stiffness: tuple[Times, Times] | None = None
+    """Times that of the lug as described. Default: [0.5, 2]."""
+    tilt: tuple[Tilt, Tilt] | None = None
+    """Default: ["free", "guided"]."""
+
+
+class LugTable(StrictTable):
+    """The eye in which a band of the pin sits: of the link at the connection of this name, or of
+    the surrounding structure, which does not move, at the segment of this name.
+    """
+
+    outer_diameter: PositiveLength | None = None
+    """Outer diameter of the eye. Default: 2.5 times the diameter of the band."""
+    material: str | None = None
+    """Name of a `[material]`. Default: the pin's material."""
+    clearance: Length | None = None
+    """Diameter of the bore minus that of the pin; negative for interference. Default: the middle of
+    the `fit`, else 0."""
+    fit: str | None = None
+    """Tolerance classes of bore and pin by ISO 286-1, as "H7/f7", at the diameter of the band. Not
+    with `clearance`."""
+    edge_radius: NotNegativeLength = 0.0
+    """Radius of the edges of the bore. 0 is sharp, where pressure has no bound: then
+    results have no peak of pressure there."""
+    tilt: Tilt | None = None
+    """Resistance of the link to tilting of its eye: "guided" (rigid), "free", or a stiffness.
+    Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
+    bushing: BushingTable | None = None
+    """A bushing bonded in the eye."""
+    range: LugRangeTable = LugRangeTable()
+    """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
+
+    @model_validator(mode="after")
+    def _one_clearance(self) -> "LugTable":
+        if self.fit is not None and self.clearance is not None:
+            raise ArgumentError("give fit or clearance, not both", "give-one")
+        return self
+
+
+def with_lug_defaults(raw: dict[str, Any]) -> dict[str, Any]:
+    """Return a study's content in which every lug has the keys of `lug_defaults` that it omits, and
+    pins that are not clamped have a lug at every connection.
+
+    raw: the content, not validated but for `lug_defaults`.
+    """
+    defaults, pins, cases = raw.get("lug_defaults"), raw.get("pin"), raw.get("case")
+    if not isinstance(defaults, dict) or not isinstance(pins, dict):
+        return raw
+    tables = cases.values() if isinstance(cases, dict) else ()
+    clamps = [table.get("clamp") for table in tables if isinstance(table, dict)]
+    clamped = {name for c in clamps if isinstance(c, dict) for name, at in c.items() if at}
+    return {
+        **raw,
+        "pin": {
+            name: _in_lugs(pin, defaults, name in clamped) if isinstance(pin, dict) else pin
+            for name, pin in pins.items()
+        },
+    }
+
+
+def _in_lugs(pin: dict[str, Any], defaults: dict[str, Any], clamped: bool) -> dict[str, Any]:
+    given = pin.get("lug", {})
+    if "geometry" in pin or not isinstance(given, dict) or not pin.get("lugs", True):
+        return pin
+    names = [*given, *(() if clamped or pin.get("clamp") else _connections(pin))]
+    return {**pin, "lug": {name: _completed(given.get(name, {}), defaults) for name in names}}
+
+
+def _connections(pin: dict[str, Any]) -> Iterator[str]:
+    """Yield the connections of a pin that is not validated, in their order along it."""
+    segments, bands = pin.get("profile"), pin.get("band")
+    for segment in segments if isinstance(segments, list) else ():
+        if isinstance(segment, dict) and isinstance(segment.get("connection"), str):
+            yield segment["connection"]
+    for name, band in bands.items() if isinstance(bands, dict) else ():
+        if isinstance(band, dict) and band.get("connection", True):
+            yield name
+
+
+def _completed(lug: Any, defaults: dict[str, Any]) -> Any:
+    """Return a lug with the keys of the defaults that it omits, those of its own tables as well.
+
+    Its own fit or clearance replaces what the defaults say of clearance.
+    """
+    if not isinstance(lug, dict):
+        return lug
+    if "fit" in lug or "clearance" in lug:
+        defaults = {k: v for k, v in defaults.items() if k not in ("fit", "clearance")}
+    if "fit" in lug and isinstance(defaults.get("range"), dict):
+        known = {k: v for k, v in defaults["range"].items() if k != "clearance"}
+        defaults = {**defaults, "range": known}
+    inner = {
+        key: {**defaults[key], **value}
+        for key, value in lug.items()
+        if isinstance(value, dict) and isinstance(defaults.get(key), dict)
+    }
+    return {**defaults, **lug, **inner}

@@ -1,0 +1,67 @@
+"""A study before anything is solved: what it describes and what would be solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pinbase.dimensions import Force, Length
+from reports.data.mechanics import LinkageMotion
+from reports.data.results import PinShape, Units
+
+
+@dataclass(frozen=True)
+class LugOutline:
+    """A lug about a band of a pin, as it is drawn: from z to z, with its outer diameter.
+
+    clearance: of the diameters.
+    """
+
+    connection: str
+    z: tuple[Length, Length]
+    outer_diameter: Length
+    clearance: Length
+    material: str
+
+
+@dataclass(frozen=True)
+class CheckedPin:
+    """A pin with the lugs that hold it, in the order of z, or what else does."""
+
+    shape: PinShape
+    support: str
+    lugs: tuple[LugOutline, ...]
+
+
+@dataclass(frozen=True)
+class PlannedRow:
+    """A row that a run would have.
+
+    instants: of the case. largest: force of a link on the pin. at: its connection.
+    """
+
+    pin: str
+    case: str
+    support: str
+    model: str
+    instants: int
+    largest: Force
+    at: str
+
+
+@dataclass(frozen=True)
+class CheckedStudy:
+    """A valid study.
+
+    summary: sentences on the study, its mechanism and its cases. problems: what a run would not
+    solve, and what may be wrong.
+    motions: of the linkage, by case.
+    """
+
+    title: str
+    study: str
+    units: Units
+    summary: tuple[str, ...]
+    problems: tuple[str, ...]
+    motions: tuple[LinkageMotion, ...]
+    pins: tuple[CheckedPin, ...]
+    rows: tuple[PlannedRow, ...]

@@ -1,0 +1,162 @@
+"""The overview of a run: one line a pin, the cases that never govern, and estimated diameters."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from assess.diameter_law import beneath_exponent, estimated_scale
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, SAFE, YIELDS
+from reports.data.decision import beneath_factor, factor_ends, limit, utilisation
+from reports.data.envelope import MAX_DETAILED_CASES
+from reports.data.headline import JudgedCheck, judged_checks, worst_checks
+from reports.data.results import PinResult, PinShape, Results
+from reports.data.unknowns import Ends, factor_spread
+
+GOOD = (SAFE, BELOW_YIELD)
+MAX_LUG_SHARE = 0.75  # of the outer diameter of a lug, which leaves an eighth on each side
+NEAR_ENOUGH = 1.001  # scale of diameters up to which a pin stays as it is
+
+
+@dataclass(frozen=True)
+class Diameter:
+    """The diameter with which a pin reaches its factor, as estimated by the law of its section.
+
+    given: the largest of its bands, or of the pin without any.
+    needed: for the pin as described; whatever: over all that is open. None where given suffices.
+    eye: the outer diameter of its smallest lug, None without lugs.
+    """
+
+    given: float
+    needed: float | None
+    whatever: float | None
+    eye: float | None = None
+
+    def too_large(self, diameter: float | None) -> bool:
+        """Return whether a diameter leaves less than a quarter of the lug."""
+        return None not in (diameter, self.eye) and diameter > MAX_LUG_SHARE * self.eye  # type: ignore[operator]
+
+
+@dataclass(frozen=True)
+class PinLine:
+    """A pin in the overview.
+
+    row: its worst row. check: its worst check, which is of that row or another.
+    error: ends of the factor by the error of the maximum. spread: ends over all that is open.
+    """
+
+    row: PinResult
+    check: JudgedCheck
+    error: Ends | None
+    spread: Ends | None
+    diameter: Diameter | None
+
+    @property
+    def pin(self) -> str:
+        """The name of the pin."""
+        return self.check.pin
+
+    @property
+    def outcome(self) -> str:
+        """The outcome of its worst check."""
+        return self.check.outcome
+
+
+@dataclass(frozen=True)
+class QuietCase:
+    """A case in which all pins are safe, and that governs none that is not.
+
+    lowest: its row with the lowest factor; None if none has one.
+    """
+
+    case: str
+    pins: int
+    lowest: PinResult | None
+
+
+def pin_lines(results: Results) -> list[PinLine]:
+    """Return a line for each pin, the worst first; of a single pin, for each of its cases.
+
+    Of a pin with more than MAX_DETAILED_CASES only the worst case has a line.
+    """
+    shapes = {shape.pin: shape for shape in results.shapes}
+    worst = worst_checks(results)
+    checks = list(worst.values())
+    if len(worst) == 1 and len(results.pins) <= MAX_DETAILED_CASES:
+        by_case = {check.case: check for check in reversed(judged_checks(results)) if check.case}
+        checks = [by_case[row.case] for row in results.pins]
+        checks += [check for check in judged_checks(results) if not check.case]
+    checks.sort(key=lambda check: check.rank)
+    return [_line(results, check, shapes.get(check.pin)) for check in checks]
+
+
+def quiet_cases(results: Results, lines: list[PinLine]) -> list[QuietCase]:
+    """Return the cases that govern no pin."""
+    governing = {line.row.case for line in lines} | {line.check.case for line in lines}
+    quiet = []
+    for case in dict.fromkeys(row.case for row in results.pins):
+        rows = [row for row in results.pins if row.case == case]
+        if case not in governing and all(row.outcome in GOOD for row in rows):
+            with_factor = [row for row in rows if row.safety_factor is not None]
+            lowest = min(with_factor, key=lambda row: row.safety_factor or 0.0, default=None)
+            quiet.append(QuietCase(case, len(rows), lowest))
+    return quiet
+
+
+def _line(results: Results, check: JudgedCheck, shape: PinShape | None) -> PinLine:
+    rows = [row for row in results.pins if row.pin == check.pin and check.case in ("", row.case)]
+    row = check.row or min(rows, key=lambda row: (-_used(row, limit(row)), row.case))
+    error = factor_ends(row) if row.safety_factor else None
+    diameter = _diameter(row, shape) if check.row or check.outcome in GOOD else None
+    return PinLine(row, check, error, factor_spread(row), diameter)
+
+
+def _used(row: PinResult, required: float) -> float:
+    used = utilisation(row, required)
+    return -math.inf if used is None else used[1]
+
+
+def _diameter(row: PinResult, shape: PinShape | None) -> Diameter | None:
+    """Return the diameter that a row needs; None where no law holds, or its outcome is open."""
+    if shape is None or not row.safety_factor or row.verdict not in ("converged", "unconverged"):
+        return None
+    bands = [s[1] for s in shape.segments if s[4] == "band"]
+    given = max(bands or [s[1] for s in shape.segments])
+    eyes = [band.outer_diameter for band in row.joint.bands] if row.joint else []
+    eye = min(eyes, default=None)
+    if row.outcome in GOOD:
+        return Diameter(given, None, None, eye)
+    if row.outcome not in (FAILS, YIELDS, DEPENDS):
+        return None
+    scales = (_scale(row, whatever) for whatever in (False, True))
+    needed, over_all = (given * scale if scale > NEAR_ENOUGH else None for scale in scales)
+    # Safe as described, beneath contact apart: as it is.
+    return Diameter(given, None if row.outcome == DEPENDS else needed, over_all, eye)
+
+
+def factor_at(row: PinResult, scale: float) -> float:
+    """Return the factor of a row with all its diameters scaled, by the laws of its section and of
+    what lies beneath contact.
+    """
+    factor, beneath = factor_ends(row)[0], beneath_factor(row)
+    below = beneath_exponent(factor, beneath, row.exponent)
+    return float(min(factor * scale**row.exponent, beneath * scale**below))
+
+
+def _scale(row: PinResult, whatever: bool) -> float:
+    """Return the scale at which a row reaches its factor.
+
+    whatever: over all that is open.
+    """
+    factor, beneath, required = factor_ends(row)[0], beneath_factor(row), row.required or 1.0
+    scale = estimated_scale(factor, beneath, row.exponent, required)
+    spread = factor_spread(row)
+    if not whatever or spread is None:
+        return scale
+    share = spread[0] / (row.safety_factor or 1.0)
+    lowest = min((d.factor for d in row.depends_on), default=math.inf)
+    return max(
+        scale,
+        estimated_scale(factor * share, beneath * share, row.exponent, required),
+        estimated_scale(math.inf, lowest, row.exponent, required),
+    )

@@ -1,0 +1,92 @@
+"""The requirements of a run as a matrix of checks by pins, in few rows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+from reports.data.requirements import MET, NOT_CHECKED, OUTCOMES, RequirementRow
+
+K = TypeVar("K")
+MAX_CASE_ROWS = 4  # rows of one requirement; of more cases, those that are all met share a row
+
+
+@dataclass(frozen=True)
+class MatrixRow:
+    """A requirement, or several together, on all pins.
+
+    check, level, case: of the requirement; the first names several checks.
+    required: the factor; None where it differs.
+    cells: by pin its outcome, the worst of several; a pin without the requirement is left out.
+    needs: what is missing, where it was not checked.
+    """
+
+    check: str
+    level: str
+    case: str
+    required: float | None
+    cells: dict[str, str]
+    needs: tuple[str, ...] = ()
+
+
+def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
+    """Return stated requirements, then all other checks in one row, and what was not checked."""
+    checked = [row for row in rows if row.outcome != NOT_CHECKED]
+    stated = _by_case(row for row in checked if row.stated)
+    derived = [r for r in checked if not r.stated]
+    levels = " and ".join(dict.fromkeys(r.level for r in derived))
+    count = len({r.check for r in derived})
+    others = [_together(f"other checks ({count})", levels, "", derived)] if derived else []
+    open_ = [
+        _together(
+            ", ".join(dict.fromkeys(r.check for r in some)), level, "", some,
+            tuple(dict.fromkeys(part for r in some for part in r.needs.split(", ") if part)),
+        )
+        for level, some in _grouped((r for r in rows if r.outcome == NOT_CHECKED),
+                                    lambda r: r.level)
+    ]  # fmt: skip
+    return [*stated, *others, *open_]
+
+
+def _by_case(rows: Iterable[RequirementRow]) -> list[MatrixRow]:
+    """Return a row for each requirement and case; of many cases, one for those that are met."""
+    matrix = []
+    for (check, level), of_check in _grouped(rows, lambda r: (r.check, r.level)):
+        by_case = _grouped(of_check, lambda r: r.case)
+        shown, met = by_case, []
+        if len(by_case) > MAX_CASE_ROWS:
+            shown = [x for x in by_case if any(r.outcome != MET for r in x[1])]
+            met = [r for _, some in by_case for r in some if all(q.outcome == MET for q in some)]
+        matrix += [_together(check, level, case, some) for case, some in shown]
+        if met:
+            count = len({r.case for r in met})
+            matrix.append(_together(check, level, f"{count} other cases", met))
+    return sorted(matrix, key=lambda row: min(map(_rank, row.cells.values())))
+
+
+def _rank(outcome: str) -> int:
+    return OUTCOMES.index(outcome)
+
+
+def _together(
+    check: str, level: str, case: str, rows: Sequence[RequirementRow], needs: tuple[str, ...] = ()
+) -> MatrixRow:
+    cells: dict[str, str] = {}
+    for row in rows:
+        known = cells.get(row.pin, row.outcome)
+        cells[row.pin] = min(known, row.outcome, key=_rank)
+    required = {row.required for row in rows}
+    return MatrixRow(
+        check, level, case, required.pop() if len(required) == 1 else None, cells, needs
+    )
+
+
+def _grouped(
+    rows: Iterable[RequirementRow], key: Callable[[RequirementRow], K]
+) -> list[tuple[K, list[RequirementRow]]]:
+    """Return the rows by a key, in the order of their first."""
+    groups: dict[K, list[RequirementRow]] = {}
+    for row in rows:
+        groups.setdefault(key(row), []).append(row)
+    return list(groups.items())

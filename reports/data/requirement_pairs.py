@@ -1,0 +1,90 @@
+"""Requirements of two runs side by side, read from their results.json, and which were lost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from assess.requirement import REQUIRED_CHECKS
+from reports.data.requirements import MET, OUTCOMES, RequirementRow
+
+LOST, GONE = "lost", "gone"
+NEWLY_MET, NEW, LOWERED, OTHER = "newly met", "new", "asks for less", "changed"
+UNCHANGED = "unchanged"
+REQUIREMENT_CHANGES = (LOST, GONE, LOWERED, OTHER, NEWLY_MET, NEW, UNCHANGED)  # order of the table
+ROW_KEYS = "pin", "case", "level", "check", "required", "reached", "outcome", "stated"
+COLLAPSE = "limit load"  # checked by itself only where a pin yields
+
+
+@dataclass(frozen=True)
+class RequirementPair:
+    """A requirement of both runs; a side is None where its run lacks it."""
+
+    first: RequirementRow | None
+    second: RequirementRow | None
+
+    @property
+    def row(self) -> RequirementRow:
+        """The requirement in the second run, or where that lacks it in the first."""
+        row = self.second or self.first
+        assert row is not None
+        return row
+
+    @property
+    def change(self) -> str:
+        """What a review says of it, one of REQUIREMENT_CHANGES.
+
+        Lost is one that was met and no longer is, whatever the reason; gone one that is no longer
+        there, which is as bad.
+        """
+        a, b = self.first, self.second
+        if a is None:
+            return NEW
+        if b is None:
+            return GONE
+        if (a.outcome == MET) != (b.outcome == MET):
+            return LOST if a.outcome == MET else NEWLY_MET
+        if b.required < a.required:
+            return LOWERED
+        return UNCHANGED if (a.outcome, a.required) == (b.outcome, b.required) else OTHER
+
+
+def requirement_pairs(
+    first: Mapping[str, Any], second: Mapping[str, Any]
+) -> tuple[RequirementPair, ...] | None:
+    """Return the requirements of the contents of two results.json, what was lost first.
+
+    None where one of them is of an earlier version, which lists none.
+    """
+    lists = first.get("requirements"), second.get("requirements")
+    if lists[0] is None or lists[1] is None:
+        return None
+    a, b = _by_key(lists[0]), _by_key(lists[1])
+    pairs = [RequirementPair(a.get(key), b.get(key)) for key in dict.fromkeys((*a, *b))]
+    counted = [pair for pair in pairs if pair.change != GONE or _counts(pair.row)]
+    return tuple(sorted(counted, key=lambda pair: REQUIREMENT_CHANGES.index(pair.change)))
+
+
+def _counts(row: RequirementRow) -> bool:
+    """Return whether a requirement is missed when it is gone.
+
+    Those by the factors on loads come and go with the formulas that apply to a pin.
+    """
+    by_factors = row.outcome == MET and row.check in REQUIRED_CHECKS and row.check != COLLAPSE
+    return row.stated or by_factors
+
+
+def _by_key(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], RequirementRow]:
+    """Return the requirements by pin, case, level and check; of several the worst."""
+    worst: dict[tuple[str, ...], RequirementRow] = {}
+    for content in rows:
+        row = RequirementRow(**{key: content[key] for key in ROW_KEYS})
+        known = worst.get(row.key)
+        if known is None or _rank(row) < _rank(known):
+            worst[row.key] = row
+    return worst
+
+
+def _rank(row: RequirementRow) -> tuple[int, bool, float]:
+    return OUTCOMES.index(row.outcome), not row.stated, -row.required

@@ -1,0 +1,295 @@
+"""Requirements of a run with what was reached: met, missed, depends, not decided or not checked.
+
+They are statements about checks that are made anyway: about the rows' maximum von Mises stress,
+and about the margins of safety. What was not checked is never met.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import inf
+from typing import Literal
+
+from assess.judgement import (
+    BELOW_YIELD,
+    DEPENDS,
+    FAILS,
+    NOT_DECIDED,
+    SAFE,
+    YIELDS,
+    against_yield,
+)
+from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Level, Margin
+from assess.requirement import (
+    REQUIRED_CHECKS,
+    REQUIRED_LEVELS,
+    TO_BE_RUN,
+    RequiredCheck,
+    RequiredLevel,
+    StatedRequirement,
+)
+from assess.strength.collapse import COLLAPSE_METHOD
+from assess.strength.fatigue_life import FATIGUE_LIFE
+from assess.strength.hand_checks import BEARING_METHODS, SHEAR_METHODS
+from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
+from reports.data.decision import factor_ends
+from reports.data.dependence import depends_on
+from reports.data.results import PinResult, Results
+
+MET, MISSED, NOT_CHECKED = "met", "missed", "not checked"
+Outcome = Literal["met", "missed", "depends", "not decided", "not checked"]
+# Of a row of results as a requirement; DEPENDS and NOT_DECIDED are those of rows.
+OUTCOME_OF_ROW: Mapping[str, Outcome] = {
+    SAFE: "met",
+    BELOW_YIELD: "met",
+    FAILS: "missed",
+    YIELDS: "missed",
+    DEPENDS: "depends",
+    NOT_DECIDED: "not decided",
+}
+OUTCOMES: tuple[Outcome, ...] = ("missed", "depends", "not decided", "not checked", "met")
+METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
+    "yield": (YIELD_METHOD,),
+    "rupture": (RUPTURE_METHOD,),
+    "limit load": (COLLAPSE_METHOD,),
+    "bearing": BEARING_METHODS,
+    "shear": SHEAR_METHODS,
+    "fatigue": (FATIGUE_LIFE,),
+}
+CHECK_OF_METHOD = {m: check for check, methods in METHODS_OF_CHECK.items() for m in methods}
+
+
+@dataclass(frozen=True)
+class RequirementRow:
+    """A requirement on a pin in a case, with what was reached.
+
+    case: empty for a check over several cases, fatigue.
+    check: one of assess.requirement, or for other margins their method.
+    required, reached: allowable over demand under the loads of the study; `reached` is None where
+    it is not known, and where there is no demand.
+    needs: what is missing where the requirement was not checked or not decided, as the key of the
+    study where that is a number.
+    stated: whether the study states it, by [[require]], required_safety_factor or fatigue.life;
+    otherwise it follows from the factors on loads.
+    """
+
+    pin: str
+    case: str
+    level: RequiredLevel
+    check: str
+    required: float
+    reached: float | None
+    outcome: Outcome
+    needs: str = ""
+    stated: bool = True
+
+    @property
+    def title(self) -> str:
+        """The check and its loads in words: "yield at limit load"."""
+        if self.check == "fatigue":
+            return FATIGUE_LIFE
+        check = "collapse" if self.check == "limit load" else self.check
+        return f"{check} at {self.level} load"
+
+    @property
+    def where(self) -> str:
+        """The pin with its case: "E (landing)"."""
+        return f"{self.pin} ({self.case})" if self.case else self.pin
+
+    @property
+    def left_out(self) -> bool:
+        """Whether only a choice of pins or cases keeps the run from checking it."""
+        return self.needs.endswith(TO_BE_RUN)
+
+    @property
+    def key(self) -> tuple[str, str, RequiredLevel, str]:
+        """What is required where, without the factor."""
+        return self.pin, self.case, self.level, self.check
+
+
+Pair = tuple[str, str]  # pin, case
+
+
+def requirement_rows(results: Results) -> tuple[RequirementRow, ...]:
+    """Return all requirements: of pins in the order of the results, then by case and check.
+
+    These are what the study states, and what follows from its factors on loads for every other
+    check that has a margin. Where a factor on loads demands more than is stated, both are there.
+    """
+    rows = {(row.pin, row.case): row for row in results.pins}
+    margins: dict[Pair, list[Margin]] = {}
+    for m in results.margins:
+        if m.margin.governs:
+            margins.setdefault((m.pin, m.case), []).append(m.margin)
+    stated = [_stated(s, results, rows, margins) for s in _all_stated(results, rows)]
+    known = {row.key: row.required for row in stated}
+    assumed = [
+        row
+        for (pin, case), of_pair in margins.items()
+        for row in _assumed(pin, case, of_pair, rows.get((pin, case)), results)
+        if row.required > known.get(row.key, -inf)
+    ]
+    every = (*results.pins, *stated, *assumed)
+    pins, cases = (list(dict.fromkeys(getattr(x, key) for x in every)) for key in ("pin", "case"))
+    checks = list(dict.fromkeys((*REQUIRED_CHECKS, *(row.check for row in assumed))))
+
+    def place(row: RequirementRow) -> tuple[int, bool, int, int, int]:
+        return (
+            pins.index(row.pin), not row.case, cases.index(row.case) if row.case else 0,
+            checks.index(row.check), REQUIRED_LEVELS.index(row.level),
+        )  # fmt: skip
+
+    return tuple(sorted((*stated, *assumed), key=place))
+
+
+def _all_stated(results: Results, rows: Mapping[Pair, PinResult]) -> Iterator[StatedRequirement]:
+    """Yield the stated requirements and, for other rows, that on yield of the whole study."""
+    yield from results.stated
+    on_yield = {(s.pin, s.case) for s in results.stated if _replaces_default(s)}
+    if results.required_safety_factor is not None:
+        factor = results.required_safety_factor
+        for pin, case in (pair for pair in rows if pair not in on_yield):
+            yield StatedRequirement(pin, case, "limit", "yield", factor)
+
+
+def _replaces_default(s: StatedRequirement) -> bool:
+    return (s.level, s.check) == ("limit", "yield")
+
+
+def _stated(
+    s: StatedRequirement,
+    results: Results,
+    rows: Mapping[Pair, PinResult],
+    margins: Mapping[Pair, list[Margin]],
+) -> RequirementRow:
+    """Return a stated requirement with what was reached."""
+    plain = RequirementRow(s.pin, s.case, s.level, s.check, s.factor, None, "not checked", s.needs)
+    if s.needs:
+        return plain
+    level: Level = "ultimate" if s.level == "ultimate" else "limit"
+    if s.check == "limit load":
+        level = "ultimate"  # at which the margin is, whose loads are those of the study
+    of_pair = margins.get((s.pin, s.case), [])
+    methods = METHODS_OF_CHECK[s.check]
+    chosen = [m for m in of_pair if m.method in methods and m.level == level]
+    if s.check in ("bearing", "shear"):
+        chosen += [m for m in of_pair if _not_made_by_formula(m)]
+    row = rows.get((s.pin, s.case))
+    if s.check == "fatigue":
+        return _of_fatigue(plain, results, chosen)
+    if s.check == "limit load" and row is not None:
+        return _of_limit_load(plain, row, chosen)
+    return _judged(plain, chosen, row)
+
+
+def _not_made_by_formula(margin: Margin) -> bool:
+    """Return whether a margin stands for several checks by formula that could not be made."""
+    return margin.method == FORMULA_CHECKS or margin.method.startswith(CLAMPED_LUG_PREFIX)
+
+
+def _of_fatigue(plain: RequirementRow, results: Results, margins: list[Margin]) -> RequirementRow:
+    """Return a requirement on the life of a pin."""
+    fatigue = results.fatigue
+    if fatigue is None or not fatigue.life:
+        return replace(plain, needs="fatigue" if fatigue is None else "fatigue.life")
+    if not margins:
+        return replace(plain, needs=f"a case of the spectrum that loads pin {plain.pin}")
+    if plain.pin in fatigue.not_decided:
+        return replace(plain, outcome="not decided", needs=_needs(margins))
+    return _of_margins(plain, margins)
+
+
+def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin]) -> RequirementRow:
+    """Return a requirement on the load at which a pin collapses.
+
+    No pin collapses before it yields anywhere (the static theorem of limit analysis), so a factor
+    against yield is one against collapse, too.
+    """
+    if row.safety_factor is None:
+        on_yield = [m for m in row.worst if m.method == YIELD_METHOD]
+        return replace(_judged(replace(plain, check="yield"), on_yield, row), check=plain.check)
+    elastic = _of_stress(plain, row, row.yield_strength or 0.0)
+    elastic = replace(elastic, reached=factor_ends(row)[0])
+    limit = row.limit_load
+    if elastic.outcome == "met":
+        return elastic
+    if limit is not None and limit.lower is not None and limit.upper is not None:
+        outcome: Outcome = "met" if limit.lower >= plain.required else "not decided"
+        outcome = "missed" if limit.upper < plain.required else outcome
+        return replace(plain, reached=limit.lower, outcome=outcome)
+    if elastic.outcome == "depends":
+        return elastic
+    return replace(plain, needs=_needs(margins) or 'analysis.limit_load other than "never"')
+
+
+def _assumed(
+    pin: str, case: str, margins: Iterable[Margin], row: PinResult | None, results: Results
+) -> Iterator[RequirementRow]:
+    """Yield what follows from the factors on loads: a requirement for each check and level."""
+    groups: dict[tuple[Level, str], list[Margin]] = {}
+    for m in margins:
+        check = CHECK_OF_METHOD.get(m.method, m.method)
+        groups.setdefault((m.level, check), []).append(m)
+    for (level, check), same in groups.items():
+        factor = max(same, key=lambda m: m.used).factor
+        if check == "yield" and row is not None and factor <= (row.required or 0.0):
+            continue  # by what is stated, at limit or proof load
+        plain = RequirementRow(pin, case, level, check, factor, None, "not checked", stated=False)
+        if check == "fatigue":
+            yield replace(_of_fatigue(plain, results, same), stated=True)  # by fatigue.life
+        else:
+            yield _judged(plain, same, row)
+
+
+def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
+    """Return a requirement as its margins have it, or the row's stress if it is of that."""
+    if plain.check not in ("yield", "rupture") or row is None:
+        return _of_margins(plain, margins)
+    if row.max_von_mises is None:
+        return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
+    strengths = [m.allowable for m in margins if m.allowable is not None]
+    if not strengths:
+        return replace(plain, needs=_needs(margins))
+    return _of_stress(plain, row, strengths[0])
+
+
+def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> RequirementRow:
+    """Return a requirement on the maximum stress of a row, judged like the row itself.
+
+    strength: that the stress must not reach, in the units of the row.
+    """
+    if plain.check != "yield" or plain.required != (row.required or 1.0):
+        judgement = against_yield(row.maximum, strength, plain.required)
+        row = replace(row, judgement=judgement, depends_on=())
+        row = replace(row, depends_on=depends_on(row))
+    outcome = OUTCOME_OF_ROW[row.outcome]
+    return replace(plain, reached=row.safety_factor, outcome=outcome, needs="")
+
+
+def _of_margins(plain: RequirementRow, margins: list[Margin]) -> RequirementRow:
+    """Return a requirement with the least of what margins reach.
+
+    One that was not made leaves it unchecked, unless another misses it anyway.
+    """
+    if not margins:
+        return replace(plain, needs=f"a force across pin {plain.pin}")
+    reached = min((_reached(m) for m in margins if not m.needs), default=inf)
+    known = None if reached == inf else reached
+    if reached < plain.required:
+        return replace(plain, reached=known, outcome="missed")
+    if needs := _needs(margins):
+        return replace(plain, reached=known, needs=needs)
+    return replace(plain, reached=known, outcome="met")
+
+
+def _reached(margin: Margin) -> float:
+    """Return the allowable over the demand, infinite without a demand."""
+    assert margin.demand is not None
+    assert margin.allowable is not None
+    return margin.allowable / margin.demand if margin.demand > 0.0 else inf
+
+
+def _needs(margins: Iterable[Margin]) -> str:
+    """Return all that margins need, each once."""
+    return ", ".join(dict.fromkeys(m.needs for m in margins if m.needs))

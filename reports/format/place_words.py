@@ -1,0 +1,73 @@
+"""Where the largest stress of a pin lies, and which internal force governs there, in words."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from assess.diameter_law import BENDING_EXPONENT, SHEAR_EXPONENT
+from reports.data.results import PinResult, PinShape, Units
+from reports.format.numbers import engineering
+
+NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter lies at it
+MAX_Z_DIGITS = 3
+
+
+def action(row: PinResult) -> str:
+    """Return the internal force that makes most of the stress of the governing section; empty for a
+    pin without sections.
+    """
+    section = row.places.section if row.places else None
+    if section is None:
+        return ""
+    if section.torque > max(section.bending_moment, 0.0) and section.torque > 0.0:
+        return "torsion"
+    middle = 0.5 * (BENDING_EXPONENT + SHEAR_EXPONENT)
+    if row.exponent > middle:
+        return "bending"
+    return "shear" if section.shear_force > abs(section.axial_force) else "axial force"
+
+
+def place_words(row: PinResult, shape: PinShape | None, units: Units | None = None) -> str:
+    """Return where the maximum of a row lies: "shear between F1 and F2", "surface, step beside E2".
+
+    units: for z; without them it is left out.
+    """
+    if row.places is None or row.location is None:
+        return ""
+    section = row.places.section
+    governs = row.places.governs
+    z = section.z if governs == "section" and section else row.location[2]
+    kind = action(row) if governs == "section" else "surface"
+    at = "" if units is None else f", z = {engineering(z, MAX_Z_DIGITS)} {units.length}"
+    where = "" if shape is None else along_words(shape, z)
+    comma = "," if where.startswith(("step", "a step")) else ""
+    return f"{kind}{comma} {where}".strip() + at
+
+
+def along_words(shape: PinShape, z: float) -> str:
+    """Return where z lies along a pin: "step beside E2", "under E2", "between E1 and E2",
+    "beside root".
+    """
+    ends, start = [], 0.0
+    for length, *_ in shape.segments:
+        ends.append((start, start + length))
+        start += length
+    named = [
+        (low, high, label)
+        for (low, high), (_, _, _, label, kind) in zip(ends, shape.segments, strict=True)
+        if kind in ("band", "held") and label
+    ]
+    for (_, high), (one, other) in zip(ends, pairwise(shape.segments), strict=False):
+        thin = min(one[1], other[1])
+        if one[1] != other[1] and abs(z - high) <= NEAR_STEP * thin:
+            beside = [label for low, top, label in named if high in (low, top)]
+            nearest = beside or [min(named, key=lambda n: min(abs(n[0] - z), abs(n[1] - z)))[2]]
+            return f"step beside {nearest[0]}" if named else "a step"
+    for low, high, label in named:
+        if low < z < high:
+            return f"under {label}"
+    before = [label for _, high, label in named if high <= z]
+    after = [label for low, _, label in named if low >= z]
+    if before and after:
+        return f"between {before[-1]} and {after[0]}"
+    return f"beside {(before[-1:] or after[:1])[0]}" if named else ""

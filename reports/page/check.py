@@ -1,0 +1,73 @@
+"""A checked study in one offline file: its linkage with loads, its pins, what would be solved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
+from reports.format.numbers import short
+from reports.format.template import environment
+from reports.page.load_drawing import draw_loads
+from reports.page.pin_drawing import draw_pin
+from reports.tables.column import Column, Table, read_only
+
+MAX_DRAWN_CASES = 6  # cases whose linkage is drawn
+MAX_DRAWN_PINS = 60  # pins that are drawn; the table has all
+
+ROW_COLUMNS: list[Column[PlannedRow]] = [
+    read_only("pin", lambda row: row.pin, numeric=False),
+    read_only("case", lambda row: row.case, numeric=False),
+    read_only("support", lambda row: row.support, numeric=False),
+    read_only("model", lambda row: row.model, numeric=False),
+    read_only("instants", lambda row: f"{row.instants:,}"),
+    read_only("largest force", lambda row: row.largest, "force"),
+    read_only("from link", lambda row: row.at, numeric=False),
+]
+
+
+def write_check(study: CheckedStudy, path: Path) -> None:
+    """Write the page."""
+    path.write_text(render(study), encoding="utf-8", newline="\n")
+
+
+def render(study: CheckedStudy) -> str:
+    """Return the page as text."""
+    from markupsafe import Markup
+
+    units = study.units
+    return (
+        environment()
+        .get_template("check.html.j2")
+        .render(
+            study=study,
+            units=units,
+            linkages=[
+                (motion.case, Markup(draw_loads(motion, units)))
+                for motion in study.motions[:MAX_DRAWN_CASES]
+            ],
+            pins=[
+                (
+                    pin.shape.pin,
+                    pin.shape.material,
+                    Markup(draw_pin(pin.shape, units, lugs=pin.lugs)),
+                    [pin.support] if not pin.lugs else _lug_words(pin, units.length),
+                )
+                for pin in study.pins[:MAX_DRAWN_PINS]
+            ],
+            more_linkages=len(study.motions) - MAX_DRAWN_CASES,
+            more_pins=len(study.pins) - MAX_DRAWN_PINS,
+            rows=Table("planned", ROW_COLUMNS, study.rows).grid(units),
+        )
+    )
+
+
+def _lug_words(pin: CheckedPin, unit: str) -> list[str]:
+    """Return a line for the lugs that are alike."""
+    alike: dict[str, list[str]] = {}
+    for lug in pin.lugs:
+        size = f"⌀{short(lug.outer_diameter)} {unit}, {lug.material}"
+        clearance = f"clearance {short(lug.clearance)} {unit}"
+        alike.setdefault(f"{size}, {clearance}", []).append(lug.connection)
+    return [
+        f"lug{'s' * (len(names) > 1)} {', '.join(names)}: {words}" for words, names in alike.items()
+    ]

@@ -1,0 +1,26 @@
+"""One row as a drawing: the pin with its loads, and the stress along it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from reports.data.results import PinResult, Results
+from reports.page.drawing_places import place_marks
+from reports.page.pin_drawing import DRAWING_WIDTH, draw_pin
+from reports.page.stress_along import stress_along
+from reports.tables.stress.singular_zones import circles, pin_zones
+
+
+def draw_row(results: Results, row: PinResult) -> str:
+    """Return the pin of a row as an <svg> element with its stress along z, loads and maximum.
+
+    Empty for a pin without a profile.
+    """
+    shape = next((s for s in results.shapes if s.pin == row.pin), None)
+    if shape is None:
+        return ""
+    only = replace(results, pins=(row,))
+    zones = circles(zone for case in pin_zones(only, row.pin).values() for zone in case)
+    marks = place_marks(only, row.pin, sum(s[0] for s in shape.segments))
+    along = stress_along(only, shape)
+    return draw_pin(shape, results.units, zones, DRAWING_WIDTH, marks, along)

@@ -1,0 +1,180 @@
+"""What the drawing of a pin shows of its governing case: stress along the pin, and its loads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import atan2, cos, degrees, radians, sin
+
+import numpy as np
+
+from reports.data.decision import worst_first
+from reports.data.results import Floats, PinResult, PinShape, Results
+from reports.data.surface import Surface, SurfaceCase
+from reports.plots.stress.surface import outline_sides, unread_points
+
+MIN_OUT_OF_PLANE_SHARE = 0.3  # of a force: less of it is not drawn out of the plane
+SOLID_BINS = 120  # along a pin that is not a body of revolution
+
+
+@dataclass(frozen=True)
+class LoadMark:
+    """The force of a link on the pin.
+
+    z: middle of its band. size: of the force. up, towards: its parts upwards on the drawing and
+    towards the viewer; both 0 where the band is clamped.
+    """
+
+    z: float
+    size: float
+    up: float
+    towards: float
+
+    @property
+    def out_of_plane(self) -> bool:
+        """Whether the force leaves the plane of the drawing."""
+        return abs(self.towards) > MIN_OUT_OF_PLANE_SHARE * self.size
+
+
+@dataclass(frozen=True)
+class StressAlong:
+    """Stress along a pin in a case, and the loads, at the governing instant.
+
+    angle: of the drawing's upward direction from x, degrees. loads: of the links.
+    surface: curves z (N,), stress (N,), which is NaN where it is not read.
+    section: the largest stress of sections, likewise, without points where it is not known.
+    pressure: of lugs, between two z each: load per length over diameter, without its sign.
+    z, maximum: of the row. allowed: the stress that the required factor permits.
+    """
+
+    case: str
+    angle: float
+    loads: tuple[LoadMark, ...]
+    surface: tuple[tuple[Floats, Floats], ...]
+    section: tuple[Floats, Floats]
+    pressure: tuple[tuple[float, float, float], ...]
+    z: float | None
+    maximum: float | None
+    allowed: float | None
+
+    @property
+    def drawn(self) -> bool:
+        """Whether there is any curve."""
+        return bool(self.surface or len(self.section[0]) or self.pressure)
+
+    @property
+    def top(self) -> float:
+        """The largest stress of surface, section and row; of pressure where there is no other."""
+        curves = [s for _, s in self.surface] + [self.section[1]]
+        largest = [float(np.nanmax(s)) for s in curves if np.isfinite(s).any()]
+        return max([*largest, self.maximum or 0.0]) or max(p for *_, p in self.pressure)
+
+
+def governing_rows(results: Results) -> dict[str, PinResult]:
+    """Return the worst row of every pin."""
+    return {row.pin: row for row in reversed(worst_first(results))}
+
+
+def stress_along(results: Results, shape: PinShape) -> StressAlong | None:
+    """Return what is drawn of a pin's governing case; None where the pin was not solved."""
+    row = governing_rows(results).get(shape.pin)
+    if row is None or row.max_von_mises is None:
+        return None
+    surface, case = _surface_of(results, row)
+    forces = _forces(row, shape, case)
+    angle = 0.0 if shape.cuts else _upwards([force for _, force in forces])
+    section = row.places.section.course if row.places and row.places.section else ()
+    allowed = None if row.yield_strength is None else row.yield_strength / (row.required or 1.0)
+    return StressAlong(
+        row.case,
+        angle,
+        tuple(_mark(z, force, angle) for z, force in forces),
+        () if surface is None or case is None else _curves(surface, case),
+        (np.array([z for z, _ in section]), np.array([s for _, s in section])),
+        _pressures(row, shape),
+        None if row.location is None else row.location[2],
+        row.max_von_mises,
+        allowed,
+    )
+
+
+def _surface_of(
+    results: Results, row: PinResult
+) -> tuple[Surface, SurfaceCase] | tuple[None, None]:
+    for surface in results.surfaces:
+        for case in surface.cases:
+            if (surface.pin, case.case) == (row.pin, row.case):
+                return surface, case
+    return None, None
+
+
+def _forces(
+    row: PinResult, shape: PinShape, case: SurfaceCase | None
+) -> list[tuple[float, Floats]]:
+    """Return z and force (3,) of every link, and of lugs that no link holds.
+
+    Without fields of the pin they are in world axes.
+    """
+    bands = _bands(shape)
+    if case is None:
+        return [(bands[x.connection][0], x.force) for x in row.loads if x.connection in bands]
+    links = {x.connection for x in case.loads}
+    reactions = [(bands[k][0], f) for k, f in _lugs(row).items() if k in bands and k not in links]
+    return [(x.z, x.forces[case.instant]) for x in case.loads] + reactions
+
+
+def _lugs(row: PinResult) -> dict[str, Floats]:
+    """Return the force (3,) of every lug on the pin; empty where they are not known."""
+    along = row.joint.along if row.joint else None
+    if along is None:
+        return {}
+    instant = 0
+    if along.times is not None and row.time is not None:
+        instant = int(np.abs(along.times - row.time).argmin())
+    return {k: np.append(along.forces[instant, n], 0.0) for n, k in enumerate(along.lugs)}
+
+
+def _bands(shape: PinShape) -> dict[str, tuple[float, float]]:
+    """Return the middle and the diameter of every named segment."""
+    z, bands = 0.0, {}
+    for length, diameter, _, label, _ in shape.segments:
+        bands[label] = z + 0.5 * length, diameter
+        z += length
+    return bands
+
+
+def _upwards(forces: list[Floats]) -> float:
+    """Return the direction of the largest force from x, degrees, towards x and y if possible."""
+    x, y, _ = max(forces, key=lambda f: float(np.hypot(f[0], f[1])), default=np.zeros(3)).tolist()
+    if x + y < 0.0:
+        x, y = -x, -y
+    return degrees(atan2(y, x))
+
+
+def _mark(z: float, force: Floats, angle: float) -> LoadMark:
+    c, s = cos(radians(angle)), sin(radians(angle))
+    x, y, _ = force.tolist()
+    return LoadMark(z, float(np.linalg.norm(force)), c * x + s * y, c * y - s * x)
+
+
+def _curves(surface: Surface, case: SurfaceCase) -> tuple[tuple[Floats, Floats], ...]:
+    z = surface.points[:, 2]
+    read = np.where(case.excluded | unread_points(case), np.nan, case.largest)
+    if surface.revolved:
+        return tuple((z[part], read[part]) for part in outline_sides(z).values())
+    edges = np.linspace(float(z.min()), float(z.max()), SOLID_BINS + 1)
+    bins = np.clip(np.searchsorted(edges, z, side="right") - 1, 0, SOLID_BINS - 1)
+    largest = np.full(SOLID_BINS, np.nan)
+    for k in np.unique(bins[np.isfinite(read)]).tolist():
+        largest[k] = float(np.nanmax(read[bins == k]))
+    return ((0.5 * (edges[1:] + edges[:-1]), largest),)
+
+
+def _pressures(row: PinResult, shape: PinShape) -> tuple[tuple[float, float, float], ...]:
+    bands, pressures = _bands(shape), []
+    for band in row.joint.bands if row.joint else ():
+        diameter = bands[band.name][1] if band.name in bands else 0.0
+        z = band.ends or tuple(z for z, _ in band.line_load)
+        if diameter > 0.0:
+            loads = zip(z, z[1:], (abs(q) for _, q in band.line_load), strict=False)
+            pressures += [(start, end, q / diameter) for start, end, q in loads]
+    return tuple(pressures)

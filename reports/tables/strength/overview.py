@@ -1,0 +1,171 @@
+"""The overview as a table: a row for each pin with its factor, spread and estimated diameter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from assess.judgement import DEPENDS
+from assess.strength.model_stress import YIELD_METHOD
+from reports.data.decision import limit
+from reports.data.overview import Diameter, PinLine
+from reports.data.results import Results
+from reports.format.numbers import DASH, engineering, short
+from reports.format.place_words import place_words
+from reports.format.ranges import END_DIGITS, factor_range
+from reports.format.words import result_words
+from reports.tables.column import Column, Table
+
+MAX_DECADES = 4.0  # of the axis; what lies beyond is at its end
+AXIS_MARGIN = 1.3  # ratio, beyond the smallest and the largest factor
+SPREAD_DIGITS = 2
+BAR_WIDTH = 20  # characters
+SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
+
+
+@dataclass(frozen=True)
+class FactorAxis:
+    """A logarithmic axis of factors of safety.
+
+    low, high: its ends. required: the factor that all pins need, or 1, at which
+    they yield; None where it differs.
+    """
+
+    low: float
+    high: float
+    required: float | None
+
+    def at(self, factor: float) -> float:
+        """Return the place of a factor, 0 to 1."""
+        if factor <= self.low:
+            return 0.0
+        if factor >= self.high:
+            return 1.0
+        return math.log(factor / self.low) / math.log(self.high / self.low)
+
+    @property
+    def ticks(self) -> list[float]:
+        """The powers of ten on the axis."""
+        powers = range(math.ceil(math.log10(self.low)), math.floor(math.log10(self.high)) + 1)
+        return [10.0**power for power in powers]
+
+
+def factor_axis(lines: Sequence[PinLine]) -> FactorAxis | None:
+    """Return the axis on which all pins have their place; None without any factor."""
+    needed = {limit(line.row) for line in lines}
+    ends = [end for line in lines for end in (*(line.error or ()), *(line.spread or ()))]
+    finite = [end for end in ends if 0.0 < end < math.inf]
+    if not finite:
+        return None
+    low, high = min(*finite, *needed, 1.0) / AXIS_MARGIN, max(*finite, *needed) * AXIS_MARGIN
+    low = max(low, min(needed) / 10.0**MAX_DECADES)
+    common = needed.pop() if len(needed) == 1 else None
+    return FactorAxis(low, min(high, low * 10.0**MAX_DECADES), common)
+
+
+def bar(line: PinLine, axis: FactorAxis, width: int = BAR_WIDTH) -> str:
+    """Return the bar of a pin in characters: its spread, factor with error, and the requirement."""
+    cells = [" "] * width
+
+    def draw(ends: tuple[float, float], mark: str) -> None:
+        first, last = (min(int(width * axis.at(end)), width - 1) for end in ends)
+        cells[first : last + 1] = mark * (last + 1 - first)
+
+    if line.spread:
+        draw(line.spread, SPREAD_MARK)
+    required = min(int(width * axis.at(limit(line.row))), width - 1)
+    cells[required] = REQUIRED_MARK
+    if line.error:
+        draw(line.error, FACTOR_MARK)
+    return "".join(cells)
+
+
+def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]:
+    """Return a row for each pin, for people."""
+    shapes = {shape.pin: shape for shape in results.shapes}
+    axis = factor_axis(lines)
+    cases = {line.row.case for line in lines}
+    columns: list[Column[PinLine]] = [
+        Column("pin", lambda x: x.pin, heading="pin", numeric=False),
+        Column("case", lambda x: x.row.case, heading="case", numeric=False,
+               rank=0 if len(cases) > 1 else 5),
+        Column("outcome", outcome_words, heading="result", numeric=False),
+        Column("safety_factor", lambda x: x.row.safety_factor,
+               heading="factor", text=lambda x: factor_range(x.row)),
+        Column("bar", lambda x: bar(x, axis) if axis else DASH, heading=_heading(axis),
+               numeric=False, rank=4, drop_if_empty=True),
+        Column("spread", spread_words, heading="open range", rank=3, drop_if_empty=True),
+        Column("diameter", diameter_words, "length", "diameter",
+               numeric=False, rank=2, drop_if_empty=True),
+        Column("max_von_mises", lambda x: x.row.max_von_mises, "stress", "max von Mises", rank=6),
+        Column("error_estimate", lambda x: error_words(x), heading="±", rank=7),
+        Column("check", check_words, heading="check", numeric=False, rank=1, drop_if_empty=True),
+        Column("place", lambda x: place_words(x.row, shapes.get(x.pin)), heading="largest stress",
+               numeric=False, rank=8, drop_if_empty=True),
+        Column("time", lambda x: x.row.time, "time", "t", rank=9, drop_if_empty=True),
+    ]  # fmt: skip
+    return Table("overview", columns, list(lines))
+
+
+def outcome_words(line: PinLine) -> str:
+    """Return the outcome of a pin, with what qualifies its factor: "not decided: singular", "fails
+    (yields)".
+    """
+    by_row = line.check.row is not None and line.outcome != DEPENDS
+    return result_words(line.row) if by_row else line.outcome
+
+
+def spread_words(line: PinLine) -> str:
+    """Return the ends of the factor over all that is open; a dash where nothing is."""
+    if line.spread is None:
+        return DASH
+    low, high = (engineering(end, SPREAD_DIGITS) for end in line.spread)
+    return low if low == high else f"{low} to {high}"
+
+
+def diameter_words(line: PinLine) -> str:
+    """Return the diameter, and the estimated one of a pin that fails: "2 → 3.40", "2"; a dagger
+    where its lug is too small, a dash without one.
+    """
+    d = line.diameter
+    if d is None:
+        return DASH
+    given = short(float(f"{d.given:.4g}"))
+    return f"{given} → {_diameter(d, d.needed)}" if d.needed else given
+
+
+def whatever_words(line: PinLine) -> str:
+    """Return the estimated diameter over all that is open; a dash where it stays as it is."""
+    d = line.diameter
+    return DASH if d is None or d.whatever is None else _diameter(d, d.whatever)
+
+
+def _diameter(d: Diameter, diameter: float) -> str:
+    mark = " †" if d.too_large(diameter) else ""
+    return f"{engineering(diameter, END_DIGITS)}{mark}"
+
+
+def error_words(line: PinLine) -> str:
+    """Return the relative error of the maximum; a dash for a singular row."""
+    row = line.row
+    if row.verdict == "singular" or not row.max_von_mises or row.error_estimate is None:
+        return DASH
+    return f"{engineering(100.0 * row.error_estimate / row.max_von_mises, 2)} %"
+
+
+def check_words(line: PinLine) -> str:
+    """Return the worst check where it is another than the maximum against yield."""
+    return DASH if line.check.check == YIELD_METHOD else line.check.check
+
+
+def _heading(axis: FactorAxis | None) -> str:
+    """Return the axis in characters: its powers of ten at their places."""
+    if axis is None:
+        return ""
+    cells = [" "] * (BAR_WIDTH + 4)
+    for tick in axis.ticks:
+        text, at = short(tick), int(BAR_WIDTH * axis.at(tick))
+        if not any(c != " " for c in cells[max(at - 1, 0) : at + len(text) + 1]):
+            cells[at : at + len(text)] = text
+    return "".join(cells).rstrip()

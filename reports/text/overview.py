@@ -1,0 +1,379 @@
+"""The overview of a run in sentences: what is decided, why, what to do, whether to believe it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, YIELDS
+from reports.data.changes import Remedy, command
+from reports.data.decision import largest_factor, limit
+from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
+from reports.data.overview import GOOD, PinLine, QuietCase, pin_lines, quiet_cases
+from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
+from reports.data.unknowns import NO_SPREAD, Unknown, decided_by
+from reports.format.numbers import DASH, engineering, short
+from reports.format.place_words import action, place_words
+from reports.format.ranges import factor_range, factor_text
+from reports.format.units import unit_name
+from reports.format.words import undecided_because
+from reports.tables.strength.changes import singularity_remedies
+from reports.tables.strength.margins import not_made_briefly
+
+MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
+MAX_NAMED_CASES = 4
+MAX_PEAKS = 3  # largest stresses in a sentence
+LARGE_FORCE = 0.5  # of the largest force: what passes through the same pins
+STRONGER = 3.0  # times the strength, which no other steel has
+MEASURED = {
+    "landing": "force over time at landing",
+    "joint": "clearance and stiffness of the lugs",
+}
+Content = list[str]
+
+
+def decisions(results: Results) -> str:
+    """Return sentences on the pins that do not fail, and on cases that never govern."""
+    lines = pin_lines(results)
+    parts = [_undecided(lines), _depending(results, lines), _good(lines), _also(results, lines)]
+    parts += [_quiet(results, case, len(lines)) for case in quiet_cases(results, lines)]
+    return " ".join(part for part in parts if part)
+
+
+def why(results: Results, most: int = MAX_PEAKS) -> Content:
+    """Return sentences on the forces, the internal forces that govern, and the largest stresses.
+
+    most: number of pins with their stress.
+    """
+    lines = [line for line in pin_lines(results) if line.row.max_von_mises]
+    if not lines:
+        return []
+    bad = [line for line in lines if line.outcome not in GOOD] or lines[:1]
+    shapes = {shape.pin: shape for shape in results.shapes}
+    failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
+    parts = [_path(results, lines), _actions(failing), _peaks(results, bad[:most], shapes)]
+    return [part for part in parts if part]
+
+
+def actions(results: Results, study: str = "") -> Content:
+    """Return changes that bring the pins to their factor, and last the command that sizes them.
+
+    study: its path, by default its name.
+    """
+    lines = pin_lines(results)
+    parts = [*_exceeded(lines), *_singular(lines)]
+    if not results.changes:
+        return parts
+    if needed := [line for line in lines if line.diameter and line.diameter.needed]:
+        parts.append(
+            "Diameters are estimates: the factor grows with their cube in bending, their square in "
+            "shear, their power 1.5 beneath contact. The command verifies them."
+        )
+    parts += _eyes(results, needed)
+    parts += _other_ways(results)
+    line = command(results.changes, study or results.study, largest_factor(results.pins))
+    return [*parts, *([line] if line else [])]
+
+
+def accuracy(results: Results) -> Content:
+    """Return a sentence on the errors of the maxima; nothing where none has one."""
+    rows = [x.row for x in pin_lines(results) if x.row.max_von_mises]
+    sound = [r for r in rows if r.verdict != "singular" and r.error_estimate is not None]
+    if not sound:
+        return []
+    most = max((r.error_estimate or 0.0) / (r.max_von_mises or 1.0) for r in sound)
+    return [f"up to {engineering(100.0 * most, 2)} %."]
+
+
+def certainty(results: Results) -> Content:
+    """Return a sentence on the error with which the pin nearest to the factor would not fail."""
+    rows = [x.row for x in pin_lines(results) if x.row.decided is False and x.row.safety_factor]
+    if not rows:
+        return []
+    nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
+    needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
+    even = "even " if len(rows) > 1 else ""
+    return [
+        f"To meet the factor, {even}the stress of {nearest.pin} would have to be overestimated by "
+        f"{engineering(100.0 * needed, 2)} %."
+    ]
+
+
+def skipped_checks(results: Results) -> Content:
+    """Return a sentence on the checks that lack a number; nothing if all were made."""
+    without = [x.pin for x in pin_lines(results) if _without_range(x.row)]
+    parts = [f"joint range of {names(without)}"] if without else []
+    parts += ["fatigue"] * (results.fatigue is None)
+    parts += [text] if (text := not_made_briefly(results)) else []
+    return [f"Skipped: {'; '.join(parts)}."] if parts else []
+
+
+def measure_first(unknown: Sequence[Unknown]) -> Content:
+    """Return a sentence on the open value to measure first."""
+    matters = [x for x in unknown if x.ratio > NO_SPREAD]
+    if not matters:
+        return []
+    if deciding := decided_by(unknown):
+        owner, pins = next(iter(deciding.items()))
+        return [f"Measure first: {MEASURED[owner]} ({names(pins)})."]
+    first = matters[0]
+    row, value = max(first.rows, key=lambda x: x[1].ratio)
+    low, high = (factor_text(end, row.required or 1.0) for end in (value.low, value.high))
+    return [
+        f"Nothing open changes an outcome alone; {first.what} matters most (factor of {row.pin} "
+        f"{low} to {high})."
+    ]
+
+
+def flips_words(unknown: Unknown, units: Units) -> str:
+    """Return whether a value alone changes an outcome: "yes: F fails at half-sine"."""
+    flipped = unknown.flipped
+    if not flipped:
+        return "no"
+    told = [_flip(row, d, units) for row, d in flipped]
+    rest = f" and {len(told) - MAX_PEAKS} more" if len(told) > MAX_PEAKS else ""
+    return f"yes: {'; '.join(told[:MAX_PEAKS])}{rest}"
+
+
+def range_words(unknown: Unknown, units: Units) -> str:
+    """Return the range of an open value."""
+    parts = [state for state in unknown.states if state != given_words(unknown)]
+    if unknown.ends:
+        dimension = unknown.rows[0][1].dimension
+        ends = dict.fromkeys(short(float(f"{end:.6g}")) for end in unknown.ends)
+        parts.insert(0, f"{' to '.join(ends)} {unit_name(dimension, units)}")
+    return ", ".join(parts)
+
+
+def given_words(unknown: Unknown) -> str:
+    """Return the study's own value in the unit of the range; a dash for none, or several."""
+    given = {value.given for _, value in unknown.rows}
+    value = given.pop() if len(given) == 1 else None
+    return short(float(f"{value:.6g}")) if isinstance(value, float) else value or DASH
+
+
+def names(pins: Sequence[str]) -> str:
+    """Return names of pins: "A", "A and B", "A, B and C"."""
+    if len(pins) > MAX_NAMED_PINS:
+        return f"{len(pins)} pins"
+    return " and ".join(filter(None, [", ".join(pins[:-1]), pins[-1]])) if pins else ""
+
+
+def _flip(row: PinResult, d: Dependence, units: Units) -> str:
+    state = "may fail" if row.as_described in GOOD else "is safe"
+    at = _at(d, units)
+    return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
+
+
+def _undecided(lines: Sequence[PinLine]) -> str:
+    open_ = [line for line in lines if line.outcome == NOT_DECIDED]
+    if not open_:
+        return ""
+    told = (f"{x.pin} ({x.check.reason or undecided_because(x.row)})" for x in open_)
+    return f"Not decided: {', '.join(told)}."
+
+
+def _depending(results: Results, lines: Sequence[PinLine]) -> str:
+    open_ = [line for line in lines if line.outcome == DEPENDS]
+    told = [f"{x.pin} on {flips(x.row, results.units)}" for x in open_]
+    if not told:
+        return ""
+    first, *rest = told
+    return f"{first.replace(' on ', ' depends on ', 1)}{''.join(f'; {x}' for x in rest)}."
+
+
+def flips(row: PinResult, units: Units) -> str:
+    """Return the values that change the outcome of a row: "clearance (above 0.0007 in), pulse
+    (half-sine)".
+    """
+    told = []
+    for d in row.depends_on:
+        if d.over == BENEATH_CONTACT:
+            told.append("stress beneath contact")
+            continue
+        what = d.value if d.what == BENEATH_CONTACT else d.what
+        if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
+            what = f"the combined {d.over} range"
+        at = _at(d, units)
+        told.append(f"{what} ({at})" if at else what)
+    return ", ".join(dict.fromkeys(told))
+
+
+def _at(d: Dependence, units: Units) -> str:
+    """Return at which values an outcome differs: "above 0.0007 in", "half-sine"; or nothing."""
+    value = d.flips_at if d.flips_at is not None else d.at
+    if value is None:
+        return "" if d.what == BENEATH_CONTACT else d.value
+    side = "" if d.given is None else "above " if (d.at or value) > d.given else "below "
+    return f"{side}{value:.3g} {unit_name(d.dimension, units)}"
+
+
+def _good(lines: Sequence[PinLine]) -> str:
+    good = [line for line in lines if line.outcome in GOOD]
+    if not good or len(good) == len(lines):
+        return ""
+    state = "safe" if any(x.outcome == SAFE for x in good) else BELOW_YIELD
+    return f"{names([x.pin for x in good])} {'are' if len(good) > 1 else 'is'} {state}."
+
+
+def _without_range(row: PinResult) -> bool:
+    """Return whether the range of a prescribed support over the joint is not known."""
+    joint = row.joint
+    return joint is not None and bool(joint.remark) and not joint.range and not joint.bands
+
+
+def _also(results: Results, lines: Sequence[PinLine]) -> str:
+    """Return sentences on the rows that are not safe besides the worst of each pin, by case."""
+    shown = {(x.row.pin, x.row.case) for x in lines}
+    more = [r for r in results.pins if r.outcome not in GOOD and (r.pin, r.case) not in shown]
+    by_case: dict[str, dict[str, list[str]]] = {}
+    for row in sorted(more, key=lambda r: OUTCOME_ORDER[r.outcome]):
+        by_case.setdefault(row.case, {}).setdefault(row.outcome, []).append(row.pin)
+    told = [
+        f"in {case} " + ", ".join(f"{names(p)} {_state(s, p)}" for s, p in of.items())
+        for case, of in by_case.items()
+    ]
+    if len(told) > MAX_NAMED_CASES:
+        return f"Pins are not safe in {len(told)} other cases either (safety_factors.csv)."
+    return f"Also {'; '.join(told)}." if told else ""
+
+
+def _state(outcome: str, pins: Sequence[str]) -> str:
+    """Return an outcome as the verb of some pins."""
+    plural = len(pins) > 1
+    if outcome == NOT_DECIDED:
+        return "are not decided" if plural else "is not decided"
+    return outcome.removesuffix("s") if plural else outcome
+
+
+def _quiet(results: Results, case: QuietCase, pins: int) -> str:
+    low = case.lowest
+    state = "safe" if low is not None and low.required else BELOW_YIELD
+    every = "all are" if case.pins > 1 else "the pin is"
+    if 1 < case.pins < pins:
+        every = f"the {case.pins} pins solved are"
+    of = f" ({low.pin})" if low and pins > 1 else ""
+    least = f", lowest {factor_range(low)}{of}" if low else ""
+    return f"In {case.case} {every} {state}{least}."
+
+
+def _path(results: Results, lines: Sequence[PinLine]) -> str:
+    """Return a sentence on the pins through which the largest forces of the worst case pass."""
+    worst = lines[0].row
+    units = results.units
+    forces = {
+        x.row.pin: _largest(x.row.loads) for x in lines if x.row.case == worst.case and x.row.loads
+    }
+    if len(forces) < 2:
+        return _on_one_pin(worst, units) if forces else ""
+    most = max(forces.values())
+    through = [pin for pin, force in forces.items() if force >= LARGE_FORCE * most]
+    rest = [force for force in forces.values() if force < LARGE_FORCE * most]
+    verb = "carry" if len(through) > 1 else "carries"
+    text = f"{names(through)} {verb} up to {engineering(most, 3)} {units.force}"
+    others = f", others {engineering(max(rest), 3)}" if rest else ""
+    return f"{text}{others}."
+
+
+def _on_one_pin(row: PinResult, units: Units) -> str:
+    load = max(row.loads, key=_size)
+    return (
+        f"The largest force on pin {row.pin} is {engineering(_size(load), 3)} {units.force}, at "
+        f"{load.connection} ({row.case})."
+    )
+
+
+def _between(high: float, low: float, digits: int = 3) -> str:
+    ends = dict.fromkeys(engineering(end, digits) for end in (low, high))
+    return " to ".join(ends)
+
+
+def _size(load: GoverningLoad) -> float:
+    return float(np.linalg.norm(load.force))
+
+
+def _largest(loads: Sequence[GoverningLoad]) -> float:
+    """Return the largest force of a link on a pin, or of all together, which its supports take."""
+    total = sum(np.asarray(load.force) for load in loads)
+    return max(*map(_size, loads), float(np.linalg.norm(total)))
+
+
+def _actions(lines: Sequence[PinLine]) -> str:
+    """Return a sentence on the internal forces that govern pins."""
+    by_action: dict[str, list[str]] = {}
+    for line in lines:
+        if kind := action(line.row):
+            by_action.setdefault(kind, []).append(line.pin)
+    told = [
+        f"{kind} {'dominates ' * (not k)}{names(pins)}"
+        for k, (kind, pins) in enumerate(by_action.items())
+    ]
+    text = ", ".join(told)
+    return f"{text[0].upper()}{text[1:]}." if text else ""
+
+
+def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShape]) -> str:
+    units = results.units
+    verb = " reaches" if len(lines) == 1 else ""
+    told = [
+        f"{x.pin}{verb} {engineering(x.row.max_von_mises, 3)} {units.stress} "
+        f"({place_words(x.row, shapes.get(x.pin))})".replace(" ()", "")
+        for x in lines
+    ]
+    first = lines[0].row
+    permitted = (first.yield_strength or 0.0) / limit(first)
+    if len(told) == 1:
+        return f"{told[0]}."
+    if not permitted:
+        return f"Largest stress: {'; '.join(told)}."
+    word = "permitted" if first.required else "the yield strength"
+    return f"Largest stress: {'; '.join(told)}; {engineering(permitted, 3)} is {word}."
+
+
+def _exceeded(lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on each check by formula that a pin fails, with what it lacks."""
+    failing = [x for x in lines if x.check.row is None and x.outcome == FAILS and x.check.factor]
+    return [
+        f"{x.pin} needs {engineering(100.0 * (x.check.used - 1.0), 2)} % more strength, or less "
+        f"load ({x.check.check})."
+        for x in failing
+    ]
+
+
+def _singular(lines: Sequence[PinLine]) -> Content:
+    """Return the remedies of the singularities that govern pins that are not safe."""
+    rows = [x.row for x in lines if x.outcome not in GOOD]
+    ways = singularity_remedies(zone for row in rows for zone in row.singular_at if zone.governs)
+    return [f"For a maximum instead of a range: {'; '.join(ways)}."] if ways else []
+
+
+def _eyes(results: Results, lines: Sequence[PinLine]) -> Content:
+    """Return a sentence on the pins that would not fit into their lugs."""
+    small = [x for x in lines if x.diameter and x.diameter.too_large(x.diameter.needed)]
+    if not small:
+        return []
+    eyes = {engineering(x.diameter.eye, 3) for x in small if x.diameter}
+    return [
+        f"{names([x.pin for x in small])} would not fit lugs of {', '.join(sorted(eyes))} "
+        f"{results.units.length} outer diameter: enlarge the lugs or add shear planes."
+    ]
+
+
+def _other_ways(results: Results) -> Content:
+    """Return sentences on a stronger material and a longer impulse for the worst pin."""
+    worst: Remedy = results.changes[0]
+    row = results[worst.pin, worst.case]
+    strength = f"{engineering(worst.yield_strength, 3)} {results.units.stress}"
+    given = row.yield_strength or 0.0
+    parts = []
+    if worst.yield_strength > STRONGER * given:
+        parts.append(f"No stronger material: {worst.pin} needs a yield strength of {strength}.")
+    else:
+        parts.append(f"Or a yield strength of {strength} for {worst.pin}.")
+    if worst.impulse_time and worst.given_time:
+        parts.append(
+            f"Or an impulse time of {engineering(worst.impulse_time, 3)} instead of "
+            f"{short(worst.given_time)} {results.units.time} for {worst.pin}."
+        )
+    return parts

@@ -1,0 +1,103 @@
+"""The first screen of the main job answers three questions in its first 900 px, by visible text:
+which pins fail and why, which diameter, and whether the error is small enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.browser.test_pins import WIDER, screen
+from tests.support.results.browser_page import errors, opened
+
+pytestmark = pytest.mark.browser
+
+FIRST_SCREEN = 900  # px
+# The text of all that lies within the first screen and can be seen, in reading order.
+SEEN = """
+const height = arguments[0], texts = [];
+const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+for (let node = walker.nextNode(); node; node = walker.nextNode()) {
+  const range = document.createRange();
+  range.selectNodeContents(node);
+  const boxes = [...range.getClientRects()].filter((r) => r.width > 1 && r.height > 1);
+  if (!boxes.length || boxes.some((r) => r.bottom > height || r.right > innerWidth)) continue;
+  if (node.parentElement.checkVisibility()) texts.push(node.textContent);
+}
+return texts.join(" ").replace(/\\s+/g, " ");
+"""
+ROWS = """
+return [...document.querySelectorAll("table.lines tbody tr")].map((tr) => ({
+  pin: tr.querySelector("th").textContent, outcome: tr.querySelector(".outcome").textContent.trim(),
+  required: parseFloat(getComputedStyle(tr.querySelector(".bar")).getPropertyValue("--required")),
+  factor: parseFloat(tr.querySelector(".bar b").style.left),
+  low: parseFloat(tr.querySelector(".bar i").style.left),
+  bottom: tr.getBoundingClientRect().bottom,
+}));
+"""
+
+
+@pytest.fixture
+def page(browser: Any, shipped: Callable[[str], Path]) -> Any:
+    opened(browser, shipped("landing_gear"))
+    browser.execute_script("scrollTo(0, 0)")
+    return browser
+
+
+def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
+    with screen(page, 1400):
+        text = page.execute_script(SEEN, FIRST_SCREEN)
+    # Which pins fail, and why?
+    assert "5 of 9 pins miss the required factor 10 (landing): E, J, A, G, D." in text
+    assert "E, J and A carry up to 196,000 lbf" in text
+    assert "Shear dominates E and J, bending A, G and D." in text
+    assert "E 187,000 psi (surface, step beside E2)" in text
+    # Which diameter?
+    assert "2 → 3.40" in text
+    assert "would not fit lugs of 5.00 in outer diameter" in text
+    assert "pinstress size landing_gear.toml --pins E,J,A,G,D" in text
+    # Is the error small enough?
+    assert "Error of the maxima up to 2.0 %." in text
+    assert "even the stress of D would have to be overestimated by 140 %" in text
+    assert "Measure first: force over time at landing" in text
+    assert "not checked, needs ultimate_strength" in text
+
+
+def test_the_linkage_shows_each_pin_with_its_factor_and_the_load(page: Any) -> None:
+    linkage = page.find_element("css selector", "svg.linkage")
+    text = linkage.text.split()
+    for pin, factor in (("E", "1.20"), ("J", "1.49"), ("C", "294")):
+        assert text[text.index(pin) + 1] == factor
+    assert "194,000" in text
+    assert len(linkage.find_elements("css selector", ".pin.fails")) == 5
+    assert len(linkage.find_elements("css selector", ".load")) == 1
+    link = linkage.find_element("css selector", "a[href]")
+    target = (link.get_dom_attribute("href") or "").partition("#")[2]
+    assert page.find_element("id", target)
+
+
+@pytest.mark.parametrize("width", [1400, 1024, 390])
+def test_bars_stand_on_their_side_of_the_requirement(page: Any, width: int) -> None:
+    with screen(page, width):
+        rows = page.execute_script(ROWS)
+        assert page.execute_script(WIDER) == []
+    assert [row["pin"] for row in rows] == list("EJAGDFHBC")
+    for row in rows:
+        safe = row["outcome"].endswith("safe")
+        assert (row["factor"] > row["required"]) is (not row["outcome"].endswith("fails"))
+        assert (row["low"] > row["required"]) is safe
+    if width == 390:
+        assert rows[0]["bottom"] < FIRST_SCREEN
+    assert errors(page) == []
+
+
+def test_the_first_screen_on_paper(page: Any) -> None:
+    with screen(page, 1400, media="print"):
+        shown = page.execute_script(
+            "return [...document.querySelectorAll('.verdict, .lines, .matrix, .note')]"
+            ".every((e) => e.checkVisibility())"
+        )
+    assert shown

@@ -1,0 +1,36 @@
+"""The forces that a case applies, as animations draw them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pinstress.analysis.gather.gather import loads_only
+from pinstress.study.reading.file import load_study
+
+STUDIES = Path(__file__).parents[3] / "studies"
+
+
+def test_they_do_the_work_that_the_balance_of_powers_has() -> None:
+    """Force times the point's velocity, the slope of its position, is the power put in."""
+    (motion,) = loads_only(load_study(STUDIES / "excavator.toml"), ["dig"]).motion
+    (load,) = motion.applied
+    assert load.body == "bucket"
+    assert motion.time is not None
+    velocity = np.gradient(load.position, motion.time, axis=0, edge_order=2)
+    power = (load.force * velocity).sum(axis=1)
+    largest = np.abs(motion.ledger.applied).max()
+    assert np.abs(power - motion.ledger.applied).max() < 2e-3 * largest
+
+
+def test_an_impulse_acts_at_its_joint() -> None:
+    results = loads_only(load_study(STUDIES / "landing_gear.toml"), ["landing"])
+    (motion,) = results.motion
+    (load,) = motion.applied
+    at = motion.joint_position[:, motion.joints.index("J")]
+    assert load.position == pytest.approx(at)
+    # as the note of the case has it, which is from the study alone
+    assert f"{load.sizes[0]:,.1f} lbf" in results.reactions[0].note
+    assert load.force[0, 0] == 0.0

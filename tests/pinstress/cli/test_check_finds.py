@@ -1,0 +1,90 @@
+"""What `check` finds before anything is solved: whatever would end or spoil a run later."""
+
+from __future__ import annotations
+
+import pytest
+
+import pinstress
+from pinstress.cli.check import describe
+from pinstress.study.model.balance import given_warnings
+from pinstress.study.reading.errors import InputError
+from tests.support.each import each
+
+PIN = """title = "Link"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+[pin.P]
+material = "steel"
+CLAMP
+profile = [
+  { length = 10, diameter = 20, connection = "left" },
+  { length = 20, diameter = 20, connection = "middle" },
+  { length = 10, diameter = 20, connection = "right" },
+]
+[case.pull]
+kind = "given"
+FORCES
+[analysis]
+MODEL
+"""
+BALANCED = "forces = { left = [0, 1000], middle = [0, -2000], right = [0, 1000] }"
+DRILLED = 'hole = [{ z = 20, diameter = 5 }]\nclamp = ["start"]'
+LUGS = "lug.left = {}\nlug.middle = {}\nlug.right = {}"
+FREE = LUGS.replace("{}", '{ tilt = "free" }')
+
+
+def study(clamp: str = "", forces: str = BALANCED, model: str = "") -> pinstress.Study:
+    text = PIN.replace("CLAMP", clamp).replace("FORCES", forces).replace("MODEL", model)
+    return pinstress.study_from(text)
+
+
+@each(
+    ("clamp", "forces", "says"),
+    [
+        ("", BALANCED, ""),
+        ("", BALANCED.replace("-2000", "-1000"), "their resultant"),
+        ("", f"{BALANCED}\nmoments = {{ middle = [20000, 0] }}", "their couple across the axis"),
+        (LUGS, f"{BALANCED}\nmoments = {{ middle = [20000, 0] }}", ""),  # lugs resist tilting
+        (FREE, f"{BALANCED}\nmoments = {{ middle = [20000, 0] }}", "their couple across the axis"),
+        (LUGS, f"{BALANCED}\nmoments = {{ middle = [0, 0, 900] }}", "their torque about the axis"),
+    ],
+)
+def test_loads_that_nothing_balances(clamp: str, forces: str, says: str) -> None:
+    """By statics: lugs that resist tilting take couples across the axis; none takes a torque."""
+    _, unheld, _ = describe(study(clamp, forces))
+    assert bool(unheld) == bool(says)
+    assert all(says in line for line in unheld)
+
+
+def test_a_small_imbalance_is_a_warning() -> None:
+    """Of 5 %, which the bands share."""
+    (warning,) = given_warnings(study(forces=BALANCED.replace("-2000", "-1900")))
+    assert "a force of 100 N" in warning
+
+
+@each(
+    ("clamp", "model", "code"),
+    [
+        (LUGS, 'model = "solid"', "model-without-contact"),
+        (
+            'hole = [{ z = 20, diameter = 5 }]\nclamp = ["start"]',
+            'model = "harmonic"',
+            "not-of-revolution",
+        ),
+        ('clamp = ["left", "middle", "right"]', "", "not-loaded"),
+    ],
+)
+def test_cases_that_no_model_solves(clamp: str, model: str, code: str) -> None:
+    """As a run would say, before it solves the others."""
+    for command in (describe, pinstress.prepare):
+        with pytest.raises(InputError) as error:
+            command(study(clamp, model=model))
+        assert error.value.code == code
+
+
+@each(("key", "what"), [('pins = ["Q"]', "no pin 'Q'"), ('cases = ["push"]', "no case 'push'")])
+def test_requirements_of_what_does_not_exist(key: str, what: str) -> None:
+    with pytest.raises(InputError, match=what):
+        study(model=f'[[require]]\n{key}\ncheck = "yield"\nfactor = 2')

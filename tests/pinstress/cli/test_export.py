@@ -1,0 +1,223 @@
+"""`pinstress export`: a reviewer's deck says what to expect, and CalculiX finds it."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pinstress
+from assess.opinion.calculix import stresses
+from assess.opinion.calculix_joint import contact_forces
+from assess.opinion.opinions import (
+    MAX_MAXIMUM_DIFFERENCE,
+    MAX_MOMENT_DIFFERENCE,
+    MAX_STRESS_DIFFERENCE,
+)
+from fea.core.voigt import von_mises
+from pinstress.cli.commands import run_command_line
+from tests.conftest import ROOT
+from tests.support.each import each
+from tests.support.programs.command_line import QUICK
+
+BOTH_MANUALS = {
+    *("NODE", "ELEMENT", "MATERIAL", "ELASTIC", "SOLID SECTION", "SURFACE", "EQUATION", "SPRING"),
+    *("SURFACE INTERACTION", "SURFACE BEHAVIOR", "CONTACT PAIR", "BOUNDARY", "STEP", "STATIC"),
+    *("CLOAD", "NODE PRINT", "NODE FILE", "EL FILE", "END STEP"),
+}
+LUGS = """
+title = "Lugs: ±"
+units = "mm-N-s"
+[material.steel]
+youngs_modulus = "210 GPa"
+poisson_ratio = 0.3
+yield_strength = "500 MPa"
+[pin.P]
+material = "steel"
+profile = [
+  { length = 20, diameter = 20, connection = "left" },
+  { length = 30, diameter = 20, connection = "middle" },
+  { length = 20, diameter = 20, connection = "right" },
+]
+[pin.P.lug.left]
+tilt = "free"
+[pin.P.lug.middle]
+[pin.P.lug.right]
+[case.pull]
+kind = "given"
+forces = { left = [5000, 0], middle = [-10000, 0], right = [5000, 0] }
+[case.turn]
+kind = "given"
+forces = { left = [5000, 0, 800], middle = [-10000, 0, -800], right = [5000, 0, 0] }
+[analysis]
+tolerance = 0.2
+joints = "contact"
+"""
+NOTHING_HOLDS = QUICK.replace('clamp = ["start"]', "").replace("clamp", "# clamp")
+
+
+def exported(folder: Path, study: str, *options: str, pin: str = "B", case: str = "landing") -> int:
+    (folder / "study.toml").write_text(study, encoding="utf-8")
+    where = ["--out", str(folder / "deck.inp"), "--quiet"]
+    return run_command_line(["export", str(folder / "study.toml"), pin, case, *options, *where])
+
+
+def expected(deck: Path) -> dict[str, str]:
+    """The numbers at the head of a deck."""
+    return dict(re.findall(r"^\*\*   (\w+) = (.*)$", deck.read_text("ascii"), re.MULTILINE))
+
+
+def keywords(deck: Path) -> set[str]:
+    return set(re.findall(r"^\*([A-Z][A-Z ]+[A-Z])", deck.read_text("ascii"), re.MULTILINE))
+
+
+def test_the_head_has_the_numbers_of_the_run(tmp_path: Path) -> None:
+    """In the study's units, as have the nodes; the loads are the links' forces."""
+    assert exported(tmp_path, QUICK, "--deck", "calculix") == 0
+    text, numbers = (tmp_path / "deck.inp").read_text("ascii"), expected(tmp_path / "deck.inp")
+    row = pinstress.run(pinstress.load_study(tmp_path / "study.toml"))["B", "landing"]
+    assert row.places is not None
+    assert row.places.section is not None
+    for key, value in {
+        "max_von_mises": row.max_von_mises,
+        "error_estimate": row.error_estimate,
+        "safety_factor": row.safety_factor,
+        "section_z": row.places.section.z,
+        "section_moment": row.places.section.bending_moment,
+    }.items():
+        assert float(numbers[key]) == pytest.approx(value, rel=1e-5), key
+    assert "Units, consistent: in, lbf, psi" in text
+    assert "study.toml (One pin)" in text
+    assert max(map(len, text.splitlines())) <= 132
+    nodes = np.array(re.findall(r"^\d+, (\S+), (\S+), (\S+)$", text.split("*ELEMENT")[0],
+                                re.MULTILINE), dtype=float)  # fmt: skip
+    assert nodes[:, 2].max() == pytest.approx(3.5)  # inches
+    at = [float(x) for x in numbers["node_at"].split(",")]
+    assert nodes[int(numbers["node"]) - 1] == pytest.approx(at, rel=1e-5)
+    loads = text.split("*CLOAD\n")[1].split("*")[0].split("\n")[:-1]
+    force = sum(float(line.split(",")[2]) for line in loads if line.split(", ")[1] == "2")
+    assert force == pytest.approx(-988.86, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_abaqus_gets_keywords_that_both_manuals_define(tmp_path: Path) -> None:
+    """The rest of the deck is CalculiX's."""
+    texts = {}
+    for dialect in ("abaqus", "calculix"):
+        for study, pin, case in ((QUICK, "B", "landing"), (LUGS, "P", "pull")):
+            (tmp_path / "deck.inp").unlink(missing_ok=True)
+            assert exported(tmp_path, study, "--deck", dialect, pin=pin, case=case) == 0
+            texts[dialect, pin] = (tmp_path / "deck.inp").read_text("ascii")
+            more = {"CONTACT PRINT"} if (dialect, pin) == ("calculix", "P") else set[str]()
+            assert keywords(tmp_path / "deck.inp") - BOTH_MANUALS == more
+    assert "Lugs: +/-" in texts["abaqus", "P"]
+    for pin in "BP":
+        model = [texts[dialect, pin].split("*STEP")[0].split("\n*NODE", 1)[1]
+                 for dialect in ("abaqus", "calculix")]  # fmt: skip
+        assert model[0] == model[1]
+
+
+@each(
+    ("change", "pin", "case", "message"),
+    [
+        ("", "Q", "landing", "'Q'"),
+        ("", "B", "take-off", "'take-off'"),
+        (
+            "nothing holds it",
+            "B",
+            "landing",
+            "pin B in case landing has no stress to export (rigid",
+        ),
+    ],
+)
+def test_rows_that_are_not_there_are_refused(
+    change: str,
+    pin: str,
+    case: str,
+    message: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    study = NOTHING_HOLDS if change else QUICK
+    assert exported(tmp_path, study, "--deck", "calculix", pin=pin, case=case) == 2
+    said = [x for x in capsys.readouterr().err.splitlines() if not x.startswith("Warning")]
+    assert len(said) == 1
+    assert message in said[0]
+    assert not (tmp_path / "deck.inp").exists()
+
+
+@pytest.mark.slow
+def test_what_a_deck_cannot_have_is_refused_by_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exported(tmp_path, LUGS, "--deck", "abaqus", pin="P", case="turn") == 2
+    assert "cannot be written: CalculiX's model has no forces along" in capsys.readouterr().err
+
+
+def test_files_are_not_overwritten_unless_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    deck = tmp_path / "deck.inp"
+    deck.write_text("mine")
+    assert exported(tmp_path, QUICK, "--deck", "calculix") == 2
+    assert "exists already; choose another --out, or --force" in capsys.readouterr().err
+    assert deck.read_text() == "mine"
+    assert exported(tmp_path, QUICK, "--deck", "calculix", "--force") == 0
+    assert deck.read_text().startswith("** Pin B, case landing")
+    study = str(tmp_path / "study.toml")
+    arguments = ["export", study, "B", "landing", "--deck", "calculix", "--out"]
+    for path in (tmp_path / "none" / "deck.inp", tmp_path / "study.toml" / "deck.inp"):
+        assert run_command_line([*arguments, str(path)]) == 2
+        assert "cannot be written" in capsys.readouterr().err
+    assert run_command_line([*arguments, str(tmp_path), "--force"]) == 2
+    assert "is a folder" in capsys.readouterr().err
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["deck.inp", "study.toml"]
+
+
+def test_without_out_it_goes_into_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("s.toml").write_text(QUICK)
+    assert run_command_line(["export", "s.toml", "B", "landing", "--deck", "abaqus"]) == 0
+    assert capsys.readouterr().out == "Written: out/s-B-landing.inp\n"
+    assert Path("out/s-B-landing.inp").is_file()
+
+
+@pytest.mark.peers
+def test_calculix_finds_the_expected_stress_of_a_prescribed_pin(tmp_path: Path) -> None:
+    """Run as a reviewer does, with nothing of ours but the file."""
+    study = (ROOT / "studies" / "one_pin.toml").read_text()
+    assert exported(tmp_path, study, "--deck", "calculix") == 0
+    subprocess.run(["ccx", "-i", "deck"], cwd=tmp_path, check=True, capture_output=True)
+    numbers = expected(tmp_path / "deck.inp")
+    theirs = von_mises(stresses(tmp_path / "deck.frd"))
+    at_node = float(theirs[int(numbers["node"]) - 1])
+    assert at_node == pytest.approx(float(numbers["node_von_mises"]), rel=MAX_STRESS_DIFFERENCE)
+    assert at_node == pytest.approx(float(numbers["max_von_mises"]), rel=MAX_MAXIMUM_DIFFERENCE)
+
+
+@pytest.mark.peers
+def test_calculix_finds_the_expected_stress_and_moment_of_a_pin_in_lugs(tmp_path: Path) -> None:
+    """The moment at the section is that of the contact forces on the rings before it."""
+    study = (ROOT / "studies" / "clevis.toml").read_text()
+    assert exported(tmp_path, study, "--deck", "calculix", pin="P", case="pull") == 0
+    subprocess.run(["ccx", "-i", "deck"], cwd=tmp_path, check=True, capture_output=True)
+    numbers = expected(tmp_path / "deck.inp")
+    error = float(numbers["error_estimate"]) / float(numbers["max_von_mises"])
+    theirs = von_mises(stresses(tmp_path / "deck.frd"))
+    at_node = float(theirs[int(numbers["node"]) - 1])
+    ours = float(numbers["node_von_mises"])
+    assert at_node == pytest.approx(ours, rel=MAX_MAXIMUM_DIFFERENCE + error)
+    assert ours == pytest.approx(float(numbers["max_von_mises"]))
+    forces = contact_forces(tmp_path / "deck.dat")
+    left = [f for name, f in forces.items() if name.startswith("PINLUG1R")]
+    eye = [f for name, f in forces.items() if name.startswith("PINLUG3R")]
+    z, before = float(numbers["section_z"]), [*left, *eye[: len(eye) // 2]]
+    assert z == pytest.approx(23.0)  # the middle of the eye, between two of its rings
+    moment = 2.0 * abs(sum(z * f[0] - f[4] for f in before))  # the deck is a half
+    limit = MAX_MOMENT_DIFFERENCE + error
+    assert moment == pytest.approx(float(numbers["section_moment"]), rel=limit)

@@ -1,0 +1,128 @@
+"""All independent errors of a study are reported together, and nothing that only follows from them.
+
+The reference is the study with each mistake alone: two mistakes must give the errors of both.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+import pinstress
+from pinstress.cli.check import describe
+from pinstress.study.model.load import load_study
+from pinstress.study.reading.errors import InputError
+from tests.conftest import ROOT
+from tests.fuzz.mutate import line_removed, renamed, retyped, scaled
+from tests.support.each import each, sampled
+
+BUCKET = (ROOT / "studies" / "bucket.toml").read_text(encoding="utf-8")
+MISTAKES = {  # of one kind each: what is replaced, by what, and the message
+    "unknown key": ('fixed_in = "bucket"', 'fixed_inn = "bucket"', "unknown key 'fixed_inn'"),
+    "wrong type": ("duration = 4", 'duration = "4 in"', "'4 in' is not a time"),
+    "out of range": ("samples = 121", "samples = 1", "must be at least 2"),
+    "unknown material": ('= "42CrMo4"', '= "42CrMo5"', "no material '42CrMo5'"),
+    "unknown body": ('K = "bucket"', 'K = "buckett"', "no body 'buckett'"),
+    "unknown joint": ('["W", "X"]', '["W", "V"]', "no joint 'V'"),
+    "unknown origin": ('"Y", distance = 0.6', '"U", distance = 0.6', "no joint 'U'"),
+    "no inertia": ('inertia = { value = "1.6 kg m^2", provenance = "assumed" }\n', "",
+                   "body link: a body without inertia"),
+    "no mass": ('mass = { value = "55 kg", provenance = "assumed" }\n', "",
+                "mechanism.body.rod: give one of weight, mass or bar"),
+    "joint without bodies": ('{ Y = "rocker" }', "{}", "connections: must have at least 1 entry"),
+    "unknown surface": ('"right cheek"]', '"right cheeks"]', "no surface 'right cheeks'"),
+    "unit": ('"650 MPa"', '"650 Mpa"', "unknown unit 'Mpa'"),
+    "misspelt property": ("poisson_ratio", "poison_ratio", "did you mean 'poisson_ratio'?"),
+    "no coupling": ('position_of = "cylinder"', 'position_of = "cilinder"', "'cilinder'"),
+    "twice": ("[mechanism.point.tip]", '[mechanism.gear.g]\nbodies = ["rocker", "rocker"]\n'
+              'joints = ["Y", "X"]\nteeth = [10, 10]\n[mechanism.point.tip]', "twice"),
+    "title": ("title = ", "titel = ", "did you mean 'title'?"),
+    "no units": ('units = "m-N-s"\n', "", "units: is missing"),
+}  # fmt: skip
+
+
+def errors(path: Path, *mistakes: str) -> set[str]:
+    """The messages about the study with these mistakes, without file and line."""
+    text = BUCKET
+    for name in mistakes:
+        old, new, _ = MISTAKES[name]
+        assert text.count(old) >= 1, name
+        text = text.replace(old, new, 1)
+    return errors_of(path, text)
+
+
+def errors_of(path: Path, text: str) -> set[str]:
+    path.write_text(text, encoding="utf-8")
+    try:
+        describe(load_study(path))
+    except InputError as error:
+        lines = error.lines
+    else:
+        return set()
+    assert all(line.startswith(str(path)) for line in lines)
+    return {re.sub(r"^:\d+|^: ", "", line.removeprefix(str(path))) for line in lines}
+
+
+def test_six_mistakes_of_different_kinds(tmp_path: Path) -> None:
+    """Schema, references, masses, joints and shapes: one round instead of four."""
+    six = ("unknown key", "wrong type", "unknown material", "unknown joint", "no inertia",
+           "joint without bodies")  # fmt: skip
+    messages = errors(tmp_path / "bucket.toml", *six)
+    assert len(messages) == len(six), messages
+    for name in six:
+        assert any(MISTAKES[name][2] in message for message in messages), name
+
+
+@each("name", list(MISTAKES))
+def test_a_mistake_alone_is_one_error(name: str, tmp_path: Path) -> None:
+    (message,) = errors(tmp_path / "bucket.toml", name)
+    assert MISTAKES[name][2] in message
+
+
+def test_two_mistakes_give_the_errors_of_both(tmp_path: Path) -> None:
+    path = tmp_path / "bucket.toml"
+    alone = {name: errors(path, name) for name in MISTAKES}
+    for one, other in combinations(MISTAKES, 2):
+        assert errors(path, one, other) == alone[one] | alone[other], (one, other)
+
+
+def test_lines_are_in_the_order_of_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "bucket.toml"
+    path.write_text(
+        BUCKET.replace('"right cheek"]', '"x"]').replace("duration = 4", "duration = -4")
+    )
+    with pytest.raises(InputError) as error:
+        load_study(path)
+    lines = [int(line.removeprefix(f"{path}:").split(":")[0]) for line in error.value.lines]
+    assert len(lines) == 2
+    assert lines == sorted(lines)
+
+
+@pytest.mark.parametrize("seed", sampled(range(400), 20))
+def test_several_mutations_end_without_a_traceback(seed: int, tmp_path: Path) -> None:
+    """Whatever remains of the study can be looked at."""
+    rng = random.Random(seed)
+    text = BUCKET
+    for _ in range(rng.randint(2, 8)):
+        text = rng.choice((line_removed, renamed, retyped, scaled))(text, rng)
+    errors_of(tmp_path / "bucket.toml", text)
+
+
+def test_run_and_check_report_the_same(tmp_path: Path) -> None:
+    """Also where reading the file alone finds nothing: masses, shapes and tables."""
+    path = tmp_path / "bucket.toml"
+    text = BUCKET + '\n[case.more]\nkind = "given"\ntable = "gone.csv"\n'
+    for name in ("no inertia", "unknown surface"):
+        text = text.replace(*MISTAKES[name][:2], 1)
+    path.write_text(text, encoding="utf-8")
+    lines = []
+    for command in (describe, pinstress.prepare):
+        with pytest.raises(InputError) as error:
+            command(load_study(path))
+        lines.append(set(error.value.lines))
+    assert lines[0] == lines[1]
+    assert len(lines[0]) == 3

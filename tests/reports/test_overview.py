@@ -1,0 +1,177 @@
+"""The overview: a line for each pin, quiet cases, estimated diameters, the axis, and few lines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from assess.diameter_law import BEARING_EXPONENT, estimated_scale
+from fea.core.places import ContactPlace, Places, SurfacePlace
+from reports.data.overview import factor_at, pin_lines, quiet_cases
+from reports.data.requirement_matrix import matrix_rows
+from reports.data.requirements import RequirementRow
+from reports.data.results import PinResult, Results
+from reports.format.place_words import along_words
+from reports.tables.strength.overview import FactorAxis, bar, diameter_words, factor_axis
+from reports.text.overview import decisions, names
+from reports.text.safety_factors import print_safety_factors
+from tests.support.results.rows import with_values
+
+
+@pytest.fixture
+def few(results: Results) -> Results:
+    """Two pins in two cases, which fail in one of them and are safe in the other."""
+    plain = with_values(
+        results.pins[0], verdict="converged", singular_at=(), safety_factor_interval=None,
+        joint=None, second_opinion=None, required=1.5, location=None,
+    )  # fmt: skip
+
+    def of(pin: str, case: str, factor: float) -> PinResult:
+        return with_values(plain, pin=pin, case=case, safety_factor=factor, decided=factor >= 1.5)
+
+    pins = of("A", "hard", 1.1), of("B", "hard", 1.2), of("A", "easy", 9.0), of("B", "easy", 4.0)
+    return replace(
+        results, pins=pins, reactions=(), motion=(), changes=(), drops=(), sensitivities=(),
+        required_safety_factor=1.5, published=(),
+    )  # fmt: skip
+
+
+def test_a_line_for_each_pin_and_one_for_a_case_that_never_governs(few: Results) -> None:
+    lines = pin_lines(few)
+    assert [(x.pin, x.row.case, x.outcome) for x in lines] == [
+        ("A", "hard", "fails"), ("B", "hard", "fails"),
+    ]  # fmt: skip
+    (quiet,) = quiet_cases(few, lines)
+    assert (quiet.case, quiet.pins, quiet.lowest and quiet.lowest.pin) == ("easy", 2, "B")
+    assert decisions(few) == "In easy all are safe, lowest 4.00 (B)."
+    out = StringIO()
+    print_safety_factors(few, Console(file=out, width=80, no_color=True))
+    text = out.getvalue().splitlines()
+    assert text[0] == "2 of 2 pins miss the required factor 1.5 (hard): A, B."
+    assert sum(line.startswith(("A ", "B ")) for line in text[:6]) == 2
+
+
+def test_a_single_pin_has_a_line_for_each_case(few: Results) -> None:
+    alone = replace(few, pins=tuple(p for p in few.pins if p.pin == "A"))
+    assert [x.row.case for x in pin_lines(alone)] == ["hard", "easy"]
+    assert quiet_cases(alone, pin_lines(alone)) == []
+
+
+def test_the_diameter_by_the_law_of_the_section(few: Results) -> None:
+    """Bending: the cube root; shear: the square root; twice the stress beneath: power 1.5."""
+    assert estimated_scale(1.2, math.inf, 3.0, 9.6) == pytest.approx(2.0)
+    assert estimated_scale(1.2, math.inf, 2.0, 4.8) == pytest.approx(2.0)
+    assert estimated_scale(1.2, 0.5, 3.0, 4.0) == pytest.approx(8.0 ** (1 / BEARING_EXPONENT))
+    # The same stress counts by the law of the section alone.
+    assert estimated_scale(1.2, 1.2, 3.0, 9.6) == pytest.approx(2.0)
+    line = pin_lines(few)[0]
+    assert line.diameter is not None
+    assert line.diameter.needed is not None
+    scale = line.diameter.needed / line.diameter.given
+    assert factor_at(line.row, scale) == pytest.approx(1.5, rel=1e-9)
+    assert factor_at(line.row, 1.0) < 1.5
+    assert "→" in diameter_words(line)
+
+
+def test_the_stress_beneath_contact_asks_for_more(few: Results) -> None:
+    first = few.pins[0]
+    stress = first.max_von_mises or 0.0
+    contact = ContactPlace(1.5 * stress, 0.0, (0.0, 0.0, 0.0), None, None, None, (), ())
+    surface = SurfacePlace(stress, 0.0, "converged", (0.0, 0.0, 0.0))
+    deep = with_values(first, places=Places("surface", surface, None, contact))
+    before, after = (pin_lines(replace(few, pins=(p,)))[0].diameter for p in (first, deep))
+    assert before is not None
+    assert after is not None
+    assert after.needed == pytest.approx(
+        after.given * (1.5 / (1.1 / 1.5)) ** (1.0 / BEARING_EXPONENT), rel=1e-6
+    )
+    assert (after.needed or 0.0) > (before.needed or 0.0)
+
+
+def test_factors_on_a_logarithmic_axis(few: Results) -> None:
+    axis = FactorAxis(0.1, 1000.0, 10.0)
+    assert [axis.at(x) for x in (0.01, 0.1, 1.0, 10.0, 1e3, 1e9)] == pytest.approx(
+        [0.0, 0.0, 0.25, 0.5, 1.0, 1.0]
+    )
+    assert axis.ticks == pytest.approx([0.1, 1.0, 10.0, 100.0, 1000.0])
+    shared = factor_axis(pin_lines(few))
+    assert shared is not None
+    assert shared.required == 1.5
+    drawn = bar(pin_lines(few)[0], shared)
+    assert drawn.index("#") < drawn.index("|")  # it fails
+    assert factor_axis([]) is None
+
+
+def test_names_of_pins() -> None:
+    assert [names(list(x)) for x in ("", "A", "AB", "ABC")] == ["", "A", "A and B", "A, B and C"]
+    assert names(list("ABCDEFG")) == "7 pins"
+
+
+def test_where_along_a_pin(results: Results) -> None:
+    shape = replace(
+        results.shapes[0],
+        segments=(
+            (1.0, 2.0, 0.0, "E1", "band"), (0.5, 2.0, 0.0, "", "plain"),
+            (1.0, 2.0, 0.0, "E2", "band"), (1.0, 3.0, 0.0, "head", "plain"),
+        ),
+    )  # fmt: skip
+    words = [along_words(shape, z) for z in (0.5, 1.25, 2.0, 2.5, 3.2)]
+    assert words == [
+        "under E1",
+        "between E1 and E2",
+        "under E2",
+        "step beside E2",
+        "beside E2",
+    ]
+
+
+def requirement(
+    pin: str, case: str, outcome: str, check: str = "yield", needs: str = "", stated: bool = True
+) -> RequirementRow:
+    return RequirementRow(pin, case, "limit", check, 10.0, 1.0, outcome, needs, stated)  # type: ignore[arg-type]
+
+
+def test_the_matrix_hides_nothing_that_is_not_met() -> None:
+    rows = [requirement(pin, f"c{k}", "met") for pin in "AB" for k in range(9)]
+    rows[3] = replace(rows[3], outcome="missed")
+    rows += [requirement("A", "c0", "missed", "shear", stated=False)]
+    rows += [requirement("B", "c0", "met", "shear", stated=False)]
+    rows += [requirement("A", "c0", "not checked", "rupture", "material.x.ultimate_strength")]
+    matrix = matrix_rows(rows)
+    assert [(m.check, m.case) for m in matrix] == [
+        ("yield", "c3"), ("yield", "8 other cases"), ("other checks (1)", ""), ("rupture", ""),
+    ]  # fmt: skip
+    assert matrix[0].cells == {"A": "missed", "B": "met"}
+    assert matrix[1].cells == {"A": "met", "B": "met"}
+    assert matrix[2].cells == {"A": "missed", "B": "met"}
+    assert matrix[3].needs == ("material.x.ultimate_strength",)
+    assert "met" not in matrix[3].cells.values()
+    worst = {p: min(r.outcome == "met" for r in rows if r.pin == p) for p in "AB"}
+    shown = {p: min(m.cells.get(p, "met") == "met" for m in matrix) for p in "AB"}
+    assert shown == worst
+
+
+@pytest.mark.slow
+def test_the_main_job_in_twenty_lines(shipped: Callable[[str], Path]) -> None:
+    """Which pins fail, why, what to do, and what to measure, on a terminal of 80 columns."""
+    printed = (shipped("landing_gear").parent / "terminal").read_text(encoding="utf-8")
+    lines = printed.splitlines()
+    assert len(lines) <= 20
+    assert max(map(len, lines)) <= 80
+    text = " ".join(printed.split())
+    for words in (
+        "5 of 9 pins miss the required factor 10 (landing): E, J, A, G, D.",
+        "E, J and A carry up to 196,000 lbf",
+        "Shear dominates E and J, bending A, G and D.",
+        "pinstress size ",
+        " --pins E,J,A,G,D",
+        "Measure first: force over time at landing",
+        "lacks ultimate_strength, shear_strength, bearing_strength",
+    ):
+        assert words in text

@@ -1,0 +1,107 @@
+"""What a study leaves open: the spread of factors, what flips an outcome, and both ranges together.
+
+Independent values: a factor is in inverse proportion to the stress, and the stress of a landing to
+its force (speed over time, times pi / 2 for a half-sine).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from assess.judgement import DEPENDS, FAILS, SAFE
+from fea.support.records import JointRange, Variation
+from reports.data.dependence import JOINT_AND_LANDING, TOGETHER, depends_on
+from reports.data.results import PinResult, Units
+from reports.data.unknowns import factor_spread, open_values, unknowns
+from reports.format.words import over_words
+from reports.text.overview import flips, flips_words, measure_first, range_words
+from tests.silent.test_outcomes import landing
+from tests.support.results.judged_results import row
+from tests.support.results.made_up_joint import make_joint
+from tests.support.results.rows import with_values
+
+UNITS = Units("in", "lbf", "psi", "s")
+BOTH = ("rectangular", "half-sine")
+
+
+def pin(
+    factor: float, joint: tuple[float, float] | None, pulses: tuple[str, ...] = ()
+) -> PinResult:
+    """1.5 is required. joint: ends of the stress over the tilt, over that of the row."""
+    made = row("x", "converged", factor, factor > 1.5)
+    stress = made.max_von_mises or 0.0
+    if joint is not None:
+        ends = (min(joint[0], 1.0) * stress, max(joint[1], 1.0) * stress)
+        over = JointRange(
+            ends,
+            (
+                Variation("tilt", "free", joint[0] * stress),
+                Variation("tilt", "guided", joint[1] * stress),
+            ),
+        )
+        made = replace(made, joint=replace(make_joint(), range=over))
+    if pulses:
+        made = replace(made, landing=landing(factor, pulses))
+    return replace(made, depends_on=depends_on(made))
+
+
+def test_two_ranges_that_change_an_outcome_only_together() -> None:
+    """2.6: 2.6 / 1.5 = 1.733 at 0.1 s, 2.6 / 1.3 = 2.0 guided, 2.6 / 1.95 = 1.333 with both."""
+    alone = pin(2.6, None, ("rectangular",)), pin(2.6, (0.9, 1.3))
+    assert [p.outcome for p in alone] == [SAFE, SAFE]
+    both = pin(2.6, (0.9, 1.3), ("rectangular",))
+    assert both.outcome == DEPENDS
+    assert both.meets_required is False
+    (over,) = both.depends_on
+    assert (over.over, over.what) == (JOINT_AND_LANDING, TOGETHER)
+    assert over.factor == pytest.approx(2.6 / 1.5 / 1.3, rel=1e-9)
+    assert over_words(both.depends_on) == "joint and landing"
+    assert flips(both, UNITS) == "the combined joint and landing range"
+    assert pin(3.1, (0.9, 1.3), ("rectangular",)).outcome == SAFE  # 3.1 / 1.95 = 1.59
+
+
+def test_a_pin_that_fails_may_be_safe_only_with_both() -> None:
+    """0.55: 1.375 at 10 ft/s, 0.611 at 0.9 of the stress; 1.83 at 0.2 s and 10 ft/s alone."""
+    failing = pin(0.4, (0.6, 1.1), ("rectangular",))  # 0.4 * 2.5 * 4/3 = 1.333; / 0.6 = 2.22
+    assert failing.outcome == FAILS
+    assert [d.over for d in failing.depends_on] == [JOINT_AND_LANDING]
+    assert pin(0.2, (0.6, 1.1), ("rectangular",)).depends_on == ()  # 1.11: fails whatever
+
+
+def test_the_spread_is_the_product_of_the_ratios() -> None:
+    """Speeds 10 to 25 ft/s of 25, 0.1 to 0.2 s of 0.15, a half-sine pi / 2, tilt 0.9 to 1.3."""
+    spread = factor_spread(pin(4.0, (0.9, 1.3), BOTH))
+    assert spread is not None
+    assert spread[0] == pytest.approx(4.0 / 1.5 / (math.pi / 2.0) / 1.3)
+    assert spread[1] == pytest.approx(4.0 * 2.5 * (4.0 / 3.0) / 0.9)
+    assert factor_spread(pin(4.0, None)) is None
+    assert factor_spread(pin(4.0, (1.0, 1.0))) == (4.0, 4.0)
+
+
+def test_each_open_value_alone() -> None:
+    values = {v.what: v for v in open_values(pin(4.0, (0.9, 1.3), BOTH))}
+    assert list(values) == ["impulse time", "velocity change", "pulse", "tilt"]
+    time, speed, pulse, tilt = values.values()
+    assert (time.low, time.high) == pytest.approx((4.0 / 1.5, 4.0 * 4.0 / 3.0))
+    assert time.ends == (0.1, 0.2)
+    assert (speed.low, speed.high) == pytest.approx((4.0, 10.0))
+    assert (pulse.low, pulse.high) == pytest.approx((4.0 / (math.pi / 2.0), 4.0))
+    assert (tilt.low, tilt.high) == pytest.approx((4.0 / 1.3, 4.0 / 0.9))
+    assert (pulse.states, tilt.states) == (BOTH, ("free", "guided"))
+    assert not any(v.flips for v in values.values())
+
+
+def test_what_flips_most_pins_comes_first_then_what_matters_most() -> None:
+    """2.3 / (pi / 2) = 1.46: the pulse flips; 1.533 at 0.1 s and a tilt of 1.3 do not."""
+    rows = [pin(2.3, (0.9, 1.3), BOTH), with_values(pin(9.0, (0.9, 1.3), BOTH), pin="B")]
+    ranked = unknowns(rows)
+    assert [u.what for u in ranked] == ["pulse", "velocity change", "impulse time", "tilt"]
+    assert flips_words(ranked[0], UNITS) == "yes: A may fail with half-sine"
+    assert [flips_words(u, UNITS) for u in ranked[1:]] == ["no"] * 3
+    assert range_words(ranked[2], UNITS) == "0.1 to 0.2 s"
+    assert measure_first(ranked) == ["Measure first: force over time at landing (A)."]
+    (nothing,) = measure_first(unknowns(rows[1:]))
+    assert nothing.startswith("Nothing open changes an outcome alone; velocity change matters most")

@@ -1,0 +1,135 @@
+"""A requirement must not be forgotten wherever factors are judged: in motions, singular rows,
+fatigue, designs and reliability.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pinstress import run, study_from
+from pinstress.analysis.results import RunResults
+from pinstress.cli.commands import run_command_line
+from reports.data.decision import factor_ends
+from reports.data.requirements import RequirementRow, requirement_rows
+from tests.conftest import ROOT
+from tests.pinstress.analysis.test_margins import STRENGTHS, study
+from tests.pinstress.explore.reliability.test_reliability import BAR
+
+STUDIES = ROOT / "studies"
+
+
+def shipped(name: str, require: str, *changes: tuple[str, str]) -> str:
+    """The text of a study with requirements, and with other texts in it."""
+    text = (STUDIES / f"{name}.toml").read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return f"{text}\n{require}"
+
+
+def require(**keys: Any) -> str:
+    return "[[require]]\n" + "".join(f"{k} = {json.dumps(v)}\n" for k, v in keys.items())
+
+
+def stated(results: RunResults) -> list[RequirementRow]:
+    return [row for row in requirement_rows(results) if row.stated]
+
+
+@pytest.mark.slow
+def test_the_cases_of_a_motion_have_factors_of_their_own() -> None:
+    """Of retract and of an instant in it, the second one stricter than is reached."""
+    text = (STUDIES / "bowman2019.toml").read_text(encoding="utf-8")
+    plain = run(study_from(text, STUDIES), pins=["A"], model="beam", tolerance=0.9)
+    reached = {row.case: factor_ends(row) for row in plain.pins}
+    assert len(reached) == 2
+    strict = 1.1 * reached["snapshot"][1]
+    both = require(pins=["A"], cases=["retract"], check="yield", factor=0.5)
+    both += require(pins=["A"], cases=["snapshot"], check="yield", factor=strict)
+    found = run(study_from(text + both, STUDIES), pins=["A"], model="beam", tolerance=0.9)
+    rows = {row.case: row for row in found.pins}
+    assert rows["snapshot"].outcome == "fails"
+    assert rows["snapshot"].required == strict
+    assert rows["retract"].required == 0.5
+    assert rows["retract"].safety_factor == plain["A", "retract"].safety_factor
+    assert {(r.case, r.required) for r in stated(found)} == {("retract", 0.5), ("snapshot", strict)}
+
+
+def test_a_singular_row_misses_a_requirement_but_never_meets_it() -> None:
+    sharp = ("fillet = 0.4", "fillet = 0.0")
+    default = run(study_from(shipped("one_pin", "", sharp)))
+    (row,) = default.pins
+    assert row.verdict == "singular"
+    low, high = row.safety_factor_interval or (0.0, None)
+    assert high is not None
+    for factor, outcome in ((0.5 * low, "not decided"), (1.1 * high, "missed")):
+        text = shipped("one_pin", require(check="yield", level="proof", factor=factor), sharp)
+        found = {r.level: r for r in stated(run(study_from(text)))}
+        assert found["proof"].outcome == outcome
+        assert found["proof"].reached == row.safety_factor
+
+
+@pytest.fixture(scope="module")
+def fatigue() -> RunResults:
+    return run(study_from(shipped("fatigue", require(check="fatigue", factor=2.0))))
+
+
+def test_fatigue_is_a_factor_on_life(fatigue: RunResults) -> None:
+    assert fatigue.fatigue is not None
+    life = 1.0 / max(point.damage for point in fatigue.fatigue.points)
+    (row,) = (r for r in stated(fatigue) if r.check == "fatigue" and r.required == 2.0)
+    assert row.reached == pytest.approx(life / 20000)
+    assert row.outcome == ("met" if life >= 40000 else "missed")
+    assert row.case == ""
+
+
+@pytest.mark.slow
+def test_fatigue_without_its_numbers() -> None:
+    asked = require(check="fatigue", factor=2.0)
+    for change, cases, outcome, needs in (
+        (("life = 20000\n", ""), None, "not checked", "fatigue.life"),
+        (("", ""), ["landing"], "not decided", "to be run"),
+    ):
+        results = run(study_from(shipped("fatigue", asked, change)), cases=cases)
+        (row,) = (r for r in stated(results) if r.check == "fatigue" and r.required == 2.0)
+        assert row.outcome == outcome
+        assert row.needs.endswith(needs)
+
+
+def test_designs_are_judged_by_their_requirement(tmp_path: Path) -> None:
+    """A sweep over the factor of [[require]] itself: 2 is reached, 12 is not."""
+    import pyarrow.parquet as pq
+    import tomlkit
+
+    tables = study(STRENGTHS, required_safety_factor=1.5)
+    tables["require"] = [{"pins": ["P"], "check": "yield", "factor": 2.0}]
+    steps = {"from": 2.0, "to": 12.0, "steps": 2}
+    tables["vary"] = {"sample": "grid", "parameters": {"require[1].factor": steps}}
+    (tmp_path / "s.toml").write_text(tomlkit.dumps(tables), encoding="utf-8")
+    out = tmp_path / "out"
+    command = ["sweep", str(tmp_path / "s.toml"), "--out", str(out), "--jobs", "1", "--quiet"]
+    assert run_command_line(command) == 0
+    table = pq.read_table(out / "designs.parquet")
+    outcomes = [str(x).split(" as")[0] for x in table["outcome"].to_pylist()]
+    assert outcomes == ["safe", "fails"]
+    metadata = json.loads(table.schema.metadata[b"pinstress"])
+    assert metadata["required_safety_factor"] == 2.0
+
+
+@pytest.mark.slow
+def test_reliability_keeps_its_own_factor(tmp_path: Path) -> None:
+    """[reliability] states what failure is; a requirement beside it changes no number."""
+    small = BAR.replace("samples = 200", "samples = 50").replace("= 300", "= 20")
+    small = small.replace("sobol_samples = 16", "sobol_samples = 0")
+    found: list[Any] = []
+    for more in ("", require(check="yield", factor=1.2)):
+        (tmp_path / "bar.toml").write_text(small + more, encoding="utf-8")
+        out = tmp_path / f"out{len(found)}"
+        command = ["reliability", str(tmp_path / "bar.toml"), "--out", str(out), "--quiet"]
+        assert run_command_line([*command, "--jobs", "1"]) in (0, 1)
+        written = json.loads((out / "reliability.json").read_text(encoding="utf-8"))
+        found.append({key: x for key, x in written.items() if key not in ("study_sha256", "hash")})
+    assert found[0] == found[1]
