@@ -31,7 +31,7 @@ from pinstress.analysis.scaled import (
     scalable,
     scaled_row,
 )
-from pinstress.analysis.solve import solve_tasks, unjudged
+from pinstress.analysis.solve import for_task, solve_tasks, unjudged
 from pinstress.analysis.stored import PinOutcome, cache_key
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.errors import InputError
@@ -205,10 +205,9 @@ class Engine:
         now = self._coarse(plan, task, any(same_shape(x, task) for x in tasks))
         if not now or not {row.case for row in now} <= before.keys():
             return None
+        of = for_task(plan.study, task, plan.requirement)
         rows = [
-            scaled_row(
-                *before[x.case], x, task, plan.requirement.of_case(x.case), plan.loads[x.case].range
-            )
+            scaled_row(*before[x.case], x, task, of.of_case(x.case), plan.loads[x.case].range)
             for x in now
         ]
         if any(row is None for row in rows):

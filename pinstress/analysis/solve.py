@@ -191,10 +191,10 @@ def solutions(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         memo,
     )  # fmt: skip
-    return solve(problem, _for_task(study, task, requirement), tell)
+    return solve(problem, for_task(study, task, requirement), tell)
 
 
-def _for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
+def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:
     """Return a requirement with the joints and the factors of a task."""
     factors = required_factors(study, task.pin.name, (loads.case for loads in task.loads))
     return replace(requirement, joints=_joints(study, task), factors=factors)
@@ -234,7 +234,7 @@ def _solve(plan: Plan, task: Task, keep: Keep | None, memo: Memo | None, tell: T
     surfaces = surfaces_of(plan.loads, task, solved, pressures)
     histories, no_histories = _histories(task, solved)
     tell(f"pin {task.pin.name}, what to change")
-    remedy = change(_for_task(study, task, plan.requirement), task, solved)
+    remedy = change(for_task(study, task, plan.requirement), task, solved)
     tell(f"pin {task.pin.name}, sensitivities")
     step = DIMENSION_STEPS[study.table.units]
     sensitive = sensitivities(study, plan.requirement, task, solved, step, plan.sensitive)
