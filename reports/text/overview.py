@@ -12,7 +12,7 @@ from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
 from reports.data.overview import GOOD, PinLine, QuietCase, pin_lines, quiet_cases
 from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
-from reports.data.unknowns import NO_SPREAD, Unknown, decided_by
+from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread
 from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range, factor_text
@@ -87,16 +87,26 @@ def accuracy(results: Results) -> Content:
 
 
 def certainty(results: Results) -> Content:
-    """Return a sentence on the error with which the pin nearest to the factor would not fail."""
+    """Return sentences on the pins that fail whatever is open, and on the error with which the one
+    nearest to the factor would not.
+    """
     rows = [x.row for x in pin_lines(results) if x.row.decided is False and x.row.safety_factor]
     if not rows:
         return []
     nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
     needed = (nearest.required or 1.0) / (nearest.safety_factor or 1.0) - 1.0
-    even = "even " if len(rows) > 1 else ""
+    even = "Even " if len(rows) > 1 else ""
+    whatever = [r.pin for r in rows if not r.depends_on and factor_spread(r)]
+    within = [r.pin for r in rows if r.depends_on]
+    parts = []
+    if whatever:
+        parts.append(f"{names(whatever)} {_state(FAILS, whatever)} whatever the open values are")
+    if within:
+        parts.append(f"{names(within)} {'are' if len(within) > 1 else 'is'} safe at some of them")
     return [
-        f"To meet the factor, {even}the stress of {nearest.pin} would have to be overestimated by "
-        f"{engineering(100.0 * needed, 2)} %."
+        *([f"{'; '.join(parts)}."] if parts else []),
+        f"{even}{nearest.pin} would pass only if its stress were overestimated by "
+        f"{engineering(100.0 * needed, 2)} %.",
     ]
 
 
