@@ -187,7 +187,7 @@ def _undecided(lines: Sequence[PinLine]) -> str:
 def _depending(results: Results, lines: Sequence[PinLine]) -> str:
     open_ = [line for line in lines if line.outcome == DEPENDS]
     told = [f"{x.pin} on {flips(x.row, results.units)}" for x in open_]
-    if not told:
+    if not told or len({line.pin for line in lines}) == 1:  # which the headline tells
         return ""
     first, *rest = told
     return f"{first.replace(' on ', ' depends on ', 1)}{''.join(f'; {x}' for x in rest)}."
