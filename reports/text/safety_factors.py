@@ -63,12 +63,11 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     else:
         console.print(Text("No pin was solved."))
     for title, sentences in _parts(results, lines, unknown, study):
-        *text, last = sentences
-        if not (text and last.startswith("pinstress ")):
-            text, last = sentences, ""
-        console.print(Text.assemble((f"{title} ", "bold"), " ".join(text)))
-        if last:
-            console.print(Text(f"  {last}"), soft_wrap=True)  # to be copied
+        command = len(sentences) > 1 and sentences[-1].startswith("pinstress ")
+        said = " ".join(sentences[:-1] if command else sentences)
+        console.print(Text.assemble((f"{title} ", "bold"), said))
+        if command:
+            console.print(Text(f"  {sentences[-1]}"), soft_wrap=True)  # to be copied
     if len(results.changes) == 1:
         sensitivities = shown_sensitivities(_of_changes(results), MAX_BRIEF_ROWS)
         print_table(console, "Sensitivities", sensitivities, results.units)
