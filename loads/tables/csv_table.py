@@ -33,7 +33,7 @@ class TableError(CodedError, ValueError):
 
 
 @dataclass(frozen=True)
-class Row:
+class TableLine:
     """A row of a table.
 
     where: file and line, for messages.
@@ -84,7 +84,7 @@ def read_table(
     optional: Sequence[str] | None = None,
     free: bool = False,
     numbered: bool = False,
-) -> Iterator[Row]:
+) -> Iterator[TableLine]:
     """The rows of a CSV table.
 
     needed: columns that the table must have.
@@ -168,7 +168,7 @@ def _rows(
     allowed: tuple[Sequence[str], Sequence[str] | None],
     separator: str,
     numbered: bool,
-) -> Iterator[Row]:
+) -> Iterator[TableLine]:
     """The rows from the cells of lines. allowed: columns needed and optional, as of `read_table`.
 
     Raises: TableError for wrong columns, rows of another length, too many rows or none.
@@ -188,7 +188,9 @@ def _rows(
                 f"{where}: the table has more than {MAX_ROWS:,} rows, the limit; give fewer",
                 "too-many-rows",
             )
-        yield Row(where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)}, comma)
+        yield TableLine(
+            where, {c: cell.strip() for c, cell in zip(columns, cells, strict=True)}, comma
+        )
     if not count:
         raise TableError(f"{path}: the table has no rows below its header", "no-rows")
 

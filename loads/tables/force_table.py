@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from loads.tables.csv_table import Row, TableError, read_table
+from loads.tables.csv_table import TableError, TableLine, read_table
 from loads.tables.sent_files import stamp
 
 FORCE_COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
@@ -121,7 +121,7 @@ def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Iter
             yield GivenForce(row.where, name, time, _values(row, components))
 
 
-def _rows(path: Path, layout: Layout) -> Iterator[Row]:
+def _rows(path: Path, layout: Layout) -> Iterator[TableLine]:
     """The rows of the case, or all rows of a table without cases.
 
     Raises: TableError where no row has the case.
@@ -140,13 +140,13 @@ def _rows(path: Path, layout: Layout) -> Iterator[Row]:
 
 
 @lru_cache(maxsize=1)  # the cases of one table follow each other
-def _by_case(path: Path, _: str, at: str, numbered: bool) -> dict[str, list[Row]] | None:
+def _by_case(path: Path, _: str, at: str, numbered: bool) -> dict[str, list[TableLine]] | None:
     """The rows of a table by case, or None without a column of cases.
 
     _: the file's stamp, which makes the cache notice a changed file.
     at: name of the column of cases.
     """
-    cases: dict[str, list[Row]] = {}
+    cases: dict[str, list[TableLine]] = {}
     for row in read_table(path, (), free=True, numbered=numbered):
         if at not in row.cells:
             return None
@@ -219,7 +219,7 @@ def _require_components(path: Path, columns: list[_Column]) -> None:
 
 
 def _by_connection(
-    row: Row, columns: list[_Column], text: dict[str, str], names: dict[str, str]
+    row: TableLine, columns: list[_Column], text: dict[str, str], names: dict[str, str]
 ) -> Iterator[tuple[str, list[_Column]]]:
     """The connections of a row, each with the columns of its components."""
     if "connection" in text:
@@ -231,7 +231,7 @@ def _by_connection(
 
 
 def _time(
-    row: Row, columns: list[_Column], text: dict[str, str], layout: Layout, count: int
+    row: TableLine, columns: list[_Column], text: dict[str, str], layout: Layout, count: int
 ) -> float | None:
     """Time of a row, s; None where its cell is empty, as it is for cases without time.
 
@@ -243,7 +243,7 @@ def _time(
     return None if layout.step is None else count * layout.step
 
 
-def _values(row: Row, columns: list[_Column]) -> list[float]:
+def _values(row: TableLine, columns: list[_Column]) -> list[float]:
     """Force and moment of a row, six components in N and N m; zero without a column."""
     by_name = {c.meaning: c for c in columns}
     return [

@@ -82,7 +82,7 @@ def _limit_load(
     required = collapse_factors(plan.study, task).get(peak.case)
     strength = task.material.yield_strength
     if rung and required and strength and not meets_limit(peak, strength / required):
-        rung, seconds = "solid", inf  # it decides, and was asked for
+        rung, seconds = "solid", inf  # it decides, and is required
     if rung is None or not limit_asked(peak, task, rung):
         return None
     from assess.plastic.solve import limit_load  # imports a model

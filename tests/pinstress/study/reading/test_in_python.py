@@ -116,7 +116,7 @@ def test_keys_that_lead_nowhere(key: str) -> None:
 
 def test_results_by_pin_and_case() -> None:
     results = pinstress.run(study_from(BAR), tolerance=0.1)
-    assert results["P", "pull"] is results.pins[0]
+    assert results["P", "pull"] == results.pins[0]
     with pytest.raises(KeyError, match=r"P.*pull"):
         results["P", "push"]
     plan = pinstress.prepare(study_from(BAR), tolerance=0.1)
