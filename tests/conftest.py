@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
@@ -29,6 +28,7 @@ from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.file import Study
 from tests.support.programs.once import Shipped, once
 from tests.support.programs.process_group import children
+from tests.support.programs.terminal import on_terminal
 
 os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
 
@@ -82,15 +82,10 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
         def run(folder: Path) -> None:
             out, path = folder / "out", ROOT / "studies" / f"{study}.toml"
             command = [sys.executable, "-m", "pinstress", "run", str(path), "--out", str(out)]
-            done = subprocess.run(
-                [*command, "--no-pictures"],
-                capture_output=True,
-                text=True,
-                env={**os.environ, "COLUMNS": "80"},
-            )
-            assert done.returncode in (0, 1), done.stderr
-            (folder / "status").write_text(str(done.returncode))
-            (folder / "terminal").write_text(done.stdout, encoding="utf-8")
+            status, printed = on_terminal([*command, "--no-pictures", "--quiet"], folder)
+            assert status in (0, 1), printed
+            (folder / "status").write_text(str(status))
+            (folder / "terminal").write_text(printed, encoding="utf-8")
 
         return once(tmp_path_factory, f"study-{study}", run) / "out"
 

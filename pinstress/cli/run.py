@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -36,7 +35,6 @@ from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page
 from pinstress.cli.streams import unneeded
-from pinstress.explore.size.size_state import replace_file
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
@@ -52,7 +50,7 @@ from reports.text.safety_factors import print_safety_factors
 from reports.text.second_opinion import print_second_opinion
 from reports.vtk.fields import surface, write_flow, write_pin
 
-FILE_COLUMNS = 120  # of output that is no terminal
+FILE_COLUMNS = 120  # of output that is no terminal and has no width
 # What solving a pin imports on demand: libraries of nearly all pins, and models
 RUN_LIBRARIES = "gmsh", "pymetis", "cvxopt.cholmod", "vtkmodules.vtkIOXML"
 RUN_MODELS = (
@@ -133,6 +131,8 @@ def run_and_write(
             progress("report", 1.0)
             _write(results, staging, most)
     if wanted.junit is not None:
+        from pinstress.explore.size.size_state import replace_file  # imports solvers
+
         replace_file(wanted.junit, junit_xml(results))
     if cache:
         cache.trim()
@@ -264,11 +264,8 @@ def _large_tables(directory: Path) -> None:
 
 
 def console() -> Console:
-    """Return standard output as a console as wide as the terminal, or as COLUMNS for a file."""
-    columns = os.environ.get("COLUMNS", "")
-    if sys.stdout.isatty():
-        return Console()
-    return Console(width=int(columns) if columns.isdecimal() and int(columns) else FILE_COLUMNS)
+    """Return standard output as a console as wide as the terminal."""
+    return Console() if sys.stdout.isatty() else Console(width=FILE_COLUMNS)
 
 
 @contextmanager

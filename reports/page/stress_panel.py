@@ -15,6 +15,7 @@ from reports.page.stress_along import LoadMark, StressAlong
 
 PANEL_HEIGHT, KEY_HEIGHT = 84.0, 18.0
 HEADROOM_FACTOR = 1.12  # over the largest stress
+MIN_TOP = 1e-300  # of an axis: what is smaller is nothing
 MAX_TICKS = 4  # of the stress
 ARROW_ROOM, MIN_ARROW_LENGTH = 26.0, 10.0  # of load arrows
 LOAD_COLOUR, SECTION_COLOUR, PRESSURE_COLOUR = "#0b5cad", "#9a4a00", "#9dbbe0"
@@ -119,7 +120,7 @@ class StressPanel:
 
 def ticks(top: float) -> list[float]:
     """Return round values from zero up to `top`, at most MAX_TICKS besides zero."""
-    if not top > 0.0:
+    if not top > MIN_TOP:
         return [0.0]
     power = 10.0 ** floor(log10(top / MAX_TICKS))
     step = next(m * power for m in (1.0, 2.0, 5.0, 10.0) if top / (m * power) <= MAX_TICKS + 1e-9)

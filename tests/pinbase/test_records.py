@@ -67,6 +67,8 @@ def test_every_array_has_a_dimension_or_is_known_to_need_none() -> None:
     assert plain == {
         "Judgement.safety_factor",
         "PinSensitivities.factor",
+        "PinResult.exponent",
+        "StatedRequirement.factor",
         "Sensitivity.factor_with_step",
         "PinResult.published_max_von_mises",  # as published, in the study's units
         "PinResult.published_safety_factor",

@@ -67,7 +67,7 @@ def test_bearing_strengths_that_something_reads_are_welcome(tmp_path: Path) -> N
     text = CLEVIS.replace("poisson_ratio = 0.3\n", "poisson_ratio = 0.3\n" + STEEL, 1)
     ring = 'bushing = { thickness = 2, material = "bronze" }\n'
     with_ring = text.replace("[analysis]\n", SPARE, 1).replace(
-        'tilt = "guided"\n', f'tilt = "guided"\n{ring}', 1
+        'lug.EYE = { tilt = "guided" }', f'lug.EYE = {{ tilt = "guided", {ring.strip()} }}', 1
     )
     for each in (text, with_ring):
         (tmp_path / "study.toml").write_text(each, encoding="utf-8")

@@ -74,8 +74,11 @@ def test_a_dimension_of_a_cone_is_its_neighbours(steel: Material) -> None:
     """So that a change makes no step."""
     every = {d.key: d for d in dimensions(CONE)}
     across = {key for key in every if "diameter" in key or "bore" in key}
-    assert across == {f"profile[{k}].{x}" for k in (1, 3) for x in ("diameter", "bore")}
-    wider = every["profile[3].diameter"].changed(0.024)
+    assert across == {
+        f"profile[{k}].{x} & profile[2].{x}[{end}]"
+        for k, end in ((1, 1), (3, 2)) for x in ("diameter", "bore")
+    }  # fmt: skip
+    wider = every["profile[3].diameter & profile[2].diameter[2]"].changed(0.024)
     assert [s.diameters for s in wider.segments] == [(0.03, 0.03), (0.03, 0.024), (0.024, 0.024)]
     thin = Pin("T", (Segment(1.0, 3.0, end_diameter=2.0), Segment(1.0, 2.0, end_diameter=1.0)))
     keys = [d.key for d in dimensions(thin) if "diameter" in d.key]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -204,7 +205,7 @@ def test_a_meridian_in_a_study(
     assert status == (1 if said is None else 2)
     found = capsys.readouterr()
     if said is None:
-        assert "pin M: steel, 5 corners" in found.out
+        assert re.search(r"pin M: steel, \S+ mm long, .*5 corners", found.out)
         length = math.pi / 3.0
         cones = length * 5 * (14**2 + 14 * 15 + 15**2) + length * 20 * (15**2 + 150 + 100)
         whole = cones + math.pi * (30 * 15**2 + 30 * 100 - 85 * 2**2)
