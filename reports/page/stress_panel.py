@@ -133,7 +133,7 @@ def arrow(load: LoadMark, x: float, axis: float, radius: float, largest: float) 
     x: of the middle of the band, whose axis and radius are drawn at these. largest: of all forces.
     """
     parts = []
-    if load.up and abs(load.up) > MIN_SHARE * largest:
+    if largest > 0.0 and abs(load.up) > MIN_SHARE * largest:
         length = MIN_ARROW_LENGTH + (ARROW_ROOM - 4.0 - MIN_ARROW_LENGTH) * abs(load.up) / largest
         side = 1.0 if load.up > 0.0 else -1.0  # an upward force pushes from below
         tip = axis + side * radius
