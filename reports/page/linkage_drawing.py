@@ -18,7 +18,7 @@ from reports.format.ranges import factor_range
 
 PICTURE_WIDTH, MIN_HEIGHT, MAX_HEIGHT = 400.0, 200.0, 470.0
 MARGIN = 42.0
-LETTER_WIDTH, LABEL_HEIGHT, LABEL_GAP = 7.6, 16.0, 11.0
+LETTER_WIDTH, LABEL_HEIGHT, PIN_LABEL_GAP = 7.6, 16.0, 11.0
 PIN_RADIUS, LOAD_LENGTH = 9.0, 34.0
 MIN_LINK_WIDTH, MAX_LINK_WIDTH = 1.5, 12.0
 MARKS = {  # of an outcome: a cross, a tick, half a disc, a question mark
@@ -240,7 +240,7 @@ def _labels(
         [points[one], points[other]] for names in at.motion.links for one, other in pairwise(names)
     ]
     ends = np.array(segments or [[where[0], where[0]]])[None]
-    offsets = label_offsets(where[None], sizes, ends, LABEL_GAP, (PICTURE_WIDTH, frame.height))
+    offsets = label_offsets(where[None], sizes, ends, PIN_LABEL_GAP, (PICTURE_WIDTH, frame.height))
     for (x, y), (_, name, rest) in zip(where + offsets, told, strict=True):
         bold = f'<tspan class="b">{escape(name)}</tspan> ' if name else ""
         kind = "" if name else ' class="force"'

@@ -48,7 +48,7 @@ MAX_UNKNOWNS = 6  # rows of the table of what is open
 MAX_CHECKS = 3  # of a row of the matrix by name
 MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins it is left out here
 CURVE_WIDTH, CURVE_HEIGHT = 260.0, 62.0
-CURVE_POINTS, CURVE_REACH = 24, 1.25  # points; ratio of scales beyond the needed one
+FACTOR_CURVE_POINTS, CURVE_REACH = 24, 1.25  # points; ratio of scales beyond the needed one
 MARKS = {
     FAILS: "✕", YIELDS: "✕", SAFE: "✓", BELOW_YIELD: "✓", DEPENDS: "◐", NOT_DECIDED: "?",
     "met": "✓", "missed": "✕", "not checked": "?",
@@ -219,11 +219,11 @@ def _curve(line: PinLine, results: Results) -> dict[str, Any] | None:
     if d is None or d.needed is None:
         return None
     most = CURVE_REACH * d.needed / d.given
-    scales = [most ** (k / (CURVE_POINTS - 1)) for k in range(CURVE_POINTS)]
+    scales = [most ** (k / (FACTOR_CURVE_POINTS - 1)) for k in range(FACTOR_CURVE_POINTS)]
     factors = [factor_at(row, scale) for scale in scales]
     required = row.required or 1.0
     axis = FactorAxis(min(factors) / 1.1, max(factors) * 1.1, required)
-    across = [CURVE_WIDTH * k / (CURVE_POINTS - 1) for k in range(CURVE_POINTS)]
+    across = [CURVE_WIDTH * k / (FACTOR_CURVE_POINTS - 1) for k in range(FACTOR_CURVE_POINTS)]
     points = [
         f"{x:.1f},{CURVE_HEIGHT * (1.0 - axis.at(f)):.1f}"
         for x, f in zip(across, factors, strict=True)
