@@ -52,4 +52,4 @@ def test_a_small_run() -> None:
     assert found is not None, text
     assert int(found[2]) >= 6
     assert (found[1], found[3]) == ("0", "0")
-    assert text.count("| ---") == 2
+    assert text.count("| --- |") >= 2  # times, and differences from runs

@@ -196,11 +196,34 @@ def wrong_headline(results: dict[str, Any]) -> Iterator[str]:
     yield from wrong_sentence(said, worst, results, required)
 
 
+SEVERAL = r"(\d+) of (\d+) pins (?:miss(?:es)? the required factor ([\d.,]+)|fails?|yields?)"
+
+
+def wrong_list(said: dict[str, Any], results: dict[str, Any]) -> Iterator[str]:
+    """How many of all pins fail, what is required, and their names, the worst first."""
+    match = re.match(rf"{SEVERAL}(?: \(.+?\))?: (.+)\.$", said["sentence"])
+    if match is None:
+        yield "not how many pins fail"
+        return
+    failing, pins = said["failing"], {row["pin"] for row in results["pins"]}
+    if (int(match[1]), int(match[2])) != (len(failing), len(pins)):
+        yield f"{match[1]} of {match[2]} for {len(failing)} of {len(pins)}"
+    required = {r["required"] for r in results["requirements"] if r["check"] == "yield"}
+    if match[3] and not any(near(match[3], factor) for factor in required if factor):
+        yield "another factor is required"
+    told = [part.split(" (")[0] for part in match[4].split(" and ")[0].split(", ")]
+    if told[0] != said["worst"]["pin"] or not set(told) <= set(failing):
+        yield f"{told} for {failing}"
+
+
 def wrong_sentence(
     said: dict[str, Any], worst: dict[str, Check], results: dict[str, Any], required: float | None
 ) -> Iterator[str]:
     """Its pin, its state, its factors, what is required and its case."""
     text, state = said["sentence"], said["worst"]["outcome"]
+    if state in ("fails", "yields") and len({row["pin"] for row in results["pins"]}) > 1:
+        yield from wrong_list(said, results)
+        return
     named = re.search(r"[Pp]in (\S+?)[ ,.]", text)
     rows = results["pins"]
     if state in ("safe", "below yield"):
