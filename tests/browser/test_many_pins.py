@@ -51,12 +51,17 @@ def test_a_pin_that_is_opened_is_made_alone(page: Any) -> None:
         page.execute_script("arguments[0].click();", part)
     for made, shown in (("figure.plot", ".drawn svg"), ("[data-view]", "[data-is=told]")):
         within = wait(page, partial(section.find_elements, "css selector", made))[0]
-        page.execute_script("arguments[0].scrollIntoView();", within)
-        wait(page, partial(_text, within, shown))
+        wait(page, partial(_text_in_view, page, within, shown))
     assert page.execute_script(VIEWS) == 1
     figures = section.find_elements("css selector", "figure.plot")
     assert page.execute_script(FIGURES) == len(figures) == 3  # two cases, and refinement
     assert errors(page) == []
+
+
+def _text_in_view(page: Any, within: Any, selector: str) -> str:
+    """The text of a part that is drawn in view, out of which what is drawn above may push it."""
+    page.execute_script("arguments[0].scrollIntoView();", within)
+    return _text(within, selector)
 
 
 def _text(within: Any, selector: str) -> str:
