@@ -132,6 +132,12 @@ def factor_spread(row: PinResult) -> Ends | None:
     return None if over is None and row.landing is None else (low, high)
 
 
+def without_range(row: PinResult) -> bool:
+    """Return whether the range of a prescribed support over the joint is not known."""
+    joint = row.joint
+    return joint is not None and bool(joint.remark) and not joint.range and not joint.bands
+
+
 def _of_landing(row: PinResult, r: LandingRange) -> Iterator[OpenValue]:
     time, velocity = (
         np.isclose(x, given)

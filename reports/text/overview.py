@@ -12,7 +12,7 @@ from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
 from reports.data.overview import GOOD, PinLine, QuietCase, pin_lines, quiet_cases
 from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
-from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread
+from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread, without_range
 from reports.format.numbers import DASH, engineering, short
 from reports.format.place_words import action, place_words
 from reports.format.ranges import factor_range, factor_text
@@ -112,7 +112,7 @@ def certainty(results: Results) -> Content:
 
 def skipped_checks(results: Results) -> Content:
     """Return a sentence on the checks that lack a number; nothing if all were made."""
-    without = [x.pin for x in pin_lines(results) if _without_range(x.row)]
+    without = [x.pin for x in pin_lines(results) if without_range(x.row)]
     parts = [f"joint range of {names(without)}"] if without else []
     parts += ["fatigue"] * (results.fatigue is None)
     parts += [text] if (text := not_made_briefly(results)) else []
@@ -227,12 +227,6 @@ def _good(lines: Sequence[PinLine]) -> str:
     return f"{names([x.pin for x in good])} {'are' if len(good) > 1 else 'is'} {state}."
 
 
-def _without_range(row: PinResult) -> bool:
-    """Return whether the range of a prescribed support over the joint is not known."""
-    joint = row.joint
-    return joint is not None and bool(joint.remark) and not joint.range and not joint.bands
-
-
 def _also(results: Results, lines: Sequence[PinLine]) -> str:
     """Return sentences on the rows that are not safe besides the worst of each pin, by case."""
     shown = {(x.row.pin, x.row.case) for x in lines}
@@ -292,11 +286,6 @@ def _on_one_pin(row: PinResult, units: Units) -> str:
         f"The largest force on pin {row.pin} is {engineering(_size(load), 3)} {units.force}, at "
         f"{load.connection} ({row.case})."
     )
-
-
-def _between(high: float, low: float, digits: int = 3) -> str:
-    ends = dict.fromkeys(engineering(end, digits) for end in (low, high))
-    return " to ".join(ends)
 
 
 def _size(load: GoverningLoad) -> float:

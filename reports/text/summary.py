@@ -9,6 +9,7 @@ from reports.data.decision import common_factor, largest_factor
 from reports.data.governing import governing
 from reports.data.headline import JudgedCheck, pins_with, worst_checks
 from reports.data.results import Results
+from reports.data.unknowns import without_range
 from reports.format.numbers import short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
@@ -21,11 +22,12 @@ def summary(results: Results) -> str:
     if not results.pins:
         return "No pin was solved."
     decided = [_against_required(results), _depending(results)]
-    return " ".join(part for part in (*decided, *caveats(results)) if part)
+    besides = [_without_range(results), _at_edges(results), _negative(results)]
+    return " ".join(part for part in (*decided, *besides, *caveats(results)) if part)
 
 
 def caveats(results: Results) -> list[str]:
-    """Return sentences on what the maxima leave out, and on rows without one."""
+    """Return sentences on rows beyond yield, and on those without a converged maximum."""
     ways = (_yielding, _unknown)
     return [part for part in (way(results) for way in ways) if part] if results.pins else []
 
@@ -103,11 +105,7 @@ def _at_edges(results: Results) -> str:
 
 def _without_range(results: Results) -> str:
     """Return a sentence on prescribed supports without a range over the joint."""
-    pins = dict.fromkeys(
-        p.pin
-        for p in results.pins
-        if p.joint is not None and p.joint.remark and not p.joint.range and not p.joint.bands
-    )
+    pins = dict.fromkeys(p.pin for p in results.pins if without_range(p))
     if not pins:
         return ""
     return (
