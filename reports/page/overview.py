@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from typing import Any
 
 from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
@@ -53,14 +52,6 @@ MARKS = {
     "met": "✓", "missed": "✕", "not checked": "?",
 }  # fmt: skip
 CLASSES = {"met": SAFE, "missed": FAILS, "not checked": NOT_DECIDED}
-
-
-@dataclass(frozen=True)
-class AxisPart:
-    """A part of an axis, in per cent of its length."""
-
-    left: float
-    width: float
 
 
 def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) -> dict[str, Any]:
@@ -150,9 +141,10 @@ def _ticks(axis: FactorAxis) -> dict[str, Any]:
     }
 
 
-def _span(ends: tuple[float, float], axis: FactorAxis) -> AxisPart:
+def _span(ends: tuple[float, float], axis: FactorAxis) -> dict[str, float]:
+    """Return a part of an axis, in per cent of its length."""
     low, high = (100.0 * axis.at(end) for end in ends)
-    return AxisPart(low, high - low)
+    return {"left": low, "width": high - low}
 
 
 def _line(
@@ -167,9 +159,9 @@ def _line(
         "css": _css(line.outcome),
         "outcome": outcome_words(line),
         "factor": factor_range(line.row),
-        "error": asdict(_span(line.error, axis)) if axis and line.error else None,
+        "error": _span(line.error, axis) if axis and line.error else None,
         "required": 100.0 * axis.at(limit(line.row)) if axis else None,
-        "spread": asdict(_span(line.spread, axis)) if axis and line.spread else None,
+        "spread": _span(line.spread, axis) if axis and line.spread else None,
         "spread_words": spread_words(line),
         "place": place_words(line.row, shape),
         "diameter": diameter_words(line),
