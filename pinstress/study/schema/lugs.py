@@ -1,13 +1,15 @@
 """The study file's form: the lugs in which pins sit, and what all of them have in common."""
 
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.types import (
+    Angle,
     Length,
+    Name,
     NotNegativeLength,
     Number,
     PositiveLength,
@@ -23,6 +25,37 @@ class BushingTable(StrictTable):
     """Wall thickness."""
     material: str
     """Name of a `[material]`."""
+    interference: NotNegativeLength = 0.0
+    """Outer diameter of the bushing minus the diameter of the hole into which it was pressed."""
+
+
+class ShankTable(StrictTable):
+    """The outline of a lug: its head and the shank that holds it. With it, the stress of the lug
+    itself is computed.
+    """
+
+    shape: Literal["round", "tapered", "square"] = "round"
+    """"round": a round head and a shank of parallel sides; "tapered": a round head whose sides run
+    to the shank as tangents; "square": a plate with a straight end."""
+    width: PositiveLength | None = None
+    """Width of the shank where it is held, of a square plate throughout. Default: the outer
+    diameter."""
+    length: PositiveLength | None = None
+    """From the centre of the bore to where the shank is held. Default: 2 outer diameters."""
+    end: PositiveLength | None = None
+    """From the centre of the bore to the end of the head. Default: half of the outer diameter."""
+    angle: Angle | None = None
+    """Direction of the shank from the bore, from the pin's x axis. Default: towards the body's
+    other joint."""
+    toward: Name | None = None
+    """Name of the joint towards which the shank points, on a body with more than two. Not with
+    `angle`."""
+
+    @model_validator(mode="after")
+    def _one_direction(self) -> "ShankTable":
+        if self.angle is not None and self.toward is not None:
+            raise ArgumentError("give angle or toward, not both", "give-one")
+        return self
 
 
 Times = Annotated[Number, Field(gt=0.0)]
@@ -63,6 +96,8 @@ class LugTable(StrictTable):
     Default: the bending stiffness of an eye clamped at a distance of 0.8 outer diameters."""
     bushing: BushingTable | None = None
     """A bushing bonded in the eye."""
+    shank: ShankTable | None = None
+    """The outline of the lug in its plane, which its own stress requires."""
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 
