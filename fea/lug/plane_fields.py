@@ -105,7 +105,7 @@ def _derivative(values: Floats) -> Floats:
     """The derivative of values (.., P) by the angle."""
     P = values.shape[-1]
     spectrum = np.fft.rfft(values, axis=-1)
-    spectrum[..., P // 3 :] = 0.0  # mesh noise beyond what the elements resolve
+    spectrum[..., 2 * HARMONICS + 1 :] = 0.0  # noise of the mesh: loads and response are smooth
     return np.asarray(np.fft.irfft(1j * np.arange(P // 2 + 1) * spectrum, P, axis=-1))
 
 

@@ -14,8 +14,7 @@ from pinbase.arrays import Floats, Ints
 
 TRIANGLE6 = 9  # gmsh's element type
 GROWTH = 0.35  # of the element's size per distance from the bore
-MAX_SIZE = 0.5  # of an element, of the bore's radius
-MIN_WALL_ELEMENTS = 3.0  # through the thinnest wall
+MIN_WALL_ELEMENTS = 2.0  # through the thinnest wall
 
 
 @dataclass(frozen=True)
@@ -100,14 +99,11 @@ def _size(gmsh: Any, outline: LugOutline, one: float, around: int) -> None:
 
 
 def _largest(outline: LugOutline, one: float) -> float:
-    """The largest size of an element, so that several fit in the thinnest wall."""
+    """The largest size of an element, so that several fit in the thinnest wall of the lug."""
     outside = outline.head / 2.0 - abs(outline.centre)
     if outline.shape == "square":
         outside = min(outline.end, outline.width / 2.0)
-    walls = [outside - outline.hole / 2.0]
-    if outline.interface is not None:
-        walls.append((outline.interface - outline.bore) / 2.0)
-    return min(MAX_SIZE, min(walls) / one / MIN_WALL_ELEMENTS * 2.0)
+    return (outside - outline.hole / 2.0) / one / MIN_WALL_ELEMENTS
 
 
 def _collect(gmsh: Any, outline: LugOutline, one: float) -> LugMesh:
