@@ -11,7 +11,7 @@ A check is one file here or in assess.strength, its line in assess.checks, and i
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
 import numpy as np
@@ -77,7 +77,7 @@ class CheckText:
     """The text that is printed of a check, and the margins that carry it.
 
     level: at which the check is made, where `at_levels` does not make it at both. dimension: of its
-    demand.
+    demand. scatter: of the method against tests. omits: what it does not cover.
     """
 
     method: str
@@ -85,6 +85,8 @@ class CheckText:
     kind: Kind
     level: Level = "limit"
     dimension: str = "stress"
+    scatter: str = ""
+    omits: str = ""
 
     def at_levels(
         self,
@@ -157,7 +159,8 @@ class CheckText:
     def lacks(self, s: Situation, *needs: str) -> Margin:
         """The margin of the check where it is not made, for want of something."""
         factor = s.factors.at(self.level)
-        return skipped(self.method, self.clause, self.kind, self.level, factor, ", ".join(needs))
+        margin = skipped(self.method, self.clause, self.kind, self.level, factor, ", ".join(needs))
+        return replace(margin, omits=self.omits)
 
 
 Make = Callable[[CheckText, Situation], Sequence[Margin]]
@@ -185,8 +188,10 @@ def check(
     level: Level = "limit",
     dimension: str = "stress",
     scope: Scope = "case",
+    scatter: str = "",
+    omits: str = "",
 ) -> Callable[[Make], FunctionCheck]:
     """A decorator that makes a check of a function; arguments as in `Check` and `CheckText`."""
     return lambda make: FunctionCheck(
-        method, clause, kind, level, dimension, takes=takes, scope=scope, make=make
+        method, clause, kind, level, dimension, scatter, omits, takes=takes, scope=scope, make=make
     )
