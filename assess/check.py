@@ -18,11 +18,15 @@ import numpy as np
 
 from assess.margin import Kind, Level, Margin, skipped, strength_key
 from assess.situation import Situation
+from assess.work import Work, scaled
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from geometry import Band
 from pinbase.arrays import Floats
 
+# By the number of a place: the work of the allowable there; the name and the length of a dimension,
+# and the power of it with which the allowable grows.
+Shown = Callable[[int], tuple[Work, str, float, float]]
 Takes = Literal["results", "loads", "statics", "section forces"]
 Scope = Literal["case", "pin"]
 Rupture = Literal["shear", "bearing", "ultimate"]
@@ -124,11 +128,12 @@ class CheckText:
         allowable: Floats,
         at: tuple[str, ...],
         basis: str = "",
+        shown: Shown | None = None,
     ) -> Margin:
         """The worst of demands (T, S) with allowables (S,) at S places, called `at`, at the
-        instants of the loads.
+        instants of the loads. shown: the work of the allowable at a place, by its number.
         """
-        return self._worst(s, s.loads.times, demand, allowable, at, basis)
+        return self._worst(s, s.loads.times, demand, allowable, at, basis, shown)
 
     def _worst(
         self,
@@ -138,23 +143,36 @@ class CheckText:
         allowable: Floats,
         at: tuple[str, ...],
         basis: str,
+        shown: Shown | None,
     ) -> Margin:
         used = demand / allowable
         t, k = np.unravel_index(np.argmax(used), used.shape)
-        return Margin(
+        margin = Margin(
             self.method, self.clause, self.kind, self.level, s.factors.at(self.level),
             float(demand[t, k]), float(allowable[k]), self.dimension, at[int(k)],
-            time=None if times is None else float(times[t]), basis=basis,
+            time=None if times is None else float(times[t]), basis=basis, omits=self.omits,
         )  # fmt: skip
+        if shown is None:
+            return margin
+        formula, symbol, length, power = shown(int(k))
+        passing = scaled(symbol, length, margin.used, power)
+        return replace(margin, work=(formula,), passing=passing)
 
-    def along(self, s: Situation, demand: Floats, allowable: Floats, note: str = "") -> Margin:
+    def along(
+        self,
+        s: Situation,
+        demand: Floats,
+        allowable: Floats,
+        note: str = "",
+        shown: Shown | None = None,
+    ) -> Margin:
         """The worst of demands (T, S) with allowables (S,) at the stations of the section forces,
-        or at one place that stands for all.
+        or at one place that stands for all. shown: as in `worst`.
         """
         forces = s.forces
         at = forces.labels if demand.shape[1] == len(forces.labels) else ("",)
         basis = "; ".join(x for x in (forces.basis, note) if x)
-        return self._worst(s, forces.times, demand, allowable, at, basis)
+        return self._worst(s, forces.times, demand, allowable, at, basis, shown)
 
     def lacks(self, s: Situation, *needs: str) -> Margin:
         """The margin of the check where it is not made, for want of something."""

@@ -15,12 +15,13 @@ from assess.check import Check, Scope
 from assess.clauses import (
     affdl_joint,
     affdl_lugs,
+    affdl_pins,
     aisc_d5,
     bth1,
     ekvall,
     melcon_hoblit,
-    pin_rupture,
 )
+from assess.clauses.lug_checks import lug_checks
 from assess.codes import DEFAULT_CODES, Code
 from assess.margin import Margin, for_comparison
 from assess.situation import Situation
@@ -34,7 +35,6 @@ from assess.strength.hand_checks import (
     mean_shear,
     neutral_axis_shear,
 )
-from assess.strength.lug_checks import lug_checks
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_bending
 from assess.strength.section_forces import with_section_forces
@@ -76,8 +76,8 @@ AIRCRAFT: tuple[Check, ...] = (
     ekvall.ekvall_transverse,
     ekvall.ekvall_bore_stress,
     affdl_joint.affdl_joint,
-    pin_rupture.pin_shear,
-    pin_rupture.pin_bending,
+    affdl_pins.pin_shear,
+    affdl_pins.pin_bending,
 )
 LIFTING: tuple[Check, ...] = (
     bth1.bth1_tension,

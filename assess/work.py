@@ -51,6 +51,17 @@ def work(
     )
 
 
+def scaled(symbol: str, now: float, utilisation: float, power: float) -> Quantity | None:
+    """Return the length that would just pass where what a check carries grows with a power of it;
+    None without a load.
+
+    now: the present length, m.
+    """
+    if not 0.0 < utilisation < float("inf"):
+        return None
+    return Quantity(symbol, now * utilisation ** (1.0 / power), "length")
+
+
 def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:
     """Return the value of a dimension nearest to the present one at which a utilisation is 1, on
     its safe side; None where none is within MAX_CHANGE.

@@ -27,9 +27,9 @@ from assess.clauses.affdl_lugs import (
     bushing_capacity,
     net_section_capacity,
 )
+from assess.clauses.cozzone import bending_strength
 from assess.clauses.eye import LoadedEye, loaded_eyes
 from assess.clauses.eye_margin import not_axial
-from assess.clauses.pin_rupture import bending_strength
 from assess.margin import Margin, strength_key
 from assess.situation import Situation
 from assess.strength.bending_arms import layout
@@ -115,7 +115,7 @@ class DoubleShear:
             ),
             work(
                 "P_max", self.shifted_bending, force,
-                "2 × {C} × (√({P_ub} × {arm} / {C} + {g}²) − {g})",
+                "2 × {C} × (√({P_ub} × {arm} / {C} + {g} × {g}) − {g})",
                 C=(self.line_load, "force length^-1"), P_ub=(self.even_bending, force),
                 arm=(self.arm, length), g=(self.gap, length),
             ),
@@ -132,21 +132,14 @@ class DoubleShear:
        omits=f"{LUG_OMITS} One diameter of the pin along all three lugs.")  # fmt: skip
 def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
     """The force on the middle lug against what the joint carries with the load at the faces."""
-    eyes = {x.connection: x for x in loaded_eyes(s)}
-    bands = sorted((s.pin.band(name) for name in s.loads.surfaces), key=lambda b: b.z0)
-    if len(bands) != len(eyes) or layout(s) != LAYOUT:
-        return [text.lacks(s, LAYOUT_NEEDED)]
-    loaded = [eyes[band.name] for band in bands]
+    joint = joint_of(s)
+    if isinstance(joint, list):
+        return [text.lacks(s, *joint)]
+    bands, loaded = _in_order(s)
     for eye in loaded:
         if across := not_axial(text, s, eye):
             return [across]
     t = int(loaded[1].size.argmax())
-    try:
-        joint = _joint(s, bands, loaded)
-    except ArgumentError as error:
-        return [text.lacks(s, str(error))]
-    if isinstance(joint, list):
-        return [text.lacks(s, *joint)]
     time = None if s.loads.times is None else float(s.loads.times[t])
     return [
         Margin(
@@ -157,10 +150,28 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
     ]  # fmt: skip
 
 
+def joint_of(s: Situation) -> DoubleShear | list[str]:
+    """The joint of a situation, or what it lacks to be one, or to be checked."""
+    bands, eyes = _in_order(s)
+    if len(bands) != len(eyes) or layout(s) != LAYOUT:
+        return [LAYOUT_NEEDED]
+    try:
+        return _joint(s, bands, eyes)
+    except ArgumentError as error:
+        return [str(error)]
+
+
+def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:
+    """The bands along the pin, and the eyes of those of them whose size is given."""
+    eyes = {x.connection: x for x in loaded_eyes(s)}
+    bands = sorted((s.pin.band(name) for name in s.loads.surfaces), key=lambda b: b.z0)
+    return bands, [eyes[band.name] for band in bands if band.name in eyes]
+
+
 def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShear | list[str]:
     """The joint of three bands, or the keys that the study lacks.
 
-    Raises: ArgumentError as assess.clauses.pin_rupture.
+    Raises: ArgumentError as assess.clauses.cozzone.
     """
     section = min(
         (

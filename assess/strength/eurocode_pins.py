@@ -31,6 +31,7 @@ import numpy as np
 from assess.check import CheckText, check
 from assess.margin import RATIO_DIMENSION, Margin, strength_key
 from assess.situation import SectionForces, Situation
+from assess.work import Work, work
 from pinbase.arrays import Floats
 
 GAMMA_M0, GAMMA_M2, GAMMA_M6_SER = 1.0, 1.25, 1.0  # recommended partial factors; 2.2 of the same
@@ -113,7 +114,17 @@ def eurocode_shear(text: CheckText, s: Situation) -> list[Margin]:
         return []
     if fu is None:
         return [text.lacks(s, strength_key(s.material.name, "ultimate"))]
-    return [text.along(s, s.forces.shear, _sheared(s.forces, fu))]
+
+    def shown(k: int) -> tuple[Work, str, float, float]:
+        section = s.forces.sections[k]
+        resisted = work(
+            "F_v,Rd", float(shear_resistance(section.area, fu)), "force",
+            "0.6 × {A} × {f_up} / {γ_M2}", A=(section.area, "length^2"), f_up=(fu, "stress"),
+            γ_M2=(GAMMA_M2, "1"),
+        )  # fmt: skip
+        return resisted, "diameter", 2.0 * section.outer, 2.0
+
+    return [text.along(s, s.forces.shear, _sheared(s.forces, fu), shown=shown)]
 
 
 @_by_forces("EN 1993 bending", level="ultimate", dimension="moment")
@@ -192,7 +203,24 @@ def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
         return []
     if fy is None:
         return [text.lacks(s, strength_key(s.material.name, "yield"))]
-    return [text.along(s, s.forces.moment, _bent(s.forces, fy, replaceable=replaceable))]
+
+    def shown(k: int) -> tuple[Work, str, float, float]:
+        section = s.forces.sections[k]
+        W_el, W_pl = section.modulus, section.plastic_modulus
+        resisted = bending_resistance(W_el, fy, plastic=W_pl, replaceable=replaceable)
+        strength, moduli = {"f_yp": (fy, "stress")}, {"W_el": (W_el, "length^3")}
+        if replaceable:
+            formula = "0.8 × {W_el} × {f_yp} / {γ_M6}"
+            moment = work("M_Rd,ser", float(resisted), "moment", formula, **moduli, **strength,
+                          γ_M6=(GAMMA_M6_SER, "1"))  # fmt: skip
+        else:
+            formula = "min(1.5 × {W_el}, {W_pl}) × {f_yp} / {γ_M0}"
+            moment = work("M_Rd", float(resisted), "moment", formula, **moduli, **strength,
+                          W_pl=(W_pl, "length^3"), γ_M0=(GAMMA_M0, "1"))  # fmt: skip
+        return moment, "diameter", 2.0 * section.outer, 3.0
+
+    bent = _bent(s.forces, fy, replaceable=replaceable)
+    return [text.along(s, s.forces.moment, bent, shown=shown)]
 
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
@@ -219,7 +247,18 @@ def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
     )
     bare = [name for name in s.loads.surfaces if s.lug(name) is None]
     basis = f"strength of the pin alone at {', '.join(bare)}: no lug given" if bare else ""
-    return [text.worst(s, s.across, resisted, s.loads.surfaces, basis)]
+    factor = "0.6" if replaceable else "1.5"
+
+    def shown(k: int) -> tuple[Work, str, float, float]:
+        band, gamma = bands[k], GAMMA_M6_SER if replaceable else GAMMA_M0
+        bears = work(
+            "F_b,Rd", float(resisted[k]), "force", f"{factor} × {{t}} × {{d}} × {{f_y}} / {{γ}}",
+            t=(band.length, "length"), d=(2.0 * band.radius, "length"),
+            f_y=(strengths[k], "stress"), γ=(gamma, "1"),
+        )  # fmt: skip
+        return bears, "thickness", band.length, 1.0
+
+    return [text.worst(s, s.across, resisted, s.loads.surfaces, basis, shown)]
 
 
 def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:

@@ -128,7 +128,8 @@ def test_a_study_of_the_table() -> None:
         assert m.factor == pytest.approx(1.5 * 1.15)
     joint = margins["AFFDL joint in double shear", "B"]
     assert joint.margin == pytest.approx(37_841 / (1.725 * 20_000) - 1.0, rel=1e-3)
-    (bent,) = (m for m in margins.values() if m.method == "pin bending, rupture")
+    (bent,) = (m for m in margins_of(joint_of_table()) if m.method.startswith("pin bending"))
+    assert not bent.governs  # even bearing, as the load shifts
     assert bent.margin == pytest.approx(30_052 / (1.725 * 20_000) - 1.0, rel=1e-3)
     (sheared,) = (m for m in margins.values() if m.method == "pin shear, rupture")
     assert sheared.margin == pytest.approx(72_453 / (1.725 * 20_000) - 1.0, rel=1e-3)
@@ -137,7 +138,7 @@ def test_a_study_of_the_table() -> None:
 
 def test_the_diameter_that_would_pass() -> None:
     """The pin fails in even bearing, and is loaded to 1 with the diameter that is named."""
-    s = joint_of_table()
+    s = replace(joint_of_table(), lug_factors={})  # without which the load is not shifted
     (bent,) = (m for m in margins_of(s) if m.method == "pin bending, rupture")
     assert bent.used > 1.0
     assert bent.passing is not None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from assess.clauses.pin_rupture import (
+from assess.clauses.cozzone import (
     cozzone_strength,
     hardening_exponent,
     trapezoid_stress,
