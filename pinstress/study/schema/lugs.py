@@ -61,6 +61,25 @@ class ShankTable(StrictTable):
 Times = Annotated[Number, Field(gt=0.0)]
 
 
+class LugFactorsTable(StrictTable):
+    """Efficiency factors of a lug for the code "aircraft", read off the figures of its source."""
+
+    K: Times | None = None
+    """Bearing: AFFDL-TR-69-42, figure 9-2 or 9-3."""
+    K_n: Times | None = None
+    """Net section: AFFDL-TR-69-42, figure 9-4."""
+    k_br: Times | None = None
+    """Shear-bearing by Melcon and Hoblit, instead of K."""
+    k_t: Times | None = None
+    """Tension by Melcon and Hoblit, instead of K_n."""
+    C: Times | None = None
+    """Yield by Melcon and Hoblit."""
+    k_tru: Times | None = None
+    """Transverse load, ultimate, by Melcon and Hoblit."""
+    k_try: Times | None = None
+    """Transverse load, yield, by Melcon and Hoblit."""
+
+
 class LugRangeTable(StrictTable):
     """Between what values something of a lug may lie: [lower, upper]."""
 
@@ -98,6 +117,8 @@ class LugTable(StrictTable):
     """A bushing bonded in the eye."""
     shank: ShankTable | None = None
     """The outline of the lug in its plane, which its own stress requires."""
+    factors: LugFactorsTable = LugFactorsTable()
+    """Efficiency factors of the lug, which only figures give."""
     range: LugRangeTable = LugRangeTable()
     """What is not known of the lug, for the range of the maximum over the joint (`joint.range`)."""
 
