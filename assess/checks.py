@@ -35,6 +35,7 @@ from assess.strength.hand_checks import (
     mean_shear,
     neutral_axis_shear,
 )
+from assess.strength.lug_stress import lug_stress
 from assess.strength.model_stress import model_rupture, model_yield
 from assess.strength.plastic_bending import plastic_bending
 from assess.strength.section_forces import with_section_forces
@@ -42,6 +43,7 @@ from assess.strength.section_forces import with_section_forces
 CHECKS: tuple[Check, ...] = (
     model_yield,
     model_rupture,
+    lug_stress,
     collapse,
     mean_shear,
     neutral_axis_shear,

@@ -20,7 +20,7 @@ from fea.core.material import Material
 from fea.core.peak import Maximum
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug
-from fea.support.records import JointForces
+from fea.support.records import JointForces, LugStress
 from geometry import ArgumentError, Pin
 from pinbase.arrays import Floats
 
@@ -172,7 +172,8 @@ class Situation:
 
     codes: the sets of checks that the study chooses (assess.checks). design_factor: N_d of ASME
     BTH-1. bending_factor: the modulus of rupture of the pin over its ultimate strength.
-    lug_factors: efficiency factors of lugs, by connection.
+    lug_factors: efficiency factors of lugs, by connection. lug_stresses: of those whose shank is
+    known.
     """
 
     profile: Pin | None
@@ -196,6 +197,7 @@ class Situation:
     design_factor: float | None = None
     bending_factor: float | None = None
     lug_factors: Mapping[str, LugFactors] = field(default_factory=dict)
+    lug_stresses: tuple[LugStress, ...] = ()
 
     def factors_of(self, connection: str) -> LugFactors:
         """The efficiency factors of a lug."""
