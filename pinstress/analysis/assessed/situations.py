@@ -9,6 +9,7 @@ import numpy as np
 
 from assess.checks import margins_of
 from assess.judgement import against_yield
+from assess.lug_factors import LugFactors
 from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Margin, skipped, worst_places
 from assess.situation import LoadFactors, Situation, SolvedRow, with_solved, with_supports
 from assess.strength.bending_arms import BendingArms, bending_arms
@@ -53,9 +54,12 @@ def assessed(study: Study, task: Task, row: PinResult) -> PinResult:
 
 
 def load_factors(study: Study) -> LoadFactors:
-    """Return the load factors of a study."""
+    """Return the load factors of a study; assess.checks adds the fitting factor that a code demands
+    where the study states none.
+    """
     a = study.table.analysis
-    return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor)
+    stated = "fitting_factor" in a.model_fields_set
+    return LoadFactors(a.limit_factor, a.ultimate_factor, a.fitting_factor, stated)
 
 
 def factor_assumption(study: Study, rows: Iterable[PinResult]) -> tuple[str, ...]:
@@ -78,14 +82,17 @@ def _situation(
     """
     table = study.table.pin[task.pin.name]
     sized = tuple(x for x in task.given if table.lug[x.connection].outer_diameter)
-    even = study.table.analysis.bending_moment == "formula"
+    even, codes = study.table.analysis.bending_moment == "formula", study.table.analysis.codes
     profile = task.pin.profile
     if profile is None:
-        s = Situation(None, task.material, loads, factors=load_factors(study))
+        s = Situation(None, task.material, loads, factors=load_factors(study), codes=codes)
         return s, "a profile, which a pin from a file does not have"
     s = Situation(
         profile, task.material, loads, task.clamps, task.given, load_factors(study),
-        table.replaceable, even_governs=even, sized=sized,
+        table.replaceable, even_governs=even, sized=sized, codes=codes,
+        design_factor=study.table.analysis.design_factor, bending_factor=table.bending_factor,
+        lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
+        lug_stresses=joint.lugs if joint else (),
     )  # fmt: skip
     along = joint.along if joint else None
     now = loads
