@@ -1,9 +1,9 @@
 """The limit load of a lug: the force of a pin per thickness at which it collapses, in plane strain.
 
-Rigid-perfectly plastic, small displacements, a rigid pin without friction that fits and may leave
-the bore anywhere. Clearance does not matter: what flows closes it. Two cone programs on each of a
-few meshes bound the load strictly for their polygons (assess.plastic.lug.bounds); each mesh is
-finer where the one before flows.
+The pin pulls along the shank. Rigid-perfectly plastic, small displacements, a rigid pin without
+friction that fits and may leave the bore anywhere. Clearance does not matter: what flows closes it.
+Two cone programs on each of a few meshes bound the load strictly for their polygons
+(assess.plastic.lug.bounds); each mesh is finer where the one before flows.
 
 Plane stress is not offered: there a bore that flows carries no more than 1.15 times yield on its
 projected area, whatever the head is like, whereas a bore in metal that is held across does.
@@ -20,8 +20,8 @@ import numpy as np
 from assess.plastic.lug.bounds import lower_program, upper_program
 from assess.plastic.lug.cone_program import ConeSolution, solve_cone_program
 from assess.plastic.lug.mesh import PlaneMesh, SizeField, lug_mesh
-from assess.plastic.lug.shape import LugSection
 from geometry import ArgumentError
+from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats
 
 ForcePerLength = Annotated[float, "force per length"]
@@ -72,19 +72,20 @@ class LugLimitLoad:
 
 
 def lug_limit_load(
-    lug: LugSection, yield_strength: float, max_bracket: float = MAX_BRACKET
+    lug: LugOutline, yield_strength: float, max_bracket: float = MAX_BRACKET
 ) -> LugLimitLoad:
     """The limit load of a lug whose metal flows at a von Mises stress, Pa.
 
+    lug: with a bushing the hole in which it sits counts: the bushing is part of the pin.
     max_bracket: the width over the middle at which no finer mesh is made; the finest is the last in
     any case.
 
-    Raises: ArgumentError for a strength that is not positive; MeshError; SolveError.
+    Raises: ArgumentError for a strength that is not positive, or a ring; MeshError; SolveError.
     """
     if not (math.isfinite(yield_strength) and yield_strength > 0.0):
         raise ArgumentError("the yield strength of a lug must be positive", "not-positive")
     # Two halves; lengths of the programs are radii, stresses the shear strength.
-    unit = 2.0 * yield_strength / math.sqrt(3.0) * lug.bore / 2.0
+    unit = 2.0 * yield_strength / math.sqrt(3.0) * lug.hole / 2.0
     meshes: list[LugMeshBounds] = []
     mesh = lug_mesh(lug, FIRST_SIZE)
     polygon = 0.0
@@ -122,8 +123,8 @@ def _sizes(mesh: PlaneMesh, solutions: tuple[ConeSolution, ConeSolution], count:
     return np.asarray(np.minimum(relative * math.sqrt(needed / count), MAX_SIZE))
 
 
-def _polygon_share(lug: LugSection, mesh: PlaneMesh) -> float:
+def _polygon_share(lug: LugOutline, mesh: PlaneMesh) -> float:
     """The largest height of the bore's arcs over their chords, of the metal behind the pin."""
     chord = np.linalg.norm(np.diff(mesh.nodes[mesh.edges["bore"]], axis=1)[:, 0], axis=1).max()
     height = 1.0 - math.sqrt(1.0 - (chord / 2.0) ** 2)
-    return float(height / (2.0 * lug.end_distance / lug.bore - 1.0))
+    return float(height / (2.0 * lug.end / lug.hole - 1.0))

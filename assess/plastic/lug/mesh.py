@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from assess.plastic.lug.shape import LugSection
-from geometry.mesh.gmsh_session import gmsh_model, set_size
+from geometry import ArgumentError
+from geometry.mesh.gmsh_session import formula_size, gmsh_model, set_size
+from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints
 
 GROWTH = 0.25  # of the size of triangles per distance from the bore; chosen by judgement
@@ -45,55 +46,41 @@ class PlaneMesh:
         return turned / double[:, None, None], double / 2.0
 
 
-def lug_mesh(lug: LugSection, size: float, refinement: SizeField | None = None) -> PlaneMesh:
-    """The half of a lug above its axis, in radii of the bore, the pin's direction along x.
+def lug_mesh(lug: LugOutline, size: float, refinement: SizeField | None = None) -> PlaneMesh:
+    """The half of a lug above its axis, in radii of its hole, the direction of the pull along x.
 
-    size: of triangles at the bore, in radii; it grows outwards.
+    lug: its x axis is turned round: the shank lies along -x. A bushing counts as part of the pin.
+    size: of triangles at the hole, in radii; it grows outwards.
     refinement: sizes at points, which replace that.
 
     Its edges are "bore" (where the pin may press), "axis", "held" and "free".
 
-    Raises: MeshError.
+    Raises: ArgumentError for a ring, which nothing holds; MeshError.
     """
-    radius = lug.bore / 2.0
-    end, half = lug.end_distance / radius, lug.shank / lug.bore
-    length = lug.held_at / radius
+    if lug.shape == "ring":
+        raise ArgumentError("a lug without a shank has no limit load", "no-shank")
     with gmsh_model("lug") as gmsh:
-        add = gmsh.model.geo
-        point = {
-            name: add.addPoint(x, y, 0.0)
-            for name, (x, y) in {
-                "centre": (0.0, 0.0),
-                "front": (1.0, 0.0),
-                "top": (0.0, 1.0),
-                "back": (-1.0, 0.0),
-                "end": (end, 0.0),
-                "held": (-length, 0.0),
-                "corner": (-length, half),
-            }.items()
-        }
-        centre = point["centre"]
-        outline = _head(gmsh, lug, point, end, half)
-        held = add.addLine(point["corner"], point["held"])
-        back, front = (
-            add.addLine(point["held"], point["back"]),
-            add.addLine(point["front"], point["end"]),
+        geo = gmsh.model.geo
+        centre, front, top, back = (
+            geo.addPoint(x, y, 0.0) for x, y in ((0, 0), (1, 0), (0, 1), (-1, 0))
         )
-        behind = add.addCircleArc(point["back"], centre, point["top"])
-        bore = add.addCircleArc(point["top"], centre, point["front"])
-        loop = [front, *outline, held, back, behind, bore]
-        add.addPlaneSurface([add.addCurveLoop(loop)])
-        add.synchronize()
+        outline, end, corner = _outside(geo, lug)
+        held_on_axis = geo.addPoint(-2.0 * lug.length / lug.hole, 0.0, 0.0)
+        held = geo.addLine(corner, held_on_axis)
+        axis = geo.addLine(held_on_axis, back), geo.addLine(front, end)
+        behind = geo.addCircleArc(back, centre, top)
+        bore = geo.addCircleArc(top, centre, front)
+        loop = geo.addCurveLoop([axis[1], *outline, held, axis[0], behind, bore])
+        geo.addPlaneSurface([loop])
+        geo.synchronize()
         if refinement is None:
-            formula = f"{size:.12g} + {GROWTH:g} * Max(0, Sqrt(x * x + y * y) - 1)"
-            field = gmsh.model.mesh.field.add("MathEval")
-            gmsh.model.mesh.field.setString(field, "F", formula)
+            formula = f"{size!r} + {GROWTH!r} * Max(0, Sqrt(x * x + y * y) - 1)"
+            field = formula_size(gmsh, formula)
         else:
             field = refinement.added(gmsh)
         set_size(gmsh, [field])
-        gmsh.option.setNumber("Mesh.Algorithm", 6)
         gmsh.model.mesh.generate(2)
-        names = {"bore": [bore], "axis": [front, back], "held": [held], "free": [*outline, behind]}
+        names = {"bore": [bore], "axis": [*axis], "held": [held], "free": [*outline, behind]}
         return _read(gmsh, names)
 
 
@@ -118,22 +105,24 @@ class SizeField:
         return int(field)
 
 
-def _head(gmsh: Any, lug: LugSection, point: dict[str, int], end: float, half: float) -> list[int]:
-    """The curves from the end on the axis around the head to the held corner."""
-    add = gmsh.model.geo
-    if lug.end == "square":
-        corner = add.addPoint(end, half, 0.0)
-        return [add.addLine(point["end"], corner), add.addLine(corner, point["corner"])]
-    # The head's arc goes to where it meets the shank, in two parts, each less than half a turn.
-    meets = math.pi - math.asin(min(1.0, half / end))
-    middle, last = (
-        add.addPoint(end * math.cos(a), end * math.sin(a), 0.0) for a in (meets / 2.0, meets)
-    )
-    return [
-        add.addCircleArc(point["end"], point["centre"], middle),
-        add.addCircleArc(middle, point["centre"], last),
-        add.addLine(last, point["corner"]),
-    ]
+def _outside(geo: Any, lug: LugOutline) -> tuple[list[int], int, int]:
+    """The curves from the end on the axis to the upper corner that is held, and these points."""
+    one = lug.hole / 2.0
+    tip = geo.addPoint(lug.end / one, 0.0, 0.0)
+    if lug.shape == "square":
+        half = lug.width / 2.0 / one
+        corners = (lug.end / one, half), (-lug.length / one, half)
+        first, last = (geo.addPoint(x, y, 0.0) for x, y in corners)
+        return [geo.addLine(tip, first), geo.addLine(first, last)], tip, last
+    (x1, y1), (x2, y2) = lug.joints
+    x, radius = -lug.centre, lug.head / 2.0
+    # The head's arc to where a side leaves it, in two parts, each less than half a turn.
+    meets = math.atan2(y1, -x1 - x)
+    middle = x + radius * math.cos(meets / 2.0), radius * math.sin(meets / 2.0)
+    places = ((x, 0.0), middle, (-x1, y1), (-x2, y2))
+    about, over, leaves, corner = (geo.addPoint(u / one, v / one, 0.0) for u, v in places)
+    arcs = [geo.addCircleArc(tip, about, over), geo.addCircleArc(over, about, leaves)]
+    return [*arcs, geo.addLine(leaves, corner)], tip, corner
 
 
 def _read(gmsh: Any, names: dict[str, list[int]]) -> PlaneMesh:

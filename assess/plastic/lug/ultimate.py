@@ -18,9 +18,9 @@ from scipy.sparse.linalg import splu
 from assess.plastic.flow import FlowRule
 from assess.plastic.lug.mesh import lug_mesh
 from assess.plastic.lug.pulled_body import PulledBody, PulledState
-from assess.plastic.lug.shape import LugSection
 from fea.core.linear_solver import SolveError
 from fea.core.material import Material
+from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats
 from pinbase.dimensions import Length, Lengths
 
@@ -81,7 +81,7 @@ class LugUltimate:
 
 
 def lug_ultimate(
-    lug: LugSection, material: Material, failure_strain: float | None = None
+    lug: LugOutline, material: Material, failure_strain: float | None = None
 ) -> LugUltimate:
     """The ultimate load of a lug.
 
@@ -101,7 +101,7 @@ def lug_ultimate(
 
 
 def pull(
-    lug: LugSection,
+    lug: LugOutline,
     material: Material,
     size: float,
     finite: bool = True,
@@ -135,7 +135,7 @@ def pull(
         rate = (after.nodes - now.nodes) / step
         if iterations < FEW_ITERATIONS:
             step = min(step * STEP_GROWTH, MAX_STEP)
-    radius = lug.bore / 2.0
+    radius = lug.hole / 2.0
     return PullCurve(
         np.array([s.pin for s in states]) * radius,
         np.array([2.0 * s.load for s in states]) * radius,  # two halves

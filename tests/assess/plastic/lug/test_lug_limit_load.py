@@ -12,11 +12,12 @@ from assess.plastic.lug.bounds import QuadraticNodes, lower_program, upper_progr
 from assess.plastic.lug.cone_program import solve_cone_program
 from assess.plastic.lug.limit_load import PULL, lug_limit_load
 from assess.plastic.lug.mesh import PlaneMesh, lug_mesh
-from assess.plastic.lug.shape import LugSection, round_lug, square_lug
 from assess.plastic.mechanism import RefinedElements
 from fea.core.material import Material
 from geometry import ArgumentError
+from geometry.shape.lug_outline import LugOutline
 from tests.support.each import each
+from tests.support.lug_outlines import round_lug, square_lug
 
 KSI = 6.894757e6
 SHEAR = 60.0 * KSI / math.sqrt(3.0)
@@ -84,15 +85,31 @@ def _flowing(mesh: PlaneMesh, space: QuadraticNodes) -> tuple[FlowingBody, Ties]
     return FlowingBody(Elements(nodes, space.numbers, gradients, weights), ties, rule), ties
 
 
-@each("wrong", [(1.0, 0.4, 3.0), (1.0, 2.0, 0.9), (0.0, 2.0, 3.0), (1.0, float("nan"), 3.0)])
-def test_a_shape_that_is_none_is_refused(wrong: tuple[float, float, float]) -> None:
-    with pytest.raises(ArgumentError):
-        LugSection(*wrong, "square")
+def test_shapes_that_carry_more_in_order() -> None:
+    """A larger body carries at least as much: a round head within a tapered and a square one, an
+    eccentric bore nearer to the end.
+    """
+    outlines = [
+        LugOutline("round", 1.0, 3.0, 3.0, 3.0, 1.2),  # eccentric
+        LugOutline("round", 1.0, 3.0, 3.0, 3.0, 1.5),
+        LugOutline("tapered", 1.0, 3.0, 4.0, 3.0, 1.5),
+        LugOutline("square", 1.0, 0.0, 4.0, 3.0, 1.5),
+    ]
+    limits = [lug_limit_load(outline, 1e6, 0.1) for outline in outlines]
+    assert limits[0].upper < limits[1].lower
+    assert limits[1].lower < limits[2].upper
+    assert limits[2].lower < limits[3].upper
 
 
-def test_a_shank_wider_than_its_head_is_refused() -> None:
-    with pytest.raises(ArgumentError, match="wider than its head"):
-        round_lug(1.0, 2.0, 2.5)
+def test_a_bushing_is_part_of_the_pin() -> None:
+    bushed = LugOutline("round", 0.75, 3.0, 3.0, 3.0, 1.5, interface=1.0)
+    limits = [lug_limit_load(outline, 1e6, 0.1) for outline in (bushed, round_lug(1.0, 3.0))]
+    assert limits[0].load == pytest.approx(limits[1].load, rel=1e-9)
+
+
+def test_a_ring_is_refused() -> None:
+    with pytest.raises(ArgumentError, match="without a shank"):
+        lug_limit_load(LugOutline("ring", 1.0, 3.0), 1e6)
 
 
 def test_a_strength_that_is_none_is_refused() -> None:

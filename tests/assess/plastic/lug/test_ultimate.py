@@ -9,13 +9,13 @@ from assess.plastic.flow import FlowRule
 from assess.plastic.lug.limit_load import lug_limit_load
 from assess.plastic.lug.mesh import lug_mesh
 from assess.plastic.lug.pulled_body import PulledBody
-from assess.plastic.lug.shape import round_lug, square_lug
 from assess.plastic.lug.true_curve import hardening_exponent, true_curve
 from assess.plastic.lug.ultimate import PullCurve, lug_ultimate, pull
 from fea.core.material import Material
 from geometry import ArgumentError
 from pinbase.arrays import Floats
 from tests.support.each import each
+from tests.support.lug_outlines import round_lug, square_lug
 
 INCH, KSI, LBF = 0.0254, 6.894757e6, 4.4482216
 PERFECT = Material("perfect", 10.3e3 * KSI, 0.33, None, 60.0 * KSI)
