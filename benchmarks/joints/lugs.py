@@ -40,7 +40,8 @@ predictions."""
 PUBLISHED = """An open lug solver on the same tests of TN 1503 (plane strain, rigid pin): perfectly
 plastic, (Fty + Ftu)/2 9 to 28 % low (mean 18 %), Ftu 1 to 17 % low (mean 10 %); finite strain with
 failure at ln(1 + A) for 75S and twice that for the others -2.9 to +1.8 %, on TN 1502 -8.5 to
-+2.8 % (with these two multiples ours are {theirs}). Its collapse of a round head, 0.5 / 1.5 / 0.25 in, 60 ksi: 9842 lbf in finite strain, ours
++2.8 % (with these two multiples ours are {theirs}). Its collapse of a
+round head, 0.5 / 1.5 / 0.25 in, 60 ksi: 9842 lbf in finite strain, ours
 {finite:.0f}; 9485 in small strain, where our strict bracket is {lower:.0f} to {upper:.0f} and our
 elements of displacement reach {small:.0f}."""
 
