@@ -90,6 +90,7 @@ class SectionField:
         self._cells = np.repeat(free, SECTIONS_BETWEEN_STATIONS)
         part = np.tile(np.linspace(0.0, 1.0, SECTIONS_BETWEEN_STATIONS), len(free))
         self._z = stations[self._cells] + part * np.diff(stations)[self._cells]
+        self._near_points: dict[int, NearSections] = {}
 
     @cached_property
     def fields(self) -> MeridianFields:
@@ -142,22 +143,15 @@ class SectionField:
     def place(self, loads: Loads) -> AtSection:
         """The place and instant of the largest stress, and the section forces there."""
         top = self._top(loads)
-        row = top.point // len(WALL_FRACTIONS)
-        cell = self._cells[row]
-        z = self._closer_z(row)
-        cells = np.full(len(z), cell)
-        sections = sections_at(self.pin, self.forces, cells, z)
-        inside = self.forces.inside(cells, z)
-        forces = inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
-        both = zip(sections, forces, strict=True)
-        crests = [self._closer(section, tuple(x), top) for section, x in both]
-        values = np.array([value for value, _, _ in crests])
+        near = self._near(top.point)
+        forces = near.inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
+        values, radii, angles = near.largest(forces, top.angle)
         k = int(values.argmax()) if values.max() > (1.0 + MIN_SECTION_GAIN) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
-        value, r, angle = crests[k]
         return AtSection(
-            value, top.instant, int(cell), float(z[k]), r, angle, float(N[0]), float(np.hypot(*V)),
-            float(np.hypot(*M)), float(T[1]), sections[k], self._course(loads, top.instant),
+            float(values[k]), top.instant, near.cell, float(near.z[k]), float(radii[k]),
+            float(angles[k]), float(N[0]), float(np.hypot(*V)), float(np.hypot(*M)), float(T[1]),
+            near.sections[k], self._course(loads, top.instant),
         )  # fmt: skip
 
     def _course(self, loads: Loads, instant: int) -> tuple[tuple[float, float], ...]:
@@ -181,37 +175,74 @@ class SectionField:
         (span,) = (s for s in spans if s.first <= at.cell < s.last)
         return between_clamps(self.forces, span)
 
-    def _closer_z(self, row: int) -> Floats:
-        """The z of a section, by its number, and of others near it between the same stations, m."""
-        z, cell = float(self._z[row]), self._cells[row]
-        start, end = self.forces.stations[cell : cell + 2]
-        step = (end - start) / (SECTIONS_BETWEEN_STATIONS - 1)
-        near = np.linspace(max(start, z - step), min(end, z + step), CLOSER_POINTS)
-        return np.concatenate([[z], near])
+    def _near(self, point: int) -> NearSections:
+        """The sections near a point, by its number, between the same stations, and points of them
+        near it.
+        """
+        if point not in self._near_points:
+            row, number = divmod(point, len(WALL_FRACTIONS))
+            z, cell = float(self._z[row]), int(self._cells[row])
+            start, end = self.forces.stations[cell : cell + 2]
+            step = (end - start) / (SECTIONS_BETWEEN_STATIONS - 1)
+            near = np.linspace(max(start, z - step), min(end, z + step), CLOSER_POINTS)
+            z_of = np.concatenate([[z], near])
+            cells = np.full(len(z_of), cell)
+            sections = sections_at(self.pin, self.forces, cells, z_of)
+            walls = WALL_FRACTIONS[max(number - 1, 0) : number + 2]
+            parts = np.linspace(walls[0], walls[-1], CLOSER_POINTS)
+            by_section = {s: _at_radii(s, parts, self.nu) for s in set(sections)}
+            self._near_points[point] = NearSections(
+                cell,
+                z_of,
+                tuple(sections),
+                self.forces.inside(cells, z_of),
+                *(np.array([by_section[s][k] for s in sections]) for k in (0, 1)),
+            )
+        return self._near_points[point]
 
-    def _closer(
-        self, section: Circle, forces: tuple[Floats, ...], top: Crest
-    ) -> tuple[float, float, float]:
-        """Value, radius and angle of the largest stress in a section, near a point of it."""
-        number = top.point % len(WALL_FRACTIONS)
-        ends = (
-            WALL_FRACTIONS[max(number - 1, 0)],
-            WALL_FRACTIONS[min(number + 1, len(WALL_FRACTIONS) - 1)],
-        )
-        radii, per_force = _at_radii(section, np.linspace(*ends, CLOSER_POINTS), self.nu)
-        V, M, N, T = forces  # (2,) each: by phase, V and M of x and y
-        turns = top.angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
+
+@dataclass(frozen=True)
+class NearSections:
+    """Sections near a point of the largest stress, and R points of the wall in each.
+
+    cell: of the beam. z: (S,) m, that of the point first. inside: V, M, N, T (S, 4, K) of unit
+    loads. radii: (S, R) m. per_force: stress (S, R, 6, 4), Pa, per V, M, N, T.
+    """
+
+    cell: int
+    z: Floats
+    sections: tuple[Circle, ...]
+    inside: Floats
+    radii: Floats
+    per_force: Floats
+
+    def largest(self, forces: Floats, angle: float) -> tuple[Floats, Floats, Floats]:
+        """The largest stress (S,), Pa, of each section, its radius, m, and its angle, rad.
+
+        forces: V, M, N, T (S, 4, 2), by phase, V and M of x and y. angle: of the point, rad.
+        """
+        turns = angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
         c, s = np.cos(turns), np.sin(turns)
-        square = np.zeros((len(radii), len(turns)))
-        for row, factor in ((ZZ, 1.0), (RZ, 3.0), (TZ, 3.0)):
-            first, second = (c, s) if row != TZ else (s, -c)
-            of_v, of_m, of_n, of_t = per_force[:, row].T
-            stress = np.outer(of_v, V[0] * first + V[1] * second)
-            stress += np.outer(of_m, M[0] * first + M[1] * second)
-            stress += (of_n * N[0] - of_t * T[1] * (row == TZ))[:, None]
-            square += factor * stress**2
-        i, j = np.unravel_index(square.argmax(), square.shape)
-        return float(np.sqrt(square[i, j])), float(radii[i]), float(turns[j])
+
+        def unit(component: int, force: int) -> Floats:
+            return self.per_force[:, :, component, force, None]
+
+        def about(force: int, first: Floats, second: Floats) -> Floats:
+            x, y = forces[:, force, :, None].swapaxes(0, 1)
+            return np.asarray(x * first + y * second)[:, None]
+
+        along = unit(ZZ, MOMENT) * about(MOMENT, c, s)
+        along += unit(ZZ, AXIAL) * forces[:, AXIAL, :1, None]
+        around = unit(TZ, SHEAR) * about(SHEAR, s, -c)
+        around -= unit(TZ, TORQUE) * forces[:, TORQUE, 1:, None]
+        square = along**2
+        square += 3.0 * (unit(RZ, SHEAR) * about(SHEAR, c, s)) ** 2
+        square += 3.0 * around**2
+        flat = square.reshape(len(square), -1)
+        highest = flat.argmax(axis=1)
+        at = np.arange(len(flat))
+        radius, turn = np.unravel_index(highest, square.shape[1:])
+        return np.sqrt(flat[at, highest]), self.radii[at, radius], turns[turn]
 
 
 def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
@@ -219,7 +250,7 @@ def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats
     (R, 6, 4).
     """
     radii = section.inner + parts * (section.outer - section.inner)
-    return radii, np.array([section_stress(section, float(r), nu) for r in radii])
+    return radii, section_stress(section, radii, nu)
 
 
 def sections_at(
