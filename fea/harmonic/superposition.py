@@ -37,8 +37,13 @@ import numpy as np
 from fea.core.pin_loads import Loads, require_solved
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.five_numbers import COS, COSINE_COMPONENTS, EVEN_COUNT, SIN, numbers
-from fea.harmonic.sampled_waves import crest_all_round, crest_where_read, sampled
-from fea.harmonic.trigonometric_maximum import form_maximum, upper_bound
+from fea.harmonic.sampled_waves import (
+    crest_all_round,
+    crest_where_read,
+    sampled,
+    steady_crests,
+)
+from fea.harmonic.trigonometric_maximum import form_maximum, one_wave, upper_bound
 from pinbase.arrays import Floats, Ints, Mask
 
 Instants = slice | Ints
@@ -92,7 +97,7 @@ class Circumference:
     """
 
     def __init__(self, fields: MeridianFields, loads: Loads, region: Region | None = None) -> None:
-        self.region = region
+        self.region, self._loads = region, loads
         acting = loads.coefficients()
         require_solved(loads.case, acting, fields.loads)
         units = sorted(acting, key=lambda load: load.n)
@@ -134,6 +139,11 @@ class Circumference:
         for wave in waves:
             out += self._of_harmonic(points, wave, instants)
         return out
+
+    @property
+    def highest(self) -> int:
+        """The highest harmonic that acts, 0 if none does."""
+        return int(self._n[-1]) if len(self._n) else 0
 
     def last(self, points: Ints) -> tuple[int, Floats]:
         """The highest harmonic that acts, and the largest stress (J, T), Pa, of it alone."""
@@ -198,6 +208,10 @@ class Circumference:
         """
         return self._search(among, together=False, least=least)[0]
 
+    def each(self, among: Mask, least: Floats | float = 0.0) -> tuple[Floats, Ints]:
+        """The same with the points (T,) where they are; `least` may be one for each instant."""
+        return self._search(among, together=False, least=least)
+
     def exceeds(self, among: Mask, value: float) -> bool:
         """Whether any point of a mask (S,) exceeds a value, Pa, at any instant."""
         return bool(self._search(among, together=True, least=value, soon=True)[0].max() > value)
@@ -213,14 +227,14 @@ class Circumference:
         return Crest(float(value[instant]), int(point[instant]), instant, float(angle[0]))
 
     def _search(
-        self, among: Mask, together: bool, least: float = 0.0, soon: bool = False
+        self, among: Mask, together: bool, least: Floats | float = 0.0, soon: bool = False
     ) -> tuple[Floats, Ints]:
         """The maximum (T,), Pa, at every instant and its point (T,), by branch and bound.
 
         among: (S,) the points that are searched.
         together: only the largest of all instants is needed; those of other instants may be too
         low.
-        least: Pa, the value to exceed.
+        least: Pa, the value to exceed, or one (T,) for each instant.
         soon: stop at the first value beyond `least`.
         """
         rows, reach = self._by_reach(np.flatnonzero(among))
@@ -236,7 +250,7 @@ class Circumference:
             # No later point reaches more than this one, so the search is complete.
             if reach[k] <= (best.max() if together else best.min()):
                 break
-            if soon and best.max() > least:
+            if soon and best.max() > least:  # one value for all instants
                 break
             here = rows[k : k + POINT_BATCH]
             # Step 3: drop the instants at which no point of the batch can exceed the incumbent.
@@ -364,6 +378,33 @@ class Circumference:
                 if len(rows):
                     value[rows], angle[rows] = find(points[rows], instants[rows], beat[rows])
         return value, angle
+
+    def crests(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """As `round` at points that are read all round; to the last bit the same whichever other
+        pairs are asked for.
+        """
+        n = self._n[[wave.start for wave in self._waves]]
+        back, forth = self._waves_apart(points, instants)
+        return steady_crests(n, back, forth, self.round(points, instants)[1])
+
+    def last_at(self, points: Ints, instants: Ints) -> Floats:
+        """The largest stress (J,), Pa, of the highest harmonic alone at pairs, as steadily."""
+        back, forth = (x[:, :, -1:] for x in self._waves_apart(points, instants))
+        return one_wave(self._n[-1:], back, forth)[0]
+
+    def of_instant(self, instant: int) -> Circumference:
+        """The same points at one instant alone."""
+        return Circumference(self.fields, self._loads.at(np.array([instant])), self.region)
+
+    def _waves_apart(self, points: Ints, instants: Ints) -> tuple[Floats, Floats]:
+        """As `_pair_waves` of all harmonics, each pair summed by itself."""
+        five = self._five[points]
+        a, b = ((five * x[instants][:, None]) for x in (self._first, self._second))
+        starts = [wave.start for wave in self._waves]
+        a, b = (np.add.reduceat(x, starts, axis=2) for x in (a, b))
+        back, forth = a.copy(), b
+        back[:, SIN], forth[:, SIN] = -b[:, SIN], a[:, SIN]
+        return back, forth
 
     def _crests_where_read(
         self, points: Ints, instants: Ints, beat: Floats

@@ -11,7 +11,7 @@ Source: fea.beam.round_section, for the shear.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -25,6 +25,7 @@ from fea.beam.stress import RZ, TZ, ZZ, section_stress
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.core.material import Material
 from fea.core.pin_loads import LoadAmounts, Loads
+from fea.harmonic.at_each import crest_of_each
 from fea.harmonic.fields import MeridianFields
 from fea.harmonic.superposition import Circumference, Crest
 from geometry import Pin
@@ -143,15 +144,36 @@ class SectionField:
     def place(self, loads: Loads) -> AtSection:
         """The place and instant of the largest stress, and the section forces there."""
         top = self._top(loads)
-        near = self._near(top.point)
-        forces = near.inside @ shares(self.forces.loads, self._felt(loads))[top.instant].T
-        values, radii, angles = near.largest(forces, top.angle)
+        amounts = shares(self.forces.loads, self._felt(loads))[top.instant]
+        at = self._at(self._near(top.point), amounts, top.instant, top.angle)
+        return replace(at, course=self._course(loads, top.instant))
+
+    def place_of_each(self, loads: Loads) -> list[AtSection]:
+        """The same at every instant by itself, without its course; each to the last bit the same
+        whichever others are asked for.
+        """
+        top = crest_of_each(self.around(loads), self.all)
+        amounts = shares(self.forces.loads, self._felt(loads))
+        return [
+            self._at(self._near(point), amounts[k], k, angle)
+            for k, (point, angle) in enumerate(
+                zip(top.point.tolist(), top.angle.tolist(), strict=True)
+            )
+        ]
+
+    def _at(self, near: NearSections, amounts: Floats, instant: int, angle: float) -> AtSection:
+        """The largest stress near a point at an instant.
+
+        amounts: (2, K) of the unit loads. angle: of the point, rad.
+        """
+        forces = near.inside @ amounts.T
+        values, radii, angles = near.largest(forces, angle)
         k = int(values.argmax()) if values.max() > (1.0 + MIN_SECTION_GAIN) * values[0] else 0
         V, M, N, T = (forces[k, q] for q in (SHEAR, MOMENT, AXIAL, TORQUE))
         return AtSection(
-            float(values[k]), top.instant, near.cell, float(near.z[k]), float(radii[k]),
+            float(values[k]), instant, near.cell, float(near.z[k]), float(radii[k]),
             float(angles[k]), float(N[0]), float(np.hypot(*V)), float(np.hypot(*M)), float(T[1]),
-            near.sections[k], self._course(loads, top.instant),
+            near.sections[k],
         )  # fmt: skip
 
     def _course(self, loads: Loads, instant: int) -> tuple[tuple[float, float], ...]:
@@ -216,33 +238,33 @@ class NearSections:
     radii: Floats
     per_force: Floats
 
+    @cached_property
+    def products(self) -> Floats:
+        """The products (S, R, 7) of stresses, of which s^2 + 3 t^2 is the sum with the forces'."""
+        m, n = (self.per_force[..., ZZ, q] for q in (MOMENT, AXIAL))
+        v, w = (self.per_force[..., row, SHEAR] for row in (RZ, TZ))
+        t = self.per_force[..., TZ, TORQUE]
+        squares = m * m, 2.0 * m * n, n * n, 3.0 * v * v, 3.0 * w * w, -6.0 * w * t, 3.0 * t * t
+        return np.stack(squares, axis=2)
+
     def largest(self, forces: Floats, angle: float) -> tuple[Floats, Floats, Floats]:
         """The largest stress (S,), Pa, of each section, its radius, m, and its angle, rad.
 
         forces: V, M, N, T (S, 4, 2), by phase, V and M of x and y. angle: of the point, rad.
         """
         turns = angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
-        c, s = np.cos(turns), np.sin(turns)
-
-        def unit(component: int, force: int) -> Floats:
-            return self.per_force[:, :, component, force, None]
-
-        def about(force: int, first: Floats, second: Floats) -> Floats:
-            x, y = forces[:, force, :, None].swapaxes(0, 1)
-            return np.asarray(x * first + y * second)[:, None]
-
-        along = unit(ZZ, MOMENT) * about(MOMENT, c, s)
-        along += unit(ZZ, AXIAL) * forces[:, AXIAL, :1, None]
-        around = unit(TZ, SHEAR) * about(SHEAR, s, -c)
-        around -= unit(TZ, TORQUE) * forces[:, TORQUE, 1:, None]
-        square = along**2
-        square += 3.0 * (unit(RZ, SHEAR) * about(SHEAR, c, s)) ** 2
-        square += 3.0 * around**2
-        flat = square.reshape(len(square), -1)
-        highest = flat.argmax(axis=1)
-        at = np.arange(len(flat))
-        radius, turn = np.unravel_index(highest, square.shape[1:])
-        return np.sqrt(flat[at, highest]), self.radii[at, radius], turns[turn]
+        waves = np.stack([np.cos(turns), np.sin(turns)])
+        v, m = (forces[:, q] @ waves for q in (SHEAR, MOMENT))
+        w = forces[:, SHEAR] @ np.stack([waves[1], -waves[0]])
+        axial, torque = forces[:, AXIAL, 0], forces[:, TORQUE, 1]
+        n, t = (np.broadcast_to(x[:, None], m.shape) for x in (axial, torque))
+        factors = np.stack([m * m, m * n, n * n, v * v, w * w, w * t, t * t], axis=1)
+        square = (self.products @ factors).reshape(len(forces), -1)
+        highest = square.argmax(axis=1)
+        at = np.arange(len(forces))
+        radius, turn = np.divmod(highest, len(turns))
+        value = np.sqrt(np.maximum(square[at, highest], 0.0))
+        return value, self.radii[at, radius], turns[turn]
 
 
 def _at_radii(section: Circle, parts: Floats, nu: float) -> tuple[Floats, Floats]:
