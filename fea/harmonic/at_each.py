@@ -106,12 +106,13 @@ class EachOnMesh:
     def _inside(self, zone: Zone) -> list[ZoneMaximum]:
         """The largest stress in a zone at each instant; its growth is not measured."""
         _, within, felt = places_of(self.fields, zone)
-        far = crest_of_each(self.around, felt)
-        near = crest_of_each(self.around, within & ~felt, far.value)
-        angle = np.where(near.value > far.value, near.angle, far.angle)
+        far, far_point = self.around.each(felt)
+        near, near_point = self.around.each(within & ~felt, far)
+        point = np.where(near > far, near_point, far_point)
+        angle = self.around.round(point, np.arange(len(point)))[1]
         x, y = zone.r * np.cos(angle), zone.r * np.sin(angle)
         acts = zone in self._acting
-        every = zip(*(a.tolist() for a in (near.value, far.value, x, y)), strict=True)
+        every = zip(*(a.tolist() for a in (near, far, x, y)), strict=True)
         return [ZoneMaximum(m, f, (a, b, zone.z), acts=acts) for m, f, a, b in every]
 
     def _left_out(self) -> Floats:

@@ -43,19 +43,14 @@ def superposable(problem: PinProblem, requirement: Requirement) -> bool:
     if not isinstance(pin, Pin) or problem.lugs or problem.between or numerous_fillets(pin):
         return False
     plain = len(loads) == 1 and loads.times is None and loads.pressed is None
-    return (
-        plain
-        and bool(loads.coefficients())
-        and requirement.goal == "value"
-        and requirement.model in ("auto", "harmonic")
-    )
+    return plain and requirement.goal == "value" and requirement.model in ("auto", "harmonic")
 
 
 def solve_each(
     problem: PinProblem, every: tuple[PinLoads, ...], requirement: Requirement
 ) -> list[Maximum | None]:
     """The maxima of a pin under loads of one case, in their order; None where loads must be solved
-    alone, as a beam may do, the pin is not held, or memory is short.
+    alone, as nothing acts, a beam may do, the pin is not held, or memory is short.
 
     problem: of any of the loads, as `superposable` has it. every: one instant each, on the same
     surfaces.
@@ -66,7 +61,9 @@ def solve_each(
     for k, loads in enumerate(every):
         same_units.setdefault(tuple(loads.coefficients()), []).append(k)
     out: list[Maximum | None] = [None] * len(every)
-    for some in same_units.values():
+    for units, some in same_units.items():
+        if not units:
+            continue
         group = _posed(problem, tuple(every[k] for k in some), requirement)
         if beam_refused(requirement, group.meshes.zones):
             for k, maximum in _maxima(group).items():
