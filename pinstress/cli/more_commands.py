@@ -294,13 +294,7 @@ def size(
         raise InputError("--resume is not for --least-weight", code="contradiction")
     goal = require_wish(loaded, fos, metres)
     if least_weight:
-        if goal.more:
-            raise InputError(
-                "--least-weight takes one factor for all pins and cases, and those that "
-                "[[require]] states differ: give --fos",
-                code="contradiction",
-            )
-        aim = require_aim(loaded, wished, goal.required, metres)
+        aim = require_aim(goal, wished, metres)
         return lighten_and_write(loaded, aim, out, pins, quiet, jobs, wished.probability)
     options = SizeOptions(out, pins, jobs, resume, quiet)
     return size_and_write(loaded, goal, options)
