@@ -63,12 +63,12 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     unknown = unknowns(line.row for line in lines)
     axis = factor_axis(lines)
     matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
-    steps = actions(results)
+    steps = actions(results, lines)
     linkage = draw_linkage(results, lines, anchors)
     return {
         "headline": headline(results),
         "state": _css(lines[0].outcome) if lines else "",
-        "decisions": decisions(results),
+        "decisions": decisions(results, lines),
         "about": _about(results, lines),
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
@@ -84,15 +84,15 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         ),
         "checks": any(check_words(line) != DASH for line in lines),
         "matrix": [_matrix_row(row, lines) for row in matrix],
-        "why": why(results, MAX_PEAKS),
+        "why": why(results, lines, MAX_PEAKS),
         "why_title": "Why" if not lines or lines[0].outcome in GOOD else "Why they fail",
-        "actions": [step for step in steps if not step.startswith("pinstress ")],
+        "actions": [*steps.repairs, *steps.remarks],
         "nothing": _nothing(lines),
-        "command": next((step for step in steps if step.startswith("pinstress ")), ""),
+        "command": steps.command,
         "curve": _curve(lines[0], results) if lines else None,
-        "accuracy": [*_accurate(results), *certainty(results), *measure_first(unknown)],
+        "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown)],
         "unknowns": [_unknown(x, results) for x in unknown[:MAX_UNKNOWNS]],
-        "caveats": [*skipped_checks(results), *caveats(results)],
+        "caveats": [*skipped_checks(results, lines), *caveats(results)],
     }
 
 
@@ -114,8 +114,8 @@ def _about(results: Results, lines: Sequence[PinLine]) -> str:
     return "; ".join(parts)
 
 
-def _accurate(results: Results) -> list[str]:
-    return [f"Error of the maxima {text}" for text in accuracy(results)]
+def _accurate(lines: Sequence[PinLine]) -> list[str]:
+    return [f"Error of the maxima {text}" for text in accuracy(lines)]
 
 
 def _nothing(lines: Sequence[PinLine]) -> str:

@@ -49,7 +49,7 @@ def test_a_line_for_each_pin_and_one_for_a_case_that_never_governs(few: Results)
     ]  # fmt: skip
     (quiet,) = quiet_cases(few, lines)
     assert (quiet.case, quiet.pins, quiet.lowest and quiet.lowest.pin) == ("easy", 2, "B")
-    assert decisions(few) == "In easy all are safe, lowest 4.00 (B)."
+    assert decisions(few, lines) == "In easy all are safe, lowest 4.00 (B)."
     out = StringIO()
     print_safety_factors(few, Console(file=out, width=80, no_color=True))
     text = out.getvalue().splitlines()
