@@ -18,6 +18,7 @@ from reports.format.place_words import place_words
 from reports.format.ranges import factor_range
 from reports.format.words import headline
 from reports.page.linkage_drawing import draw_linkage
+from reports.page.pin_marks import governing_instant, pin_marks
 from reports.tables.strength.overview import (
     FactorAxis,
     check_words,
@@ -64,7 +65,7 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     axis = factor_axis(lines)
     matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
     steps = actions(results, lines)
-    linkage = draw_linkage(results, lines, anchors)
+    linkage = _linkage(results, lines, anchors)
     return {
         "headline": headline(results),
         "state": _css(lines[0].outcome) if lines else "",
@@ -94,6 +95,14 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         "unknowns": [_unknown(x, results) for x in unknown[:MAX_UNKNOWNS]],
         "caveats": [*skipped_checks(results, lines), *caveats(results)],
     }
+
+
+def _linkage(results: Results, lines: Sequence[PinLine], anchors: Mapping[str, str]) -> str | None:
+    at = governing_instant(results, lines)
+    if at is None:
+        return None
+    title = f"Linkage in case {at.motion.case}; each pin with its factor of safety"
+    return draw_linkage(at, pin_marks(at, lines, anchors), title, results.units.force)
 
 
 def _about(results: Results, lines: Sequence[PinLine]) -> str:
