@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from fea.support.lugs.lug import Lug
 from fea.support.records import JointForces, LugStress
 from geometry import ArgumentError, Pin
 from pinbase.arrays import Floats
+
+if TYPE_CHECKING:
+    from fea.lug.in_joint import ShankAngle  # with the elements of lugs
 
 MAX_LEFT_COUPLE = 0.01  # couple that balance leaves, of the largest force times the pin's length
 SUPPORT_COUNT = 2  # lugs of a structure whose forces follow from equilibrium
@@ -173,7 +176,7 @@ class Situation:
     codes: the sets of checks that the study chooses (assess.checks). design_factor: N_d of ASME
     BTH-1. bending_factor: the modulus of rupture of the pin over its ultimate strength.
     lug_factors: efficiency factors of lugs, by connection. lug_stresses: of those whose shank is
-    known.
+    known; shank_angles: the directions of these shanks, by connection.
     """
 
     profile: Pin | None
@@ -199,6 +202,7 @@ class Situation:
     lug_factors: Mapping[str, LugFactors] = field(default_factory=dict)
     lug_stresses: tuple[LugStress, ...] = ()
     lug_collapses: tuple[LugCollapse, ...] = ()
+    shank_angles: Mapping[str, ShankAngle] = field(default_factory=dict)
 
     def factors_of(self, connection: str) -> LugFactors:
         """The efficiency factors of a lug."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -134,11 +133,12 @@ def loaded_eyes(s: Situation) -> list[LoadedEye]:
         if not size.any():
             continue
         axial, transverse, basis = size, np.zeros_like(size), AXIAL_BASIS
-        if lug.shank is not None and lug.shank.angle is not None:
-            x, y = math.cos(lug.shank.angle), math.sin(lug.shank.angle)
+        angle = _shank_angle(s, lug)
+        if angle is not None:
             # A link that pulls draws the pin towards its shank.
-            axial = _beyond_round_off(force @ np.array([x, y]), size)
-            transverse = _beyond_round_off(np.abs(force @ np.array([-y, x])), size)
+            x, y = np.cos(angle), np.sin(angle)
+            axial = _beyond_round_off(force[:, 0] * x + force[:, 1] * y, size)
+            transverse = _beyond_round_off(np.abs(force[:, 1] * x - force[:, 0] * y), size)
             basis = ""
         bushing = lug.bushing.material if lug.bushing else None
         eye = eye_of(s, lug)
@@ -151,6 +151,16 @@ def loaded_eyes(s: Situation) -> list[LoadedEye]:
 def place_of(s: Situation, loaded: LoadedEye, instant: int) -> WorstPlace:
     """The middle of the eye's band, at an instant of the loads."""
     return WorstPlace.at_band(s.pin.band(loaded.connection), s.loads, instant)
+
+
+def _shank_angle(s: Situation, lug: Lug) -> Floats | None:
+    """The angle of a lug's shank at the instants of the loads, (T,) rad; None if not known."""
+    if lug.shank is None:
+        return None
+    turning = s.shank_angles.get(lug.connection)
+    if turning is not None:
+        return turning.at(s.loads.times, len(s.loads))
+    return None if lug.shank.angle is None else np.full(len(s.loads), lug.shank.angle)
 
 
 def _beyond_round_off(component: Floats, size: Floats) -> Floats:

@@ -139,11 +139,10 @@ def _lug_collapse(pin: Pin, lug: Lug, same: Memo) -> LugCollapse:
     if strength is None:
         return LugCollapse(lug.connection, needs=strength_key(lug.material.name, "yield"))
     from assess.plastic.lug.limit_load import lug_limit_load  # imports solvers
-    from fea.lug.lug_stress import outline_of
 
     band = pin.band(lug.connection)
     try:
-        outline = outline_of(lug, band.radius)
+        outline = lug.outline(band.radius)
         limit = same.get((outline, strength), lambda: lug_limit_load(outline, strength))
     except (ArgumentError, ArithmeticError) as error:  # the margin says why
         return LugCollapse(lug.connection, needs=f"a limit load: {error}")

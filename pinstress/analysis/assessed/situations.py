@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from assess.checks import margins_of
+from assess.codes import DEFAULT_CODES, FITTING_FACTORS
 from assess.judgement import against_yield
 from assess.lug_factors import LugFactors
 from assess.margin import CLAMPED_LUG_PREFIX, FORMULA_CHECKS, Margin, skipped, worst_places
@@ -70,6 +71,9 @@ def factor_assumption(study: Study, rows: Iterable[PinResult]) -> tuple[str, ...
     if not assumed or not any(row.worst for row in rows):
         return ()
     values = ", ".join(f"{key} {getattr(table, key):g}" for key in assumed)
+    if "fitting_factor" in assumed:
+        fitting = {code: f for code, f in FITTING_FACTORS.items() if code in table.codes}
+        values += "".join(f" ({f:g} for the code {code})" for code, f in fitting.items())
     return (f"Margins of safety take the loads of the study as limit loads, with {values}.",)
 
 
@@ -93,7 +97,7 @@ def _situation(
         table.replaceable, even_governs=even, sized=sized, codes=codes,
         design_factor=study.table.analysis.design_factor, bending_factor=table.bending_factor,
         lug_factors={name: LugFactors(**dict(lug.factors)) for name, lug in table.lug.items()},
-        lug_stresses=joint.lugs if joint else (),
+        lug_stresses=joint.lugs if joint else (), shank_angles=task.shanks.get(loads.case, {}),
     )  # fmt: skip
     along = joint.along if joint else None
     now = loads
@@ -112,8 +116,8 @@ def _situation(
 
 
 def _not_made(s: Situation, why: str) -> Iterable[Margin]:
-    """Yield the checks that a situation does not allow, and those of lugs at clamps, whose force no
-    formula gives.
+    """Yield the checks that a situation does not allow, those of lugs at clamps, whose force no
+    formula gives, and the clauses of chosen codes for lugs whose size is not given.
 
     why: what the checks by formula need.
     """
@@ -125,6 +129,13 @@ def _not_made(s: Situation, why: str) -> Iterable[Margin]:
             for lug in s.sized
             if lug.connection in clamped
         }
+        if s.codes != DEFAULT_CODES:
+            sized = {lug.connection for lug in s.sized}
+            lacking |= {
+                f"clauses for the lug of {name}": f"pin.{s.profile.name}.lug.{name}.outer_diameter"
+                for name in s.loads.surfaces
+                if name not in sized
+            }
     factor = s.factors.at("limit")
     return [skipped(name, "", "hand", "limit", factor, needs) for name, needs in lacking.items()]
 

@@ -31,6 +31,7 @@ from assess.margin import Margin
 from assess.situation import LoadFactors, Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
+from fea.lug.in_joint import ShankAngle
 from fea.support.lugs.lug import Bushing, Lug, Shank
 from geometry import ArgumentError
 from tests.support.errors import raises
@@ -137,6 +138,25 @@ def test_a_study_along_and_across() -> None:
     assert not {"Melcon-Hoblit shear-bearing", "Melcon-Hoblit oblique"} & set(across)
     assert not {"Melcon-Hoblit shear-bearing", "Melcon-Hoblit transverse"} & set(pushed)
     assert "AFFDL bushing" in pushed
+
+
+def test_a_shank_that_turns() -> None:
+    """From along the force to across it, within a motion: each part is worst at its own end."""
+    s = lug_at(0.0)
+    times = np.linspace(0.0, 1.0, 11)
+    moving = PinLoads("turn", s.loads.surfaces, np.repeat(s.loads.forces, 11, axis=0), times=times)
+    angles = {"B": ShankAngle(np.array([0.0, math.pi / 2.0]), np.array([0.0, 1.0]))}
+    margins = named(replace(s, loads=moving, shank_angles=angles))
+    F = P * KIP / 1.5
+    for method, time in {"shear-bearing": 0.0, "transverse": 1.0}.items():
+        m = margins[f"Melcon-Hoblit {method}"]
+        assert m.demand == pytest.approx(F), method
+        assert m.time == time, method
+    R = [
+        oblique_ratio(F * math.cos(x) / (25.537 * KIP), F * math.sin(x) / (13.426 * KIP))
+        for x in times * math.pi / 2.0
+    ]
+    assert margins["Melcon-Hoblit oblique"].demand == pytest.approx(max(R), rel=1e-3)
 
 
 def test_the_pin_of_the_example() -> None:
