@@ -75,6 +75,7 @@ def test_files_have_the_rows(clevis: tuple[pinstress.RunResults, Path]) -> None:
     assert rows[0]["max_von_mises"] > 0.0
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "Stress of the lugs" in page
+    assert "Stress of the lugs at LEFT, EYE, RIGHT: shank along the largest force" in page
 
 
 def test_a_lug_is_judged_with_the_factor_of_its_pin(
