@@ -75,6 +75,7 @@ def test_files_have_the_rows(clevis: tuple[pinstress.RunResults, Path]) -> None:
     assert rows[0]["max_von_mises"] > 0.0
     page = (out / "report.html").read_text(encoding="utf-8")
     assert "Stress of the lugs" in page
+    assert "Stress of the lugs at LEFT, EYE, RIGHT: shank along the largest force" in page
 
 
 def test_a_lug_is_judged_with_the_factor_of_its_pin(
@@ -95,6 +96,15 @@ def test_a_lug_without_a_shank_is_named_among_checks_not_made(tmp_path: Path) ->
     results = pinstress.run(study(tmp_path, shank="edge_radius = 0.5"))
     (row,) = results.pins
     assert any("lug.EYE.shank" in m.needs for m in row.margins)
+
+
+def test_prescribed_loads_leave_the_stress_of_lugs_open(tmp_path: Path) -> None:
+    """It is named, not forgotten."""
+    loads = ("[analysis]", '[analysis]\njoints = "prescribed"')
+    (row,) = pinstress.run(study(tmp_path, loads)).pins
+    lug = [m for m in row.margins if m.method.startswith("lug, von Mises")]
+    assert [m.needs for m in lug] == ["the contact of the pin with its lugs, solved in full"]
+    assert all(m.margin is None for m in lug)
 
 
 def test_turning_forces_and_shanks_together_changes_nothing(
