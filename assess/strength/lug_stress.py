@@ -1,5 +1,6 @@
 """The stress of lugs as margins: the largest von Mises stress about the bore against yield and
-rupture, with its error (fea.lug).
+rupture, with its error (fea.lug). The safety factor that the study requires of the pin is required
+of its lugs as well.
 
 Where the pin presses on the bore the stress is contact's: beyond yield it flattens, which bearing
 checks judge. It is there for comparison.
@@ -43,9 +44,11 @@ def _margins(text: CheckText, s: Situation, stress: LugStress, lug: Lug) -> list
         s, stress.max_von_mises + stress.error_estimate, place, material, material.yield_strength,
         "ultimate", basis="maximum with its error",
     )  # fmt: skip
-    beneath = stress.place == "beneath"
+    if stress.place == "beneath":
+        return [for_comparison(replace(m, method=f"{m.method}, beneath the pin")) for m in margins]
+    required = s.row.required if s.row else None
     return [
-        for_comparison(replace(m, method=f"{m.method}, beneath the pin")) if beneath else m
+        replace(m, factor=max(m.factor, required or 0.0)) if m.level == "limit" else m
         for m in margins
     ]
 

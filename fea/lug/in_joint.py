@@ -24,10 +24,13 @@ ALONG_FORCE = "shank along the largest force, in tension"
 class ShankAngle:
     """The angle of a shank from the pin's x axis, (T,) rad, at times (T,) s; one angle and None
     where it does not turn.
+
+    assumed: what is assumed of it, in words.
     """
 
     angle: Floats
     times: Floats | None = None
+    assumed: str = ""
 
     def at(self, times: Floats | None, count: int) -> Floats:
         """The angle at times (count,) of the same motion, which may be None for one instant."""
@@ -70,7 +73,7 @@ def _of_lugs(
 
         of = lug, model.material, inner / 2.0, band.radius
         eye = _eye(contact, lug, ends, memo)
-        assumed = ALONG_FORCE if given is None else ""
+        assumed = ALONG_FORCE if given is None else given.assumed
         middles = band.z0 + 0.5 * (ends[1:] + ends[:-1])
         for stress in bore_stresses(partial(LugInPlane, *of, memo=memo), eye, load):
             yield _record(lug, stress, float(middles[stress.ring]), assumed)

@@ -30,7 +30,7 @@ from pinstress.study.reading.file import Study
 from reports.data.results import Field, PinResult
 
 if TYPE_CHECKING:  # what solves is imported where a task is not in the cache
-    from fea.support.support import Solution
+    from fea.support.support import PinProblem, Solution
 
 # Of a dimension, m, whose effect is found.
 DIMENSION_STEPS = {"in-lbf-s": 0.1 * 0.0254, "mm-N-s": 1e-3, "m-N-s": 1e-3}
@@ -185,13 +185,18 @@ def solutions(
     Raises: ArgumentError, MeshError, SolveError.
     """
     from fea.solve.solve import solve
+
+    return solve(problem_of(task, memo), for_task(study, task, requirement), tell)
+
+
+def problem_of(task: Task, memo: Memo | None = None) -> PinProblem:
+    """Return a task as it is solved; memo: as in `solutions`."""
     from fea.support.support import PinProblem
 
-    problem = PinProblem(
+    return PinProblem(
         task.pin, task.material, task.lugs, task.loads, task.between, task.ranges, task.clamps,
         memo,
     )  # fmt: skip
-    return solve(problem, for_task(study, task, requirement), tell)
 
 
 def for_task(study: Study, task: Task, requirement: Requirement) -> Requirement:

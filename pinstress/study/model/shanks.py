@@ -9,6 +9,7 @@ from loads import GROUND, Dynamics, Joint
 from pinstress.study.model.cases import CaseLoads
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.lugs import ShankTable
+from pinstress.study.schema.shown import listed
 
 
 def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngle]:
@@ -25,7 +26,9 @@ def shank_angles(study: Study, pin: str, case: CaseLoads) -> dict[str, ShankAngl
         if lug.shank.angle is not None:
             out[name] = ShankAngle(np.array([lug.shank.angle]))
         elif case.dynamics is not None and _turns(case, name, lug.shank):
-            out[name] = _toward(study, f"pin.{pin}.lug.{name}.shank", name, lug.shank, case)
+            at = f"pin.{pin}.lug.{name}.shank"
+            if others := _others(study, at, case.dynamics, name, lug.shank.toward):
+                out[name] = _toward(study, at, name, others, case)
     return out
 
 
@@ -40,18 +43,27 @@ def _turns(case: CaseLoads, connection: str, shank: ShankTable) -> bool:
 
 
 def _toward(
-    study: Study, at: str, connection: str, shank: ShankTable, case: CaseLoads
+    study: Study, at: str, connection: str, others: list[str], case: CaseLoads
 ) -> ShankAngle:
+    """Return the angles towards the middle of other joints."""
     dynamics, times = case.dynamics, None
     assert dynamics is not None
     if case.moving is not None and case.solve is not None:
         times = case.moving.instants
         dynamics = case.solve(times)
     here = _joint_of(dynamics, connection)
-    there = _other(study, at, dynamics, connection, shank.toward)
-    x, y = (dynamics.motion.joint(there)[0] - dynamics.motion.joint(here.name)[0]).T
+    places = [dynamics.motion.joint(name)[0] for name in others]
+    x, y = (np.mean(places, axis=0) - dynamics.motion.joint(here.name)[0]).T
+    if not np.hypot(x, y).all():
+        raise study.error(
+            f"the shank's direction is not known: {listed(others)} lie about {here.name}; give "
+            "toward, the name of a joint, or angle",
+            at,
+            "direction-unknown",
+        )
     turn = dynamics.reactions.turn[:, dynamics.reactions.connections.index(connection)]
-    return ShankAngle(np.arctan2(y, x) - turn, times)
+    assumed = f"shank towards the middle of {listed(others)}" if len(others) > 1 else ""
+    return ShankAngle(np.arctan2(y, x) - turn, times, assumed)
 
 
 def _joint_of(dynamics: Dynamics, connection: str) -> Joint:
@@ -59,29 +71,28 @@ def _joint_of(dynamics: Dynamics, connection: str) -> Joint:
     return next(joint for joint, known in joints if known.name == connection)
 
 
-def _other(study: Study, at: str, dynamics: Dynamics, connection: str, toward: str | None) -> str:
-    """Return the name of the joint towards which a shank points."""
+def _others(
+    study: Study, at: str, dynamics: Dynamics, connection: str, toward: str | None
+) -> list[str]:
+    """Return the names of the joints towards which a shank points."""
     linkage, here = dynamics.motion.linkage, _joint_of(dynamics, connection).name
-    names = [joint.name for joint in linkage.joints]
+    names = [joint.name for joint in linkage.joints if joint.name != here]
     if toward is not None:
-        if toward not in names or toward == here:
+        if toward not in names:
             raise study.error(
-                f"there is no other joint {toward!r}; give one of "
-                f"{', '.join(x for x in names if x != here)}",
+                f"there is no other joint {toward!r}; give one of {listed(names)}",
                 f"{at}.toward",
                 "unknown-name",
             )
-        return toward
+        return [toward]
     body = next(c.body for _, c in linkage.connections if c.name == connection)
-    others = dict.fromkeys(
-        joint.name for joint, c in linkage.connections if c.body == body and joint.name != here
-    )
-    if len(others) != 1:
-        many = f"has the joints {', '.join(others)}" if others else "has no other joint"
-        raise study.error(
-            f"the shank's direction is not known: body {body} {many}; give toward, the name of a "
-            "joint, or angle",
-            at,
-            "direction-unknown",
-        )
-    return next(iter(others))
+    sliding = {
+        s.base if s.moving == body else s.moving
+        for s in linkage.sliders
+        if body in (s.base, s.moving)
+    }
+    for bodies in ({body}, sliding):  # a piston points towards where its cylinder is held
+        known = (j.name for j, c in linkage.connections if c.body in bodies and j.name != here)
+        if others := list(dict.fromkeys(known)):
+            return others
+    return []

@@ -45,11 +45,10 @@ class ShankTable(StrictTable):
     end: PositiveLength | None = None
     """From the centre of the bore to the end of the head. Default: half of the outer diameter."""
     angle: Angle | None = None
-    """Direction of the shank from the bore, from the pin's x axis. Default: towards the body's
-    other joint."""
+    """Direction of the shank from the bore, from the pin's x axis. Default: towards the middle of
+    the body's other joints; where no mechanism gives it, against the largest force on the lug."""
     toward: Name | None = None
-    """Name of the joint towards which the shank points, on a body with more than two. Not with
-    `angle`."""
+    """Name of the joint towards which the shank points. Not with `angle`."""
 
     @model_validator(mode="after")
     def _one_direction(self) -> "ShankTable":

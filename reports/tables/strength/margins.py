@@ -131,15 +131,6 @@ def governing_table(results: Results) -> Table[MarginRow]:
     return _shown(governing(results), results, without=("clause",))
 
 
-def worst_table(results: Results) -> Table[MarginRow]:
-    """Return the governing check of the worst case of each pin, in brief, for terminals."""
-    worst: dict[str, PinMargin] = {}
-    for pin_margin in governing(results):
-        worst.setdefault(pin_margin.pin, pin_margin)
-    table = _shown(worst.values(), results, without=("time", "demand", "allowable"))
-    return replace(table, columns=[replace(c, drop_if_empty=False) for c in table.columns])
-
-
 def pin_margins(results: Results, pin: PinResult) -> Table[MarginRow]:
     """Return all checks that were made of a row, the worst first, comparisons last."""
     margins = [margin for margin in pin.worst if margin.used >= 0.0]
