@@ -6,10 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
-from scipy.optimize import brentq
-
 MAX_CHANGE = 10.0  # times by which a dimension is changed at most to find what just passes
-STEP_RATIO = 1.15  # of dimensions that are tried one after another; the root is between two
+STEP_RATIO = 1.5  # of dimensions that are tried one after another; the root is between two
 PASSING_TOLERANCE = 1e-6  # relative, of the value that just passes
 
 
@@ -69,6 +67,8 @@ def would_pass(utilisation: Callable[[float], float], now: float) -> float | Non
     utilisation: as a function of the dimension; it falls as this grows.
     now: the present value.
     """
+    from scipy.optimize import brentq  # where it is needed: its import takes long
+
     step = STEP_RATIO if utilisation(now) > 1.0 else 1.0 / STEP_RATIO
     last = now
     while now / MAX_CHANGE <= last <= now * MAX_CHANGE:

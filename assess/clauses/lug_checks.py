@@ -38,7 +38,7 @@ from assess.clauses.eye_margin import DIMENSION_NAMES
 from assess.margin import Margin
 from assess.situation import Situation
 from assess.strength.hand_checks import BEARING_SOURCE, SHIGLEY_JOINTS, shear_yield
-from assess.work import Quantity, Work, work
+from assess.work import Quantity, Work, scaled, work
 
 BTH1 = "ASME BTH-1, 3-3.3; Duerr 2006"
 BRUHN = "Bruhn, Analysis and Design of Flight Vehicle Structures, D1"
@@ -130,8 +130,10 @@ def _passing(
     eye: Eye, dimension: str, stress: Callable[[Eye], Work], margin: Margin
 ) -> Quantity | None:
     """The dimension of an eye that would just pass a margin."""
-    allowable, factor = margin.allowable, margin.factor
+    allowable, factor, name = margin.allowable, margin.factor, DIMENSION_NAMES[dimension]
     if not allowable:
         return None
+    if dimension == "thickness":
+        return scaled(name, eye.thickness, margin.used, 1.0)
     value = eye.would_pass(dimension, lambda e: factor * stress(e).result.value / allowable)
-    return value if value is None else Quantity(DIMENSION_NAMES[dimension], value, "length")
+    return value if value is None else Quantity(name, value, "length")
