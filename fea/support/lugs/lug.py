@@ -10,21 +10,56 @@ import numpy as np
 from fea.core.material import Material
 from fea.core.pin_loads import Floats
 from geometry import ArgumentError
+from geometry.shape.lug_outline import HeadShape, LugOutline
 
 
 @dataclass(frozen=True)
 class Bushing:
     """A ring of its own material, bonded in an eye; thickness in m.
 
+    interference: of the diameters before it was pressed in, m.
+
     Raises: ArgumentError for a thickness that is not positive.
     """
 
     thickness: float
     material: Material
+    interference: float = 0.0
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.thickness) and self.thickness > 0.0):
             raise ArgumentError("the thickness of a bushing must be positive", "not-positive")
+        if not (math.isfinite(self.interference) and self.interference >= 0.0):
+            raise ArgumentError("the interference of a bushing must not be negative", "negative")
+
+
+@dataclass(frozen=True)
+class Shank:
+    """The outline of a lug in its plane: the head about the bore, and the shank that holds it, m.
+
+    shape: "round": a head of the lug's outer diameter, with a shank of parallel sides; "tapered":
+    the same head, with sides that leave it as tangents; "square": a plate whose end is straight.
+    width: of the shank where it is held; of the whole plate for "square".
+    length: from the bore's centre to where the shank is held.
+    end: from the bore's centre to the end of the head; a round head is eccentric where it is not
+    half of the outer diameter.
+    angle: of the shank from the x axis of the pin, seen from the bore, rad; None where the
+    mechanism gives it.
+
+    Raises: ArgumentError for a length that is not positive.
+    """
+
+    shape: HeadShape
+    width: float
+    length: float
+    end: float
+    angle: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("width", "length", "end"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ArgumentError(f"the {name} of a shank must be positive", "not-positive")
 
 
 @dataclass(frozen=True)
@@ -64,6 +99,7 @@ class Lug:
     tilt: N m/rad, stiffness of the link's tilt against the others about any axis across the pin;
     inf: guided, 0: free.
     bushing: the pin bears on it, if there is one.
+    shank: None where only the eye is known, of which no stress is computed then.
     range: of the uncertain properties of the lug.
 
     Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
@@ -78,6 +114,7 @@ class Lug:
     tilt: float = math.inf
     bushing: Bushing | None = None
     range: LugRange = LugRange()
+    shank: Shank | None = None
 
     def __post_init__(self) -> None:
         what = f"lug {self.connection}"
@@ -96,6 +133,23 @@ class Lug:
     def bearing(self) -> Material:
         """The material on which the pin bears: the bushing's or the lug's."""
         return self.material if self.bushing is None else self.bushing.material
+
+    def outline(self, radius: float) -> LugOutline:
+        """The outline of a lug that has a shank, about a band of some radius, m.
+
+        Raises: ArgumentError where its dimensions contradict each other.
+        """
+        if self.shank is None:
+            raise ArgumentError(f"lug {self.connection} has no shank", "no-shank")
+        bore = 2.0 * radius
+        hole = None if self.bushing is None else bore + 2.0 * self.bushing.thickness
+        shank = self.shank
+        try:
+            return LugOutline(
+                shank.shape, bore, self.outer_diameter, shank.width, shank.length, shank.end, hole
+            )
+        except ArgumentError as error:
+            raise ArgumentError(f"lug {self.connection}: {error}", error.code) from None
 
     def gap(self, ends: Floats) -> Floats:
         """The gap on the radius, (R,) m, on the mean over each ring, before anything moves.

@@ -10,6 +10,7 @@ import math
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -27,7 +28,7 @@ TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
 BATCH_OVERHEAD_SECONDS = 0.008
 MAX_BATCH_DESIGNS = 5000  # designs in a batch
 
-_BATCH_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
+_SOLVER_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
 
 Rows = list[list[DesignRow]]
 
@@ -89,11 +90,18 @@ class SolvedBatch:
     seconds: float
 
 
-def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
-    """Solve the designs of a batch, with one thread in each numeric library."""
+@contextmanager
+def one_solver() -> Iterator[None]:
+    """Solve in one thread of this process at a time, with one in each numeric library."""
     from threadpoolctl import threadpool_limits
 
-    with _BATCH_LOCK, threadpool_limits(1):
+    with _SOLVER_LOCK, threadpool_limits(1):
+        yield
+
+
+def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
+    """Solve the designs of a batch."""
+    with one_solver():
         start = time.perf_counter()
         evaluator = evaluator_of(problem)
         rows = evaluator.rows_of(batch.values)
