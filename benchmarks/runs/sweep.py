@@ -22,6 +22,7 @@ from pinstress.explore.sweep.batches import Batch, Batches, SolvedBatch, aim_of
 from pinstress.explore.sweep.sweep import MemoryStore, Sweep, planned, solved
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_side_by_side
 
+FORCES = 5_000  # of one shape, with as many strengths
 COUNTS = 250, 500, 1_000  # designs of other shapes
 STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
 JOBS = 2
@@ -35,6 +36,11 @@ GOOD = 0.85  # efficiency
 BUSY = 0.5  # load of a core, above which times of the wall say little
 
 SHAPE = '"pin.B.profile[2].diameter" = {{ from = "1.5 in", to = "3 in", steps = {} }}'
+SCATTER = """
+"case.landing.forces.B[1]" = { normal = ["0 lbf", "100 lbf"] }
+"case.landing.forces.B[2]" = { normal = ["-988 lbf", "100 lbf"] }
+"material.AISI 4340.yield_strength" = { normal = ["225 ksi", "5 ksi"] }
+"""
 REST = """
 "case.landing.forces.B[2]" = {{ normal = ["-988 lbf", "100 lbf"], steps = 50 }}
 "material.AISI 4340.yield_strength" = {{ normal = ["225 ksi", "5 ksi"], steps = {} }}
@@ -151,12 +157,20 @@ def _kinds() -> str:
         ("every shape another", _study(MANY)),
         ('the same, goal = "decide"', _asking(_study(MANY), 'goal = "decide"')),
         ("a grid of 5 diameters, 50 forces, 40 strengths", _study(0, 5)),
+        ("one shape, other forces and strengths", _forces(FORCES)),
     ):
         designs = len(planned(study).values)
         found = _measured(study, JOBS)
         rows.append((name, f"{designs:,}", found.seconds, found.cpu, 1e3 * found.cpu / designs))
     head = ("designs", "number", "s", "processor time, s", "ms of it a design")
     return "What is the same in several designs is not solved again:\n\n" + table(head, rows)
+
+
+def _forces(count: int) -> Study:
+    """A Sobol sequence of forces and strengths of one shape, each design with others."""
+    text = shipped_studies()["one_pin"].read_text(encoding="utf-8")
+    head = f'sample = "sobol"\ncount = {count}'
+    return study_from(f"{text}\n[vary]\n{head}\n[vary.parameters]{SCATTER}")
 
 
 def _asking(study: Study, key: str) -> Study:

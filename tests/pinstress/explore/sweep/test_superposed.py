@@ -122,13 +122,13 @@ def test_designs_that_no_harmonic_mesh_solves_are_among_others() -> None:
     designs = _designs(_evaluator(_pin(CLAMPED, ROUND)), 3)
     without = designs.copy()
     without[1, :3] = 0.0  # the middle still pulls
-    loose = BALANCED | {"held": "", "middle": "middle = [-600, -13000], "}
+    loose = BALANCED | {"held": "", "middle": "middle = [-600, -20000], "}
     rows = [
         *_same(_pin(CLAMPED, ROUND), without),
         *_same(_pin(loose, ROUND), designs),
         *_same(_pin(BALANCED, ROUND, tolerance=0.9), designs[:, [0, 1, 1, 3]]),
     ]
-    first = ["converged", "singular", "converged"]
+    first = ["converged", "singular", "singular"]
     assert [row.verdict for row in rows] == [*first, *["rigid"] * 3, *["converged"] * 3]
 
 
