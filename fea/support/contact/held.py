@@ -302,7 +302,8 @@ class HeldContact:
         of = self.contact
         if self.alone:
             return uncompared
-        return lambda contact: compare(of.model, [contact], requirement, of.patterns)[0]
+        vary = (requirement.varied,)
+        return lambda contact: compare(of.model, [contact], requirement, of.patterns, vary)[0]
 
     def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:
         """The largest stress of sections of a case.

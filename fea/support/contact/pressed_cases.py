@@ -241,7 +241,7 @@ class PressedCases:
             which[case] = first, second
             at += [self.joined(links, t) for t in distinct]
             governs = both[stress > near[case].largest]
-            vary += [t == governs for t in distinct]
+            vary += [requirement.varied and t == governs for t in distinct]
         if alone:
             comparisons = tuple(uncompared(contact) for contact in at)
         else:
