@@ -23,6 +23,7 @@ from fea.support.lugs.lug import Lug, LugRange
 from fea.support.records import JointRange, JointResult
 from geometry import Pin
 from pinbase.arrays import Floats
+from pinstress.analysis.gather.gather_landing import range_of
 from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.results import LandingRange, PinResult
@@ -239,19 +240,5 @@ def _landing(
         return np.asarray(force * np.interp(force, full.force[order], per_force))
 
     assert peak.max_von_mises is not None
-    assert peak.error_estimate is not None
     maxima = at(over.forces) * (peak.max_von_mises / float(at(np.array(over.nominal_force))))
-    return replace(
-        full,
-        impulse_time=over.times,
-        velocity_change=over.velocities,
-        pulses=over.pulses,
-        force=over.forces,
-        max_von_mises=maxima,
-        safety_factor=None if strength is None else strength / maxima,
-        nominal=over.nominal,
-        nominal_pulse=over.nominal_pulse,
-        verdict=peak.verdict,
-        spread=None,
-        error=peak.error_estimate / peak.max_von_mises,
-    )
+    return range_of(peak, over, maxima, strength)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from assess.diameter_law import beneath_exponent, estimated_scale
@@ -90,7 +91,7 @@ def pin_lines(results: Results) -> list[PinLine]:
     return [_line(results, check, shapes.get(check.pin)) for check in checks]
 
 
-def quiet_cases(results: Results, lines: list[PinLine]) -> list[QuietCase]:
+def quiet_cases(results: Results, lines: Sequence[PinLine]) -> list[QuietCase]:
     """Return the cases that govern no pin."""
     governing = {line.row.case for line in lines} | {line.check.case for line in lines}
     quiet = []

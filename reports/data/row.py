@@ -153,7 +153,7 @@ class PinResult:
     units: Units = field(default=SI, compare=False)
 
     def __repr__(self) -> str:
-        """The row in brief: <E landing: fails, factor 1.2 ± 1.8 %, 186,900 psi at z = 6.26 in>."""
+        """The row in brief: <E landing: fails, factor 1.15 ± 1.8 %, 195,000 psi at z = 6.26 in>."""
         parts = [self.outcome if self.max_von_mises else f"{self.outcome}, {self.verdict}"]
         if self.max_von_mises and self.location is not None:
             error = 100.0 * (self.error_estimate or 0.0) / self.max_von_mises

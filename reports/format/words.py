@@ -205,7 +205,7 @@ def headline(results: Results) -> str:
 
 def _failing(checks: Sequence[JudgedCheck], results: Results) -> str:
     """Return the sentence on the pins that fail, the worst first: "5 of 9 pins miss the required
-    factor 10 (landing): E, J, A, G, D."
+    factor 10 (landing): E, J, A, D, G."
     """
     pins = len({row.pin for row in results.pins})
     cases, required = ({getattr(c, key) for c in checks} for key in ("case", "required"))

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from reports.data.check import CheckedPin, CheckedStudy, PlannedRow
+from reports.data.mechanics import LinkageMotion
 from reports.format.numbers import short
 from reports.format.template import environment
-from reports.page.load_drawing import draw_loads
+from reports.page.linkage_drawing import Instant, Mark, draw_linkage
 from reports.page.pin_drawing import draw_pin
 from reports.tables.column import Column, Table, read_only
 
@@ -42,7 +45,7 @@ def render(study: CheckedStudy) -> str:
             study=study,
             units=units,
             linkages=[
-                (motion.case, Markup(draw_loads(motion, units)))
+                (motion.case, Markup(_loaded(motion, units.force)))
                 for motion in study.motions[:MAX_DRAWN_CASES]
             ],
             pins=[
@@ -59,6 +62,14 @@ def render(study: CheckedStudy) -> str:
             rows=Table("planned", ROW_COLUMNS, study.rows).grid(units),
         )
     )
+
+
+def _loaded(motion: LinkageMotion, unit: str) -> str:
+    """Return the linkage at the instant of the largest applied force, with names of the joints."""
+    sizes = sum((load.sizes for load in motion.applied), np.zeros(len(motion.condition)))
+    title = f"The linkage in case {motion.case}, with its applied forces"
+    marks = [Mark(joint, joint) for joint in motion.joints]
+    return draw_linkage(Instant(motion, int(np.argmax(sizes))), marks, title, unit)
 
 
 def _lug_words(pin: CheckedPin, unit: str) -> list[str]:

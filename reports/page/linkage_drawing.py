@@ -1,4 +1,4 @@
-"""The linkage at the governing instant with its pins, coloured and named by their factors."""
+"""A linkage at an instant as an SVG drawing, with its applied forces and marks at its joints."""
 
 from __future__ import annotations
 
@@ -9,95 +9,91 @@ from itertools import pairwise
 
 import numpy as np
 
-from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, SAFE, YIELDS
-from reports.data.overview import PinLine
-from reports.data.results import Floats, LinkageMotion, ReactionTable, Results
+from reports.data.results import Floats, LinkageMotion, ReactionTable
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.numbers import engineering
-from reports.format.ranges import factor_range
 
-PICTURE_WIDTH, MIN_HEIGHT, MAX_HEIGHT = 400.0, 200.0, 470.0
-MARGIN = 42.0
-LETTER_WIDTH, LABEL_HEIGHT, PIN_LABEL_GAP = 7.6, 16.0, 11.0
-PIN_RADIUS, LOAD_LENGTH = 9.0, 34.0
+PICTURE_WIDTH, MIN_HEIGHT, MAX_HEIGHT = 410.0, 170.0, 470.0
+MARGIN = 50.0  # for names, supports and arrows
+LETTER_WIDTH, LABEL_HEIGHT, LABEL_GAP = 7.6, 16.0, 11.0
+ARROW_CLEARANCE = 12.0  # between the tip of an arrow and the place where its force acts
+ARROW_LENGTHS = (22.0, 38.0)  # of the smallest and the largest force
 MIN_LINK_WIDTH, MAX_LINK_WIDTH = 1.5, 12.0
-MARKS = {  # of an outcome: a cross, a tick, half a disc, a question mark
-    FAILS: '<circle r="9"/><path class="k" d="M-4-4L4 4M4-4L-4 4"/>',
-    SAFE: '<circle r="8.5" class="h"/><path d="M-4 0l3 4l5-8"/>',
-    DEPENDS: '<circle r="8.5" class="h"/><path class="hf" d="M0-8.5a8.5 8.5 0 0 0 0 17z"/>',
-    NOT_DECIDED: '<circle r="8.5" class="h"/><path d="M-2.5-2.5a2.7 2.7 0 1 1 3.5 2.5q-1 .5-1 '
-    '1.8M0 4.4v.6"/>',
-}
-MARKS |= {YIELDS: MARKS[FAILS], BELOW_YIELD: MARKS[SAFE]}
+PLAIN_LINK_WIDTH = 2.2  # where no force is shown
+
+Points = Mapping[str, Floats]  # pixels (2,) by joint
 
 
 @dataclass(frozen=True)
-class GoverningInstant:
-    """The linkage of a case at an instant.
+class Instant:
+    """A linkage at an instant.
 
-    k: number of the instant.
+    k: number of the instant. table: the forces at its connections, where they are shown.
     """
 
     motion: LinkageMotion
-    table: ReactionTable | None
     k: int
+    table: ReactionTable | None = None
 
 
-def governing_instant(results: Results, lines: Sequence[PinLine]) -> GoverningInstant | None:
-    """Return the linkage in the case and at the instant of the worst pin; None without one."""
-    for line in lines:
-        motion = next((m for m in results.motion if m.case == line.row.case), None)
-        if motion is None:
-            continue
-        table = next((t for t in results.reactions if t.case == line.row.case), None)
-        k = 0
-        if motion.time is not None and line.row.time is not None:
-            k = int(np.argmin(np.abs(motion.time - line.row.time)))
-        return GoverningInstant(motion, table, k)
-    return None
+@dataclass(frozen=True)
+class Mark:
+    """A label at a joint, and what is drawn there.
 
-
-def draw_linkage(
-    results: Results, lines: Sequence[PinLine], anchors: Mapping[str, str]
-) -> str | None:
-    """Return the drawing as an <svg> element, in which all text is escaped; None without a linkage.
-
-    anchors: of the pins' parts of the page.
+    name: in bold. words: after it. symbol: an SVG element about the origin, in which all text is
+    escaped.
     """
-    at = governing_instant(results, lines)
-    if at is None:
-        return None
+
+    joint: str
+    name: str
+    words: str = ""
+    symbol: str = ""
+
+
+def draw_linkage(at: Instant, marks: Sequence[Mark], title: str, unit: str) -> str:
+    """Return the drawing as an <svg> element, in which all text is escaped.
+
+    Links are as wide as their forces, joints rings, those of the ground with a triangle; arrows
+    point at the places where forces act.
+    marks: the most important first. unit: of forces. Colours: reports/templates/linkage.css.
+    """
     frame = _Frame(at)
-    points = dict(zip(at.motion.joints, frame.pixels(at.motion.joint_position[at.k]), strict=True))
-    joints = _joints_of_pins(at)
+    joints = frame.pixels(at.motion.joint_position[at.k])
+    points = dict(zip(at.motion.joints, joints, strict=True))
+    marks = [mark for mark in marks if mark.joint in points]
+    arrows = _arrows(at, frame)
     parts = [
         *_bodies(at, points),
         *_sliders(at, frame),
+        *_pitches(at, frame),
+        *_levers(at, frame, points),
         *(_support(points[name]) for name in at.motion.ground if name in points),
-        *(_arrow(tip, tail) for tip, tail, _ in _loads(at, frame)),
-        *_pins(lines, joints, points, anchors),
-        *_labels(at, lines, joints, points, frame, results.units.force),
+        *(f'<circle class="joint" cx="{x:.1f}" cy="{y:.1f}" r="3.6"/>' for x, y in joints),
+        *(_arrow(tip, tail) for tip, tail, _ in arrows),
+        *(_symbol(mark, points) for mark in reversed(marks)),
+        *_labels(at, marks, points, arrows, frame, unit),
     ]
-    label = f"Linkage in case {at.motion.case}; each pin with its factor of safety"
-    size = f"0 0 {PICTURE_WIDTH:.0f} {frame.height:.0f}"
+    role = "group" if any("<a " in mark.symbol for mark in marks) else "img"
     return (
-        f'<svg class="linkage" viewBox="{size}" role="group" aria-label="{escape(label)}">'
-        f"{''.join(parts)}</svg>"
+        f'<svg class="linkage" viewBox="0 0 {PICTURE_WIDTH:.0f} {frame.height:.0f}" role="{role}" '
+        f'xmlns="http://www.w3.org/2000/svg" aria-label="{escape(title)}">{"".join(parts)}</svg>'
     )
 
 
 class _Frame:
     """The picture, with one scale in both directions."""
 
-    def __init__(self, at: GoverningInstant) -> None:
-        ends = [slide[at.k] for slide in at.motion.slides.values()]
-        ends += [load.position[min(at.k, len(load.position) - 1)] for load in at.motion.applied]
-        points = [at.motion.joint_position[at.k], *(np.reshape(end, (-1, 2)) for end in ends)]
-        every = np.concatenate(points)
+    def __init__(self, at: Instant) -> None:
+        motion, k = at.motion, at.k
+        parts = [motion.joint_position[k], *(ends[k] for ends in motion.slides.values())]
+        parts += [load.position[min(k, len(load.position) - 1)] for load in motion.applied]
+        box = np.array([[-1.0, -1.0], [1.0, 1.0]])
+        parts += [c.ends[k][:1] + c.radius * box if c.round else c.ends[k] for c in motion.pitch]
+        every = np.concatenate([np.reshape(part, (-1, 2)) for part in parts])
         low, high = every.min(axis=0), every.max(axis=0)
         span = np.maximum(high - low, 1e-9 * (1.0 + np.abs(high).max()))
         room = PICTURE_WIDTH - 2.0 * MARGIN, MAX_HEIGHT - 2.0 * MARGIN
-        self.scale = min(room[0] / span[0], room[1] / span[1])
+        self.scale = float(min(room[0] / span[0], room[1] / span[1]))
         self.height = max(self.scale * float(span[1]) + 2.0 * MARGIN, MIN_HEIGHT)
         self._middle = 0.5 * (low + high)
 
@@ -107,37 +103,30 @@ class _Frame:
         return np.asarray(away + 0.5 * np.array([PICTURE_WIDTH, self.height]))
 
 
-def _joints_of_pins(at: GoverningInstant) -> dict[str, str]:
-    """Return the joint at which each pin sits."""
+def _widths(at: Instant) -> dict[tuple[str, str], float]:
+    """Return the width of a body's line at each of its joints, by the force there."""
     if at.table is None:
         return {}
-    by_connection = {name: joint for name, _, joint in at.motion.connections}
-    return {
-        pin: by_connection[connection]
-        for connection, pin in zip(at.table.connections, at.table.pins, strict=True)
-        if connection in by_connection
-    }
-
-
-def _forces(at: GoverningInstant) -> Floats:
-    """Return the magnitudes (C,) of the forces at the connections."""
-    table = at.table
-    if table is None:
-        return np.zeros(0)
-    forces = table.forces.reshape(-1, *table.forces.shape[-2:])
-    return np.asarray(np.linalg.norm(forces[min(at.k, len(forces) - 1)], axis=-1))
-
-
-def _widths(at: GoverningInstant) -> dict[tuple[str, str], float]:
-    """Return the width of a body's line at each of its joints, by the force there."""
+    sizes = np.linalg.norm(_forces(at.table, at.k), axis=-1)
     ends = [(body, joint) for _, body, joint in at.motion.connections]
-    forces = dict(zip(ends, _forces(at).tolist(), strict=False))
+    forces = dict(zip(ends, sizes.tolist(), strict=False))
     most = max(forces.values(), default=0.0) or 1.0
     spread = MAX_LINK_WIDTH - MIN_LINK_WIDTH
     return {end: MIN_LINK_WIDTH + spread * force / most for end, force in forces.items()}
 
 
-def _bodies(at: GoverningInstant, points: Mapping[str, Floats]) -> Iterable[str]:
+def _forces(table: ReactionTable, k: int) -> Floats:
+    """Return the forces (C, 2 or 3) at the connections at an instant."""
+    forces = table.forces.reshape(-1, *table.forces.shape[-2:])
+    return np.asarray(forces[min(k, len(forces) - 1)])
+
+
+def _sides(joints: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the sides of a body, from joint to joint."""
+    return [*pairwise(joints), *([(joints[-1], joints[0])] if len(joints) > 2 else [])]
+
+
+def _bodies(at: Instant, points: Points) -> Iterable[str]:
     """Yield bodies with more than two joints as areas, and each side as wide as the smaller of the
     forces at its ends.
     """
@@ -146,48 +135,43 @@ def _bodies(at: GoverningInstant, points: Mapping[str, Floats]) -> Iterable[str]
         if len(joints) > 2:
             path = "L".join(f"{points[name][0]:.1f} {points[name][1]:.1f}" for name in joints)
             yield f'<path class="body" d="M{path}Z"><title>{escape(body)}</title></path>'
-        sides = [*pairwise(joints), *([(joints[-1], joints[0])] if len(joints) > 2 else [])]
-        for one, other in sides:
+        for one, other in _sides(joints):
             known = [widths[body, name] for name in (one, other) if (body, name) in widths]
-            width = min(known, default=MIN_LINK_WIDTH)
-            (x1, y1), (x2, y2) = points[one], points[other]
-            yield (
-                f'<path class="link" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}" '
-                f'stroke-width="{width:.1f}"><title>{escape(body)}</title></path>'
-            )
+            width = min(known, default=PLAIN_LINK_WIDTH)
+            line = _line("link", points[one], points[other], f' stroke-width="{width:.1f}"')
+            yield line.replace("/>", f"><title>{escape(body)}</title></path>")
 
 
-def _sliders(at: GoverningInstant, frame: _Frame) -> Iterable[str]:
+def _line(kind: str, start: Floats, end: Floats, more: str = "") -> str:
+    (x1, y1), (x2, y2) = start, end
+    return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"{more}/>'
+
+
+def _sliders(at: Instant, frame: _Frame) -> Iterable[str]:
     for ends in at.motion.slides.values():
-        (x1, y1), (x2, y2) = frame.pixels(ends[at.k])
-        yield f'<path class="slide" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"/>'
+        yield _line("slide", *frame.pixels(ends[at.k]))
 
 
-def _loads(at: GoverningInstant, frame: _Frame) -> list[tuple[Floats, Floats, float]]:
-    """Return the tip and the tail of the arrow of each applied load, and its size."""
-    arrows = []
+def _pitches(at: Instant, frame: _Frame) -> Iterable[str]:
+    """Yield the pitch circles of gears and the lines of racks."""
+    for curve in at.motion.pitch:
+        start, end = frame.pixels(curve.ends[at.k])
+        if curve.round:
+            size = f'cx="{start[0]:.1f}" cy="{start[1]:.1f}" r="{frame.scale * curve.radius:.1f}"'
+            yield f'<circle class="pitch" {size}/>'
+        else:
+            yield _line("pitch", start, end)
+
+
+def _levers(at: Instant, frame: _Frame, points: Points) -> Iterable[str]:
+    """Yield a line from every force to the nearest joint of the body on which it acts."""
     for load in at.motion.applied:
-        k = min(at.k, len(load.force) - 1)
-        size = float(load.sizes[k])
-        if size > 0.0:
-            along = load.force[k] / size * np.array([1.0, -1.0])
-            tip = frame.pixels(load.position[k]) - (PIN_RADIUS + 3.0) * along
-            arrows.append((tip, tip - LOAD_LENGTH * along, size))
-    return arrows
-
-
-def _arrow(tip: Floats, tail: Floats) -> str:
-    """Return the arrow of an applied load."""
-    along = (tip - tail) / np.linalg.norm(tip - tail)
-    across = np.array([-along[1], along[0]])
-    neck = tip - 9.0 * along
-    head = [tip, neck + 6.0 * across, neck - 6.0 * across]
-    corners = "L".join(f"{x:.1f} {y:.1f}" for x, y in head)
-    (x1, y1), (x2, y2) = tail, neck
-    return (
-        f'<path class="load" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"/>'
-        f'<path class="head" d="M{corners}Z"/>'
-    )
+        joints = at.motion.links[at.motion.bodies.index(load.body)]
+        acting = frame.pixels(load.position[min(at.k, len(load.position) - 1)])
+        away = [points[joint] - acting for joint in joints]
+        nearest = min(away, key=lambda d: float(np.hypot(*d)), default=np.zeros(2))
+        if nearest.any():
+            yield _line("lever", acting + nearest, acting)
 
 
 def _support(at: Floats) -> str:
@@ -196,73 +180,77 @@ def _support(at: Floats) -> str:
     return f'<path class="ground" d="M{x:.1f} {y:.1f}l-11 19h22zM{x - 16:.1f} {y + 19:.1f}h32"/>'
 
 
-def _pins(
-    lines: Sequence[PinLine],
-    joints: Mapping[str, str],
-    points: Mapping[str, Floats],
-    anchors: Mapping[str, str],
-) -> Iterable[str]:
-    for line in reversed(lines):
-        if line.pin in joints:
-            x, y = points[joints[line.pin]]
-            outcome = line.outcome.replace(" ", "-")
-            mark = (
-                f'<g class="pin {outcome}" transform="translate({x:.1f} {y:.1f})">'
-                f"<title>{escape(line.pin)}: {escape(line.outcome)}</title>"
-                f"{MARKS[line.outcome]}</g>"
-            )
-            anchor = anchors.get(line.pin)
-            yield f'<a href="#{escape(anchor)}">{mark}</a>' if anchor else mark
+def _arrows(at: Instant, frame: _Frame) -> list[tuple[Floats, Floats, float]]:
+    """Return the tip and the tail of the arrow of each applied force, and its size."""
+    loads = [(load, min(at.k, len(load.force) - 1)) for load in at.motion.applied]
+    largest = max((float(load.sizes[k]) for load, k in loads), default=0.0)
+    short, long = ARROW_LENGTHS
+    arrows = []
+    for load, k in loads:
+        size = float(load.sizes[k])
+        if size > 0.0:
+            along = load.force[k] / size * np.array([1.0, -1.0])
+            tip = frame.pixels(load.position[k]) - ARROW_CLEARANCE * along
+            arrows.append((tip, tip - (short + (long - short) * size / largest) * along, size))
+    return arrows
+
+
+def _arrow(tip: Floats, tail: Floats) -> str:
+    along = (tip - tail) / np.linalg.norm(tip - tail)
+    across = np.array([-along[1], along[0]])
+    neck = tip - 9.0 * along
+    head = [tip, neck + 6.0 * across, neck - 6.0 * across]
+    corners = "L".join(f"{x:.1f} {y:.1f}" for x, y in head)
+    return _line("load", tail, neck) + f'<path class="head" d="M{corners}Z"/>'
+
+
+def _symbol(mark: Mark, points: Points) -> str:
+    x, y = points[mark.joint]
+    return mark.symbol and f'<g transform="translate({x:.1f} {y:.1f})">{mark.symbol}</g>'
 
 
 def _labels(
-    at: GoverningInstant,
-    lines: Sequence[PinLine],
-    joints: Mapping[str, str],
-    points: Mapping[str, Floats],
+    at: Instant,
+    marks: Sequence[Mark],
+    points: Points,
+    arrows: Sequence[tuple[Floats, Floats, float]],
     frame: _Frame,
     unit: str,
 ) -> Iterable[str]:
-    """Yield names and factors of the pins, and the forces on the ground at its joints."""
-    told: list[tuple[Floats, str, str]] = []
-    for line in lines:
-        if line.pin in joints:
-            factor = factor_range(line.row) if line.row.safety_factor else ""
-            told.append((points[joints[line.pin]], line.pin, factor))
+    """Yield the labels of the marks, of applied forces, and of forces on the ground, where they
+    hide least.
+    """
+    told = [(points[mark.joint], mark.name, mark.words) for mark in marks]
     told += [(points[joint], "", f"{force} {unit}") for joint, force in _on_ground(at)]
-    told += [(tail, "", f"{engineering(size, 3)} {unit}") for _, tail, size in _loads(at, frame)]
+    told += [(tail, "", f"{engineering(size)} {unit}") for _, tail, size in arrows]
     if not told:
         return
     where = np.array([point for point, *_ in told])
     texts = [f"{name} {rest}".strip() for _, name, rest in told]
     sizes = np.array([[LETTER_WIDTH * len(text), LABEL_HEIGHT] for text in texts])
-    segments = [
-        [points[one], points[other]] for names in at.motion.links for one, other in pairwise(names)
-    ]
-    ends = np.array(segments or [[where[0], where[0]]])[None]
-    offsets = label_offsets(where[None], sizes, ends, PIN_LABEL_GAP, (PICTURE_WIDTH, frame.height))
+    lines = [[points[a], points[b]] for joints in at.motion.links for a, b in _sides(joints)]
+    lines += [list(frame.pixels(ends[at.k])) for ends in at.motion.slides.values()]
+    hidden = np.array(lines or [[where[0], where[0]]])[None]
+    offsets = label_offsets(where[None], sizes, hidden, LABEL_GAP, (PICTURE_WIDTH, frame.height))
     for (x, y), (_, name, rest) in zip(where + offsets, told, strict=True):
-        bold = f'<tspan class="b">{escape(name)}</tspan> ' if name else ""
+        bold = f'<tspan class="b">{escape(name)}</tspan>' if name else ""
         kind = "" if name else ' class="force"'
         yield (
-            f'<text{kind} x="{x:.1f}" y="{y + 5.0:.1f}" text-anchor="middle">{bold}'
-            f"{escape(rest)}</text>"
+            f'<text{kind} x="{x:.1f}" y="{y + 5.0:.1f}" text-anchor="middle">'
+            f"{f'{bold} {escape(rest)}'.strip()}</text>"
         )
 
 
-def _on_ground(at: GoverningInstant) -> Iterable[tuple[str, str]]:
+def _on_ground(at: Instant) -> Iterable[tuple[str, str]]:
     """Yield the fixed joints with the size of the force that links pass to the ground there."""
-    table = at.table
-    if table is None:
+    if at.table is None:
         return
-    forces = table.forces.reshape(-1, *table.forces.shape[-2:])
-    now = forces[min(at.k, len(forces) - 1)]
+    now = _forces(at.table, at.k)
     for joint in at.motion.ground:
         here = [
             c for c, (_, _, of) in enumerate(at.motion.connections)
             if of == joint and c < len(now)
         ]  # fmt: skip
-        if here:
-            size = float(np.linalg.norm(now[here].sum(axis=0)))
-            if size > 0.0:
-                yield joint, f"{engineering(size, 3)}"
+        size = float(np.linalg.norm(now[here].sum(axis=0)))
+        if size > 0.0:
+            yield joint, engineering(size, 3)

@@ -18,6 +18,7 @@ from reports.format.place_words import place_words
 from reports.format.ranges import factor_range
 from reports.format.words import headline
 from reports.page.linkage_drawing import draw_linkage
+from reports.page.pin_marks import governing_instant, pin_marks
 from reports.tables.strength.overview import (
     FactorAxis,
     check_words,
@@ -63,12 +64,12 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
     unknown = unknowns(line.row for line in lines)
     axis = factor_axis(lines)
     matrix = matrix_rows(requirement_rows(results)) if len(lines) <= MAX_MATRIX_PINS else []
-    steps = actions(results)
-    linkage = draw_linkage(results, lines, anchors)
+    steps = actions(results, lines)
+    linkage = _linkage(results, lines, anchors)
     return {
         "headline": headline(results),
         "state": _css(lines[0].outcome) if lines else "",
-        "decisions": decisions(results),
+        "decisions": decisions(results, lines),
         "about": _about(results, lines),
         "linkage": linkage,
         "drawing": "" if linkage else drawing,
@@ -84,16 +85,24 @@ def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) ->
         ),
         "checks": any(check_words(line) != DASH for line in lines),
         "matrix": [_matrix_row(row, lines) for row in matrix],
-        "why": why(results, MAX_PEAKS),
+        "why": why(results, lines, MAX_PEAKS),
         "why_title": "Why" if not lines or lines[0].outcome in GOOD else "Why they fail",
-        "actions": [step for step in steps if not step.startswith("pinstress ")],
+        "actions": [*steps.repairs, *steps.remarks],
         "nothing": _nothing(lines),
-        "command": next((step for step in steps if step.startswith("pinstress ")), ""),
+        "command": steps.command,
         "curve": _curve(lines[0], results) if lines else None,
-        "accuracy": [*_accurate(results), *certainty(results), *measure_first(unknown)],
+        "accuracy": [*_accurate(lines), *certainty(lines), *measure_first(unknown)],
         "unknowns": [_unknown(x, results) for x in unknown[:MAX_UNKNOWNS]],
-        "caveats": [*skipped_checks(results), *caveats(results)],
+        "caveats": [*skipped_checks(results, lines), *caveats(results)],
     }
+
+
+def _linkage(results: Results, lines: Sequence[PinLine], anchors: Mapping[str, str]) -> str | None:
+    at = governing_instant(results, lines)
+    if at is None:
+        return None
+    title = f"Linkage in case {at.motion.case}; each pin with its factor of safety"
+    return draw_linkage(at, pin_marks(at, lines, anchors), title, results.units.force)
 
 
 def _about(results: Results, lines: Sequence[PinLine]) -> str:
@@ -114,8 +123,8 @@ def _about(results: Results, lines: Sequence[PinLine]) -> str:
     return "; ".join(parts)
 
 
-def _accurate(results: Results) -> list[str]:
-    return [f"Error of the maxima {text}" for text in accuracy(results)]
+def _accurate(lines: Sequence[PinLine]) -> list[str]:
+    return [f"Error of the maxima {text}" for text in accuracy(lines)]
 
 
 def _nothing(lines: Sequence[PinLine]) -> str:

@@ -29,11 +29,13 @@ from reports.text.method import METHOD_NOTE
 from reports.text.pin_sentence import drawing_caption, pin_sentence
 
 Content = dict[str, Any]
-# Of the drawing of the linkage, as reports/templates/overview.css has it in light colours
+# Of the drawing of the linkage, as reports/templates/linkage.css has it in light colours
 PAPER_STYLE = (
     "text{font-family:'Libertinus Serif';font-size:14px}.force{font-size:12.5px;fill:#5a6068}"
     ".b{font-weight:700}.link{fill:none;stroke:#a5a8ac;stroke-linecap:round}.body{fill:#ececee}"
     ".slide{fill:none;stroke:#5a6068;stroke-width:2;stroke-dasharray:6 4}"
+    ".pitch,.lever{fill:none;stroke:#5a6068;stroke-width:1.2}.lever{stroke-dasharray:3 3}"
+    ".joint{fill:#fff;stroke:#5a6068;stroke-width:1.4}"
     ".ground{fill:none;stroke:#1d1f23;stroke-width:1.4}.load{fill:none;stroke:#1d1f23;"
     "stroke-width:3.5}.head{fill:#1d1f23}.pin circle,.hf{stroke:#fff;stroke-width:1.5}"
     ".pin path{fill:none;stroke-width:2.4}.pin .h{fill:#fff;stroke-width:2.4}"
@@ -180,6 +182,7 @@ def _case(pin: PinResult, results: Results) -> Content:
         "plot": plot_name("surface", pin.case, pin.pin),
         "places": None if places is None else asdict(places),
         "bands": asdict(joint.bands) if joint and joint.bands else None,
+        "lugs": asdict(joint.lugs) if joint and joint.lugs else None,
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_O
 from reports.data.changes import Remedy, command
 from reports.data.decision import largest_factor, limit
 from reports.data.dependence import BENEATH_CONTACT, IMPULSE_RANGES_TOGETHER, TOGETHER
-from reports.data.overview import GOOD, PinLine, QuietCase, pin_lines, quiet_cases
+from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
 from reports.data.results import Dependence, GoverningLoad, PinResult, PinShape, Results, Units
 from reports.data.unknowns import NO_SPREAD, Unknown, decided_by, factor_spread, without_range
 from reports.format.numbers import DASH, engineering, short
@@ -23,62 +24,77 @@ from reports.tables.strength.margins import not_made_briefly
 
 MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
 MAX_NAMED_CASES = 4
-MAX_PEAKS = 3  # largest stresses in a sentence
+MAX_FLIPS = 3  # values of one kind that change an outcome, in a sentence
 LARGE_FORCE = 0.5  # of the largest force: what passes through the same pins
 STRONGER = 3.0  # times the strength, which no other steel has
 MEASURED = {
     "landing": "force over time at landing",
     "joint": "clearance and stiffness of the lugs",
 }
+ESTIMATES_TEXT = (
+    "Diameters are estimates: the factor grows with their cube in bending, their square in shear, "
+    "their power 1.5 beneath contact. The command verifies them."
+)
 Content = list[str]
 
 
-def decisions(results: Results) -> str:
-    """Return sentences on the pins that do not fail, and on cases that never govern."""
-    lines = pin_lines(results)
+def decisions(results: Results, lines: Sequence[PinLine]) -> str:
+    """Return sentences on the pins that do not fail, and on cases that never govern.
+
+    lines: here and below, those of the pins (`pin_lines`).
+    """
     parts = [_undecided(lines), _depending(results, lines), _good(lines), _also(results, lines)]
     parts += [_quiet(results, case, len(lines)) for case in quiet_cases(results, lines)]
     return " ".join(part for part in parts if part)
 
 
-def why(results: Results, most: int = MAX_PEAKS) -> Content:
+def why(results: Results, lines: Sequence[PinLine], most: int) -> Content:
     """Return sentences on the forces, the internal forces that govern, and the largest stresses.
 
     most: number of pins with their stress.
     """
-    lines = [line for line in pin_lines(results) if line.row.max_von_mises]
-    if not lines:
+    solved = [line for line in lines if line.row.max_von_mises]
+    if not solved:
         return []
-    bad = [line for line in lines if line.outcome not in GOOD] or lines[:1]
+    bad = [line for line in solved if line.outcome not in GOOD] or solved[:1]
     shapes = {shape.pin: shape for shape in results.shapes}
     failing = [line for line in bad if line.outcome in (FAILS, YIELDS)] or bad
-    parts = [_path(results, lines), _actions(failing), _peaks(results, bad[:most], shapes)]
+    parts = [_path(results, solved), _dominating(failing), _peaks(results, bad[:most], shapes)]
     return [part for part in parts if part]
 
 
-def actions(results: Results, study: str = "") -> Content:
-    """Return changes that bring the pins to their factor, and last the command that sizes them.
+@dataclass(frozen=True)
+class Actions:
+    """What brings the pins to their factor.
+
+    repairs: sentences on failing checks by formula, and on singularities that can be removed.
+    remarks: sentences on diameters and on other ways.
+    command: what sizes the pins; empty if nothing does.
+    """
+
+    repairs: Content
+    remarks: Content
+    command: str
+
+
+def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Actions:
+    """Return the changes that bring the pins to their factor.
 
     study: its path, by default its name.
     """
-    lines = pin_lines(results)
-    parts = repairs(lines)
+    repairs = [*_exceeded(lines), *_singular(lines)]
     if not results.changes:
-        return parts
-    if needed := [line for line in lines if line.diameter and line.diameter.needed]:
-        parts.append(
-            "Diameters are estimates: the factor grows with their cube in bending, their square in "
-            "shear, their power 1.5 beneath contact. The command verifies them."
-        )
-    parts += _eyes(results, needed)
-    parts += _other_ways(results)
-    line = command(results.changes, study or results.study, largest_factor(results.pins))
-    return [*parts, *([line] if line else [])]
+        return Actions(repairs, [], "")
+    needed = [line for line in lines if line.diameter and line.diameter.needed]
+    remarks = [ESTIMATES_TEXT] if needed else []
+    remarks += [*_eyes(results, needed), *_other_ways(results)]
+    sizing = command(results.changes, study or results.study, largest_factor(results.pins))
+    return Actions(repairs, remarks, sizing)
 
 
-def accuracy(results: Results) -> Content:
+def accuracy(lines: Sequence[PinLine]) -> Content:
     """Return a sentence on the errors of the maxima; nothing where none has one."""
-    rows = [x.row for x in pin_lines(results) if x.row.max_von_mises]
+    rows = [x.row for x in lines if x.row.max_von_mises]
     sound = [r for r in rows if r.verdict != "singular" and r.error_estimate is not None]
     if not sound:
         return []
@@ -86,11 +102,11 @@ def accuracy(results: Results) -> Content:
     return [f"up to {engineering(100.0 * most, 2)} %."]
 
 
-def certainty(results: Results) -> Content:
+def certainty(lines: Sequence[PinLine]) -> Content:
     """Return sentences on the pins that fail whatever is open, and on the error with which the one
     nearest to the factor would not.
     """
-    rows = [x.row for x in pin_lines(results) if x.row.decided is False and x.row.safety_factor]
+    rows = [x.row for x in lines if x.row.decided is False and x.row.safety_factor]
     if not rows:
         return []
     nearest = max(rows, key=lambda r: r.safety_factor or 0.0)
@@ -110,9 +126,9 @@ def certainty(results: Results) -> Content:
     ]
 
 
-def skipped_checks(results: Results) -> Content:
+def skipped_checks(results: Results, lines: Sequence[PinLine]) -> Content:
     """Return a sentence on the checks that lack a number; nothing if all were made."""
-    without = [x.pin for x in pin_lines(results) if without_range(x.row)]
+    without = [x.pin for x in lines if without_range(x.row)]
     parts = [f"joint range of {names(without)}"] if without else []
     parts += ["fatigue"] * (results.fatigue is None)
     parts += [text] if (text := not_made_briefly(results)) else []
@@ -142,8 +158,8 @@ def flips_words(unknown: Unknown, units: Units) -> str:
     if not flipped:
         return "no"
     told = [_flip(row, d, units) for row, d in flipped]
-    rest = f" and {len(told) - MAX_PEAKS} more" if len(told) > MAX_PEAKS else ""
-    return f"yes: {'; '.join(told[:MAX_PEAKS])}{rest}"
+    rest = f" and {len(told) - MAX_FLIPS} more" if len(told) > MAX_FLIPS else ""
+    return f"yes: {'; '.join(told[:MAX_FLIPS])}{rest}"
 
 
 def range_words(unknown: Unknown, units: Units) -> str:
@@ -298,7 +314,7 @@ def _largest(loads: Sequence[GoverningLoad]) -> float:
     return max(*map(_size, loads), float(np.linalg.norm(total)))
 
 
-def _actions(lines: Sequence[PinLine]) -> str:
+def _dominating(lines: Sequence[PinLine]) -> str:
     """Return a sentence on the internal forces that govern pins."""
     by_action: dict[str, list[str]] = {}
     for line in lines:
@@ -328,11 +344,6 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
         return f"Largest stress: {'; '.join(told)}."
     word = "permitted" if first.required else "the yield strength"
     return f"Largest stress: {'; '.join(told)}; {engineering(permitted, 3)} is {word}."
-
-
-def repairs(lines: Sequence[PinLine]) -> Content:
-    """Return sentences on failing checks by formula, and on singularities that can be removed."""
-    return [*_exceeded(lines), *_singular(lines)]
 
 
 def _exceeded(lines: Sequence[PinLine]) -> Content:

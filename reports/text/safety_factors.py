@@ -14,6 +14,7 @@ from reports.data.unknowns import Unknown, unknowns
 from reports.format.numbers import engineering, short
 from reports.format.words import headline
 from reports.tables.published import published_maxima
+from reports.tables.strength.codes import CODES_TITLE, codes_table
 from reports.tables.strength.fatigue import fatigue_sentence
 from reports.tables.strength.limit_load import limits_table
 from reports.tables.strength.overview import (
@@ -29,7 +30,6 @@ from reports.text.overview import (
     actions,
     decisions,
     measure_first,
-    repairs,
     skipped_checks,
     why,
 )
@@ -53,7 +53,7 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     if lines:
         # As Text: a name in square brackets is no markup.
         console.print(Text(headline(results), "bold"))
-        if text := decisions(results):
+        if text := decisions(results, lines):
             console.print(Text(text))
         table = overview_table(results, lines)
         tints = [OUTCOME_COLOURS.get(line.outcome, "yellow") for line in lines]
@@ -62,17 +62,16 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
             console.print(Text(key))
     else:
         console.print(Text("No pin was solved."))
-    for title, sentences in _parts(results, lines, unknown, study):
-        command = len(sentences) > 1 and sentences[-1].startswith("pinstress ")
-        said = " ".join(sentences[:-1] if command else sentences)
-        console.print(Text.assemble((f"{title} ", "bold"), said))
-        if command:
-            console.print(Text(f"  {sentences[-1]}"), soft_wrap=True)  # to be copied
+    for title, sentences, command in _parts(results, lines, unknown, study):
+        console.print(Text.assemble((f"{title} ", "bold"), " ".join(sentences or [command])))
+        if sentences and command:
+            console.print(Text(f"  {command}"), soft_wrap=True)  # to be copied
     if len(results.changes) == 1:
         sensitivities = shown_sensitivities(_of_changes(results), MAX_BRIEF_ROWS)
         print_table(console, "Sensitivities", sensitivities, results.units)
     if results.fatigue:
         console.print(Text(fatigue_sentence(results.fatigue)))
+    print_table(console, CODES_TITLE, codes_table(results), results.units)
     print_table(console, "Past yield", limits_table(results), results.units)
     print_table(console, "Published values", published_maxima(results), results.units)
 
@@ -85,18 +84,19 @@ def _of_changes(results: Results) -> Results:
 
 def _parts(
     results: Results, lines: list[PinLine], unknown: list[Unknown], study: str
-) -> list[tuple[str, list[str]]]:
-    """Return the titles and sentences under the table; only those that say something."""
-    ways = actions(results, study)
-    command = [way for way in ways if way.startswith("pinstress ")]
+) -> list[tuple[str, list[str], str]]:
+    """Return the titles, sentences and commands under the table; only those that say something."""
+    steps = actions(results, lines, study)
+    brief = bool(steps.command) and len(results.changes) > 1  # the table has the diameters
+    notes = [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]
     parts = [
-        ("Why:", why(results, 1)),
-        ("Do:", [*repairs(lines), *command] if command and len(results.changes) > 1 else ways),
-        ("Error:", [*accuracy(results), *measure_first(unknown)]),
-        ("Other checks:", [*_margins(results), *skipped_checks(results)]),
-        ("Note:", [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]),
+        ("Why:", why(results, lines, 1), ""),
+        ("Do:", steps.repairs if brief else [*steps.repairs, *steps.remarks], steps.command),
+        ("Error:", [*accuracy(lines), *measure_first(unknown)], ""),
+        ("Other checks:", [*_margins(results), *skipped_checks(results, lines)], ""),
+        ("Note:", notes, ""),
     ]
-    return [(title, sentences) for title, sentences in parts if sentences]
+    return [(title, told, command) for title, told, command in parts if told or command]
 
 
 def _key(lines: list[PinLine]) -> str:

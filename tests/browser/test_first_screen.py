@@ -51,16 +51,16 @@ def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
     with screen(page, 1400):
         text = page.execute_script(SEEN, FIRST_SCREEN)
     # Which pins fail, and why?
-    assert "5 of 9 pins miss the required factor 10 (landing): E, J, A, G, D." in text
+    assert "5 of 9 pins miss the required factor 10 (landing): E, J, A, D, G." in text
     assert "E, J and A carry up to 196,000 lbf" in text
-    assert "Shear dominates E and J, bending A, G and D." in text
-    assert "E 187,000 psi (surface, step beside E2)" in text
+    assert "Shear dominates E, bending J, A, D and G." in text
+    assert "E 195,000 psi (surface, step beside E2)" in text
     # Which diameter?
-    assert "2 → 3.40" in text
+    assert "2 → 3.44" in text
     assert "would not fit lugs of 5.00 in outer diameter" in text
-    assert "pinstress size landing_gear.toml --pins E,J,A,G,D" in text
+    assert "pinstress size landing_gear.toml --pins E,J,A,D,G" in text
     # Is the error small enough?
-    assert "Error of the maxima up to 2.0 %." in text
+    assert "Error of the maxima up to 1.8 %." in text
     assert "Even D would pass only if its stress were overestimated by 140 %" in text
     assert "Measure first: force over time at landing" in text
     assert "not checked, needs ultimate_strength" in text
@@ -69,7 +69,7 @@ def test_three_questions_are_answered_in_the_first_screen(page: Any) -> None:
 def test_the_linkage_shows_each_pin_with_its_factor_and_the_load(page: Any) -> None:
     linkage = page.find_element("css selector", "svg.linkage")
     text = linkage.text.split()
-    for pin, factor in (("E", "1.20"), ("J", "1.49"), ("C", "294")):
+    for pin, factor in (("E", "1.15"), ("J", "1.48"), ("C", "294")):
         assert text[text.index(pin) + 1] == factor
     assert "194,000" in text
     assert len(linkage.find_elements("css selector", ".pin.fails")) == 5
@@ -84,7 +84,7 @@ def test_bars_stand_on_their_side_of_the_requirement(page: Any, width: int) -> N
     with screen(page, width):
         rows = page.execute_script(ROWS)
         assert page.execute_script(WIDER) == []
-    assert [row["pin"] for row in rows] == list("EJAGDFHBC")
+    assert [row["pin"] for row in rows] == list("EJADGFHBC")
     for row in rows:
         safe = row["outcome"].endswith("safe")
         assert (row["factor"] > row["required"]) is (not row["outcome"].endswith("fails"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from fea.section.section_stress import SectionField
 from fea.support.support import Solution
 from geometry import body_of_revolution
 from pinstress.study.model.cases import CaseLoads
+from pinstress.study.model.impulses import ImpulseLoads
 from pinstress.study.model.tasks import Task
 from reports.data.results import Floats, LandingRange
 
@@ -23,10 +25,21 @@ def landing_range(
     case, over = solution.peak.case, loads[solution.peak.case].range
     if over is None or solution.answer is None:
         return None
-    maxima, strength = _maxima(task, solution, task.ranges[case]), task.material.yield_strength
+    maxima = _maxima(task, solution, task.ranges[case])
+    nominal = range_of(solution.peak, over, maxima, task.material.yield_strength)
+    return replace(nominal, spread=_spread(solution.peak))
+
+
+def range_of(
+    peak: Maximum, over: ImpulseLoads, maxima: Floats, strength: float | None
+) -> LandingRange:
+    """Return the results over a landing's ranges, without a spread of the joint.
+
+    peak: the maximum under the nominal force. maxima: Pa, under each force of `over`.
+    """
     return LandingRange(
-        pin=task.pin.name,
-        case=case,
+        pin=peak.pin,
+        case=peak.case,
         impulse_time=over.times,
         velocity_change=over.velocities,
         pulses=over.pulses,
@@ -35,9 +48,8 @@ def landing_range(
         safety_factor=None if strength is None else strength / maxima,
         nominal=over.nominal,
         nominal_pulse=over.nominal_pulse,
-        verdict=solution.peak.verdict,
-        spread=_spread(solution.peak),
-        error=(solution.peak.error_estimate or 0.0) / (solution.peak.max_von_mises or 1.0),
+        verdict=peak.verdict,
+        error=(peak.error_estimate or 0.0) / (peak.max_von_mises or 1.0),
     )
 
 

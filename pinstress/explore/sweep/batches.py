@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from loads import noted_files
-from pinstress.explore.sweep.evaluate import DesignRow, Evaluator
+from pinstress.explore.sweep.evaluate import STRENGTH_KEYS, DesignRow, Evaluator
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
 from pinstress.study.reading.file import Study, parse_study
@@ -27,7 +27,6 @@ TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
 # s in which a batch is handed out to one of many processes and its rows are read
 BATCH_OVERHEAD_SECONDS = 0.008
 MAX_BATCH_DESIGNS = 5000  # designs in a batch
-STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
 
 _SOLVER_LOCK = threading.Lock()  # workers of a user's cluster may have several threads
 
@@ -105,7 +104,7 @@ def solve_batch(problem: DesignProblem, batch: Batch) -> SolvedBatch:
     with one_solver():
         start = time.perf_counter()
         evaluator = evaluator_of(problem)
-        rows = [evaluator.rows(values) for values in batch.values]
+        rows = evaluator.rows_of(batch.values)
         return SolvedBatch(batch, rows, time.perf_counter() - start)
 
 

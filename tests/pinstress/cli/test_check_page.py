@@ -56,7 +56,7 @@ def test_the_force_points_at_its_joint(tmp_path: Path) -> None:
     retract, landing = drawings(page_of(GEAR.read_text(), tmp_path), "linkage")
     assert not arrow_lines(retract)
     (arrow,) = arrow_lines(landing)
-    x1, y1, x2, y2 = (float(arrow.get(key, "nan")) for key in ("x1", "y1", "x2", "y2"))
+    x1, y1, x2, y2 = map(float, re.findall(r"[\d.]+", arrow.get("d", "")))
     rings = [
         (float(c.get("cx", "nan")), float(c.get("cy", "nan"))) for c in landing.iter(f"{SVG}circle")
     ]
@@ -68,7 +68,7 @@ def test_the_force_points_at_its_joint(tmp_path: Path) -> None:
 
 
 def arrow_lines(drawing: ET.Element) -> list[ET.Element]:
-    return [line for line in drawing.iter(f"{SVG}line") if line.get("stroke") == "#b3261e"]
+    return [path for path in drawing.iter(f"{SVG}path") if path.get("class") == "load"]
 
 
 def test_it_has_every_pin_and_row_and_needs_nothing_else(tmp_path: Path) -> None:

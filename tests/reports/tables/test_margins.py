@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from io import StringIO
 
 import pytest
+from rich.console import Console
 
 from assess.margin import RATIO_DIMENSION, Margin, PinMargin, skipped
 from reports.data.results import Results, Units
 from reports.page.paper import document
 from reports.tables.json_results import to_json
-from reports.tables.strength.margins import (
-    governing_table,
-    margins_table,
-    not_made_words,
-    worst_table,
-)
+from reports.tables.strength.margins import governing_table, margins_table, not_made_words
+from reports.text.safety_factors import print_safety_factors
+from tests.support.results.rows import with_values
 
 CHECKS = (
     Margin("von Mises", "", "model", "limit", 1.0, 100e6, 250e6),
@@ -24,6 +23,13 @@ CHECKS = (
     Margin("interaction", "", "clause", "ultimate", 1.5, 0.2, 1.0, RATIO_DIMENSION),
     skipped("rupture", "", "model", "ultimate", 1.5, "material.steel.ultimate_strength"),
 )
+
+
+def terminal(results: Results) -> str:
+    """Return what a run prints."""
+    out = StringIO()
+    print_safety_factors(results, Console(file=out, width=200, no_color=True))
+    return out.getvalue()
 
 
 def test_every_row_is_in_the_unit_that_it_names(results: Results) -> None:
@@ -75,14 +81,15 @@ def test_the_worst_check_of_each_pin_is_first(results: Results) -> None:
         PinMargin("A", "two", used("shear", 50.0)),
         PinMargin("B", "two", CHECKS[-1]),
     )
-    made = replace(results, spectrum_margins=margins)
-    by_case, worst = (x(made).grid(made.units) for x in (governing_table, worst_table))
-    assert [row[:4] for row in by_case.body] == [
+    cases = [(m.pin, m.case) for m in margins]
+    pins = tuple(with_values(results.pins[0], pin=p, case=c) for p, c in dict.fromkeys(cases))
+    made = replace(results, pins=pins, spectrum_margins=margins)
+    assert [row[:4] for row in governing_table(made).grid(made.units).body] == [
         ["B", "one", "shear", "+0.111"],
         ["A", "two", "shear", "+1.00"],
         ["A", "one", "bending", "+1.50"],
     ]
-    assert [row[:3] for row in worst.body] == [["B", "one", "shear"], ["A", "two", "shear"]]
+    assert "least margin +0.111 (B, limit)" in terminal(made)
     (line,) = not_made_words(made)
     assert "(pin B), material.steel.ultimate_strength missing: rupture" in line
-    assert not worst_table(replace(results, spectrum_margins=margins[-1:])).rows
+    assert "least margin" not in terminal(replace(made, spectrum_margins=margins[-1:]))

@@ -54,19 +54,19 @@ def test_what_neighbours_have_in_common_varies_as_one() -> None:
     (parameter,) = parameters_of(
         study_from(
             varied(
-                '"pin.H.profile[1-3].diameter" = { from = 2, to = 3, steps = 2 }', text=gear.text
+                '"pin.H.profile[1-5].diameter" = { from = 2, to = 3, steps = 2 }', text=gear.text
             ),
             LANDING_GEAR.parent,
         )
     )
     number = parameter.number
     assert number.nominal == pytest.approx(2.0 * 0.0254)
-    assert [path[3] for path in number.paths] == [0, 1, 2]
+    assert [path[3] for path in number.paths] == [0, 1, 2, 3, 4]
     evaluator = Evaluator(gear, [number], ["H"])
     changed = evaluator.changed([0.06]).table.pin["H"].profile
     assert changed is not None
-    assert [segment.diameter for segment in changed] == pytest.approx([0.06] * 3)
-    text = '"pin.H.profile[1-3].diameter" = { from = 2, to = 3 }\n'
+    assert [segment.diameter for segment in changed] == pytest.approx([0.06] * 5)
+    text = '"pin.H.profile[1-5].diameter" = { from = 2, to = 3 }\n'
     text += '"pin.H.profile[2].diameter" = { from = 2, to = 3 }'
     with pytest.raises(InputError, match="names the same number"):
         parameters_of(study_from(varied(text, text=gear.text), LANDING_GEAR.parent))
