@@ -32,6 +32,7 @@ class Requirement:
     cells: of contact with lugs, these alone; None: until they are fine enough. "unit": rough ones,
     with the unit pressures of each on the first mesh (fea.support.contact.unit_pressures); "alone":
     rough ones on the first mesh, with nothing to compare them with.
+    varied: whether the range over what is not known of a joint is wanted.
     factors: the required factors of cases where these are not `required`.
 
     A support adds what it knows:
@@ -48,6 +49,7 @@ class Requirement:
     memory: float | None = None
     joints: Joints = "auto"
     cells: Literal["unit", "alone", "rough", "usual"] | None = None
+    varied: bool = True
     factors: Mapping[str, float] = field(default_factory=dict)
     elsewhere: Mapping[str, float] = field(default_factory=dict)
     besides: Mapping[str, float] = field(default_factory=dict)

@@ -242,7 +242,7 @@ def _varied(
     names: list[list[Variation]] = [[] for _ in at]
     varied: list[list[_Joint]] = [[] for _ in at]
     missing: list[list[str]] = [[] for _ in at]
-    for change in joint_variations(model.whole, model.lugs):
+    for change in joint_variations(model.whole, model.lugs) if any(vary) else ():
         other = model.varied(change.lugs, change.softness)
         cells = _own_cells(other) if own_cells else on_coarser_cells(other)
         for contact, over, changed, why, so in zip(at, names, varied, missing, vary, strict=True):

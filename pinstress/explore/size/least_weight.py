@@ -4,7 +4,7 @@ from the weights.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -12,11 +12,20 @@ from assess.judgement import OUTCOME_ORDER, SAFE
 from pinbase.processes.pool import Job, ProcessDied, Progress, in_parallel, preload
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
-from pinstress.analysis.results import run
-from pinstress.explore.size.lightest_pin import Lightest, Start, WeightGoal, as_it_is, lightest_pin
+from pinstress.analysis.results import solve
+from pinstress.explore.size.lightest_pin import (
+    STRESS_MARGIN,
+    Lightest,
+    Start,
+    WeightGoal,
+    as_it_is,
+    lightest_pin,
+)
 from pinstress.explore.size.other_dimensions import written_study
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
+from pinstress.explore.size.size_pins import changes_of_load
+from pinstress.study.model.cases import CaseLoads
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
 from reports.data.decision import low_factor
@@ -30,8 +39,8 @@ LEAST_WEIGHT_MODULES = ("fea.solve.solve", "assess.derivatives.places", "scipy.o
 class LightStudy:
     """The new study, the result for every pin, and the new study's run.
 
-    passes: number of times that all loads were updated.
-    settled: whether the run has the factors of the last search.
+    passes: number of searches of those pins that were searched most often.
+    settled: whether the run confirms all pins.
     at: by pin and case, the factor at a probability, if requested.
     """
 
@@ -52,35 +61,88 @@ def lighten(
 ) -> LightStudy:
     """Find every pin's least weight.
 
-    Weights of pins change the loads of others, so all are searched again from where they are, under
-    the loads of the new study, until its run confirms them.
+    Weights of pins change the loads of others, and a run has finer cells of contact than a search.
+    So a pin is searched again from where it is, under the loads of the new study, until that one's
+    run confirms it; where the run has a smaller factor, for as much more.
 
     Raises: InputError.
     """
     plan = prepare(study, pins=pins)
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
-    starts: dict[str, Start] = {}
-    first: dict[str, float | None] = {}
-    for count in range(1, MAX_PASSES + 1):
-        lightest = _all(study, plan, names, aim, starts, jobs, progress)
-        first = {pin.pin: pin.before for pin in lightest} | first
-        starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in lightest}
-        new = _written(study, aim, lightest)
+    lightest: dict[str, Lightest] = {}
+    searched: dict[str, dict[str, CaseLoads]] = {}
+    raised = dict.fromkeys(names, 1.0)
+    todo, passes = names, 0
+    for _ in range(MAX_PASSES):
+        passes += 1
+        goal = _raised(aim, raised, plan.loads)
+        for pin in _all(study, plan, todo, goal, lightest, jobs, progress):
+            known = lightest.get(pin.pin, pin)
+            lightest[pin.pin] = replace(pin, before=known.before)
+            searched[pin.pin] = plan.loads
+        new = _written(study, aim, list(lightest.values()))
         progress("run of the new study", 0.9)
-        results = run(new, pins=names, jobs=jobs)
-        settled = all(_agrees(pin, results, aim) for pin in lightest)
-        if settled or count == MAX_PASSES:
+        results, loads = _run(new, names, jobs)
+        changes = {name: changes_of_load(new, name, searched[name], loads) for name in names}
+        times = {
+            name: _unconfirmed(pin, results, aim, raised[name], changes[name].values())
+            for name, pin in lightest.items()
+        }
+        raised = {name: raised[name] * (times[name] or 1.0) for name in names}
+        todo = [name for name in names if times[name] is not None]
+        if not todo:
             break
-        plan = replace(plan, loads=prepare(new, pins=pins).loads)
-    lightest_pins = tuple(replace(pin, before=first[pin.pin]) for pin in lightest)
-    if worse := _worse(study, aim, lightest_pins, results, jobs):
-        lightest_pins = tuple(
-            as_it_is(study, aim, pin, worse[pin.pin]) if pin.pin in worse else pin
-            for pin in lightest_pins
+        plan = replace(plan, loads=loads)
+    final = tuple(lightest[name] for name in names)
+    if worse := _worse(study, aim, final, results, jobs):
+        final = tuple(
+            as_it_is(study, aim, pin, worse[pin.pin]) if pin.pin in worse else pin for pin in final
         )
-        new = _written(study, aim, list(lightest_pins))
-        results = run(new, pins=names, jobs=jobs)
-    return LightStudy(new, lightest_pins, results, count, settled)
+        new = _written(study, aim, list(final))
+        results, _ = _run(new, names, jobs)
+    return LightStudy(new, final, results, passes, not todo)
+
+
+def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, CaseLoads]]:
+    """Run pins without what only explains their rows; the results and the loads."""
+    plan = replace(prepare(study, pins=pins), explained=False)
+    return solve(plan, jobs=jobs), plan.loads
+
+
+def _raised(aim: WeightGoal, raised: Mapping[str, float], cases: Iterable[str]) -> WeightGoal:
+    """Return the goal with factors that are so many times as large, by pin."""
+    places = [(pin, case) for pin, times in raised.items() if times != 1.0 for case in cases]
+    more = {place: raised[place[0]] * aim.likely.get(place, 1.0) for place in places}
+    return replace(aim, likely={**aim.likely, **more})
+
+
+def _unconfirmed(
+    pin: Lightest, results: Results, aim: WeightGoal, raised: float, changes: Collection[float]
+) -> float | None:
+    """Return how many times the factor of a pin's next search is to be that of this one; None where
+    a run confirms the pin.
+
+    raised: times the required factor, in this search. changes: of the loads since, by case.
+    """
+    more = aim.of_pin(pin.pin)
+    rows = [p for p in results.pins if p.pin == pin.pin]
+    if any(p.verdict == "unconverged" and p.decided for p in rows) and all(
+        p.decided is not False for p in rows
+    ):
+        return None  # it ended where that was decided
+    low = [
+        f / times
+        for p in rows
+        if (f := low_factor(p)) is not None and (times := more.get(p.case, 1.0))
+    ]
+    if pin.factor is None or not low:
+        return None
+    factor = min(low) * (1.0 + 1e-9)
+    if factor < aim.required:
+        return aim.required / factor * (1.0 + STRESS_MARGIN)
+    # Under the same loads a search would end where it did.
+    moved = max(changes, default=0.0) > FACTOR_TOLERANCE
+    return 1.0 if moved and factor > raised * pin.factor * (1.0 + FACTOR_TOLERANCE) else None
 
 
 def _worse(
@@ -98,7 +160,7 @@ def _worse(
     } & changed
     if not doubtful:
         return {}
-    start = run(_written(study, aim, []), pins=sorted(doubtful), jobs=jobs)
+    start, _ = _run(_written(study, aim, []), sorted(doubtful), jobs)
     before = {(p.pin, p.case): p.as_described for p in start.pins}
     out: dict[str, str] = {}
     for p in results.pins:
@@ -113,12 +175,13 @@ def _all(
     plan: Plan,
     names: list[str],
     aim: WeightGoal,
-    starts: Mapping[str, Start],
+    before: Mapping[str, Lightest],
     jobs: int,
     progress: Progress,
 ) -> list[Lightest]:
     if jobs > 1:
         preload(*LEAST_WEIGHT_MODULES)
+    starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in before.values()}
     heavy = sorted(names, key=lambda n: -len(study.table.pin[n].profile or ()))  # the longest first
     work = [
         Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in heavy
@@ -141,19 +204,3 @@ def _written(study: Study, aim: WeightGoal, pins: list[Lightest]) -> Study:
         shape = VariedShape(study, pin_of(study, name), aim.vary, aim.limits)
         shapes[name] = (shape.pin, shape.dimensions)
     return written_study(scaled, shapes, values, aim.step, aim.written)
-
-
-def _agrees(pin: Lightest, results: Results, aim: WeightGoal) -> bool:
-    """Return whether the run has the factor that was found for a pin, with little excess."""
-    more = aim.of_pin(pin.pin)
-    rows = [p for p in results.pins if p.pin == pin.pin]
-    if any(p.verdict == "unconverged" and p.decided for p in rows):
-        return all(p.decided is not False for p in rows)  # it ended where that was decided
-    low = [
-        f / times
-        for p in rows
-        if (f := low_factor(p)) is not None and (times := more.get(p.case, 1.0))
-    ]
-    if pin.factor is None or not low:
-        return True
-    return aim.required <= min(low) * (1.0 + 1e-9) <= pin.factor * (1.0 + FACTOR_TOLERANCE)

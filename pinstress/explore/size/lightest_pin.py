@@ -286,7 +286,7 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
     loads = {case: x for case, x in plan.loads.items() if more.get(case, 1.0)}
     if not loads:
         return "no factor is required of it"
-    requirement = replace(plan.requirement, goal="value")
+    requirement = replace(plan.requirement, goal="value", varied=False)
     return SizingProblem(study, pin, shape, requirement, loads, aim.required, more)
 
 

@@ -22,7 +22,7 @@ WORKER_DIED = ProcessDied("the worker that sized it ended by itself, out of memo
 
 
 @dataclass(frozen=True)
-class PinProblem:
+class ClusterSizing:
     """All that a worker needs to size pins of a study, as text where it can be.
 
     files: hash of the contents that were sent of the files that the study names; empty where they
@@ -43,7 +43,7 @@ class PinProblem:
         return self.path, self.text, self.located, self.pins, self.cases, self.files
 
     @classmethod
-    def of(cls, plan: Plan, goal: SizingGoal) -> PinProblem:
+    def of(cls, plan: Plan, goal: SizingGoal) -> ClusterSizing:
         """Return the problem of a plan's pins, whose files are named by absolute paths."""
         study = plan.study
         place = study.path.absolute(), study.text, study.located
@@ -103,7 +103,7 @@ class PinQueue:
 
 def size_on(
     cluster: Cluster,
-    problem: PinProblem,
+    problem: ClusterSizing,
     pins: Sequence[str],
     scales: Mapping[str, float],
     done: Done,
@@ -122,7 +122,7 @@ def size_on(
     solve_on(cluster, problem, tuple(sorted(files)), work, size_there)
 
 
-def size_there(problem: PinProblem, task: PinTask) -> tuple[int, SizingResult]:
+def size_there(problem: ClusterSizing, task: PinTask) -> tuple[int, SizingResult]:
     """Size a pin in a worker, and return it with its number."""
     with one_solver():
         plan = _plan(*problem.planned)

@@ -93,7 +93,7 @@ class SizedStudy:
         plan = self._plan(trial, cases)
         tolerance = plan.requirement.tolerance
         requirement = replace(
-            plan.requirement, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE)
+            plan.requirement, goal="value", tolerance=max(tolerance, QUICK_TOLERANCE), varied=False
         )
         if accuracy == "rough":
             requirement = replace(requirement, cells="rough")

@@ -26,6 +26,7 @@ from fea.core.requirement import Requirement
 from geometry import ArgumentError
 from geometry.shape.dimensions import Dimension
 from pinbase.arrays import Floats
+from pinbase.memo import Memo
 from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.analysis.solve import solutions
 from pinstress.explore.size.contact_slopes import UndifferentiatedError
@@ -111,6 +112,7 @@ class SolvedPin:
 class PinStress:
     """A solver of a pin with other dimensions.
 
+    Flexibilities and meshes that designs have in common are found once.
     in_contact: whether lugs hold it, once solved.
     watched: cases in which no singularity may govern, none to begin with.
     """
@@ -127,6 +129,7 @@ class PinStress:
         self.in_contact = False
         self.watched: frozenset[str] = frozenset()
         self._singular = SingularPlaces(shape)
+        self._memo = Memo()
         self._cases: tuple[str, ...] = ()  # that may govern near the dimensions `_about`
         self._about: Floats | None = None
         self.count = 0  # of designs
@@ -286,7 +289,7 @@ class PinStress:
             raise UndifferentiatedError
         dimensions = self._dimensions(study, task) if differentiated else ()
         section = PartsOfSection(dimensions)
-        for solution in solutions(study, task, requirement, lambda _: None):
+        for solution in solutions(study, task, requirement, lambda _: None, self._memo):
             self.in_contact |= solution.rings is not None
             peak = solution.peak
             _require_solved(peak)

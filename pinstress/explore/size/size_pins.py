@@ -87,9 +87,9 @@ def _size(
         finished(sized[name])
 
     if cluster is not None:
-        from pinstress.explore.size.on_cluster import PinProblem, size_on
+        from pinstress.explore.size.on_cluster import ClusterSizing, size_on
 
-        size_on(cluster, PinProblem.of(plan, goal), todo, scales, done, progress)
+        size_on(cluster, ClusterSizing.of(plan, goal), todo, scales, done, progress)
         return
     work = [
         Job(f"pin {name}", partial(_job, plan, name, goal, scales, _label(names, name)))

@@ -12,11 +12,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pinstress.analysis.plan import prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
 from pinstress.cli.check import describe
 from pinstress.cli.commands import run_command_line
+from pinstress.explore.size.pin_answers import SizedStudy
 from pinstress.explore.size.scaled_study import moved, resized, resized_study
+from pinstress.explore.size.section_law import Accuracy
 from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.pins import pin, weight
 from pinstress.study.reading.file import load_study, parse_study
@@ -267,3 +270,19 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
 )
 def test_what_cannot_be_sized_is_told(tmp_path: Path, refused: Refused) -> None:
     sizes_nothing(tmp_path, refused)
+
+
+def test_the_joint_is_varied_in_the_verification_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A trial needs the stress of the pin as described; a full solution, as a run, the range."""
+
+    def varied(*_: object) -> None:
+        raise AssertionError("the joint is varied")
+
+    monkeypatch.setattr("fea.support.contact.variations.joint_variations", varied)
+    plan = prepare(load_study(ROOT / "studies" / "clevis.toml"))
+    sized = SizedStudy(plan, "P", 1.5, {})
+    accuracies: tuple[Accuracy, ...] = ("rough", "quick")
+    for accuracy in accuracies:
+        assert sized.quick(1.0, accuracy, None, lambda _: None).trial.factor > 2.0
+    with pytest.raises(AssertionError, match="varied"):
+        sized.full(1.0, ("pull",), lambda _: None)

@@ -1,0 +1,53 @@
+"""The estimated diameters of a run's first screen, beside those that `pinstress size` finds."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Mapping
+
+from benchmarks import ROOT
+from benchmarks.timing import table
+from pinbase.processes.pool import cores, preload
+from pinstress import Study, load_study, run
+from pinstress.analysis.plan import prepare
+from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS
+from pinstress.explore.size.size_pin import SizingGoal, SizingResult
+from pinstress.explore.size.size_pins import size_pins
+from reports.data.overview import PinLine, pin_lines
+
+
+def estimates() -> str:
+    """The pins of the landing gear that fail in a run, and those pins sized."""
+    preload(*RUN_LIBRARIES, *RUN_MODELS)
+    study = load_study(ROOT / "studies" / "landing_gear.toml")
+    factor = study.table.analysis.required_safety_factor
+    assert factor is not None
+    lines = {x.pin: x for x in pin_lines(run(study, jobs=cores())) if x.diameter}
+    failing = [name for name, line in lines.items() if line.diameter and line.diameter.needed]
+    sized = _sized(study, factor, failing)
+    rows = [row for name in failing if (row := _row(lines[name], sized[name]))]
+    ratios = [float(row[-1]) for row in rows]
+    unit = study.system.length
+    head = ("pin", f"as it is, {unit}", f"estimated, {unit}", f"sized, {unit}", "ratio")
+    said = (
+        f"Largest diameter under a link, for the factor {factor:g}. Of {len(ratios)} pins the "
+        f"estimate is {min(ratios):.2f} to {max(ratios):.2f} times what `size` finds, in the "
+        f"middle {statistics.median(ratios):.2f} times:"
+    )
+    return f"{said}\n\n{table(head, rows)}"
+
+
+def _sized(study: Study, factor: float, names: list[str]) -> Mapping[str, SizingResult]:
+    plan = prepare(study, pins=names)
+    found = size_pins(plan, SizingGoal(factor), (), lambda _: None, cores(), lambda *_: None)
+    return {each.pin: each for each in found}
+
+
+def _row(line: PinLine, sized: SizingResult) -> tuple[str, float, float, float, str] | None:
+    """A pin's row; None where no size was found."""
+    diameter = line.diameter
+    if sized.scale is None or diameter is None or diameter.needed is None:
+        return None
+    given, needed = diameter.given, diameter.needed
+    answer = sized.scale * given
+    return line.pin, given, needed, answer, f"{needed / answer:.2f}"
